@@ -55,6 +55,15 @@ void unit_register(struct unit_cases *cases);
         tcase_add_checked_fixture(unit_tcase, SETUP, TEARDOWN);                                    \
     }
 
+/* A call of the cloth's, which is given &error, that has to succeed: else its sentence is why the
+ * test fails. */
+#define UNIT_FINE(CALL)                                                                            \
+    do {                                                                                           \
+        struct cloth_error error = {0};                                                            \
+        const int unit_code = (CALL);                                                              \
+        ck_assert_msg(unit_code == 0, "%s", error.text);                                           \
+    } while (0)
+
 /* Before a variable of a test: FREE(&variable) at the end of its scope. */
 #define UNIT_OWNED(FREE) __attribute__((cleanup(FREE)))
 

@@ -48,9 +48,8 @@ static void make(int which)
 
 static const struct contact_body *body_of(void)
 {
-    struct cloth_error error = {0};
     bool turned = true;
-    ck_assert_msg(contact_bodies_add(&bodies, &mesh, &turned, &error) == 0, "%s", error.text);
+    UNIT_FINE(contact_bodies_add(&bodies, &mesh, &turned, &error));
     ck_assert(!turned);
     return contact_bodies_at(&bodies, bodies.n);
 }
@@ -312,11 +311,10 @@ UNIT_LOOP(apart, 0, N_MADE)
 UNIT_LOOP(a_real_body, 0, access(real_body_path(), R_OK) == 0)
 {
     enum { N = 30000 };
-    struct cloth_error error = {0};
     struct mesh_transform metres = mesh_identity;
     for (int c = 0; c < 3; c++)
         metres.scale[c] = 0.1;
-    ck_assert_msg(mesh_read_surface(&mesh, real_body_path(), &error) == 0, "%s", error.text);
+    UNIT_FINE(mesh_read_surface(&mesh, real_body_path(), &error));
     mesh_apply(&mesh, &metres);
     const struct contact_body *body = body_of();
     phys_vec *x = aligned_alloc(CONTACT_ALIGN, N * sizeof *x);

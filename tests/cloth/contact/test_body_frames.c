@@ -31,7 +31,6 @@ static void place_frame(struct moving *m, int frame, double (*place)[3])
 
 static void make(struct moving *m)
 {
-    struct cloth_error error = {0};
     bool turned;
     surface_ball(&m->ball, 0.5, 2);
     surface_mesh(&m->ball, &m->mesh);
@@ -40,9 +39,8 @@ static void make(struct moving *m)
         place_frame(m, k, all + (size_t)k * m->ball.n);
     const struct contact_frames frames = {FRAMES, FIRST, RATE, (const double(*)[3])all};
     m->bodies = (struct contact_bodies){0};
-    ck_assert_msg(contact_bodies_add(&m->bodies, &m->mesh, &turned, &error) == 0, "%s", error.text);
-    ck_assert_msg(contact_bodies_add_frames(&m->bodies, &m->mesh, &frames, &turned, &error) == 0,
-                  "%s", error.text);
+    UNIT_FINE(contact_bodies_add(&m->bodies, &m->mesh, &turned, &error));
+    UNIT_FINE(contact_bodies_add_frames(&m->bodies, &m->mesh, &frames, &turned, &error));
 }
 
 static void drop(struct moving *m)
@@ -82,12 +80,11 @@ UNIT_TEST(is_a_body_of_its_places)
     const double times[] = {0, 0.5, 0.6, 0.75, 1.07, 1.25, 3};
     make(&m);
     for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
-        struct cloth_error error = {0};
         struct contact_bodies same = {0};
         bool turned;
         blend(&m, times[i], place);
         memcpy(m.mesh.position, place, m.ball.n * sizeof *place);
-        ck_assert_int_eq(contact_bodies_add(&same, &m.mesh, &turned, &error), 0);
+        UNIT_FINE(contact_bodies_add(&same, &m.mesh, &turned, &error));
         contact_bodies_move(&m.bodies, times[i] - 0.01, times[i]);
         const struct contact_body *body = contact_bodies_at(&m.bodies, 2);
         for (int k = 0; k < POINTS; k++) {
@@ -203,7 +200,6 @@ UNIT_TEST(triangles_that_lose_their_area)
     struct surface box;
     struct mesh mesh;
     struct contact_bodies bodies = {0};
-    struct cloth_error error = {0};
     bool turned;
     surface_box(&box, 1, 1, 1);
     surface_mesh(&box, &mesh);
@@ -212,7 +208,7 @@ UNIT_TEST(triangles_that_lose_their_area)
     memcpy(place[1], box.x, sizeof place[1]);
     memcpy(place[1][7], place[1][3], sizeof place[1][7]); /* (1, 1, 1) to (1, 1, -1) */
     const struct contact_frames frames = {2, 0, 1, (const double(*)[3])place[0]};
-    ck_assert_int_eq(contact_bodies_add_frames(&bodies, &mesh, &frames, &turned, &error), 0);
+    UNIT_FINE(contact_bodies_add_frames(&bodies, &mesh, &frames, &turned, &error));
     contact_bodies_move(&bodies, 1, 1);
     const struct contact_body *body = contact_bodies_at(&bodies, 1);
     for (uint32_t v = 0; v < body->n_vertices; v++)

@@ -17,14 +17,13 @@ static const struct contact_body *body;
 static void start(void)
 {
     static struct surface ring;
-    struct cloth_error error = {0};
     UNIT_OWNED(mesh_free) struct mesh mesh = {0};
     bool turned;
     surface_torus(&ring, 0.5, 0.2, 24, 12);
     ring.x[ring.n++][0] = 3;
     surface_mesh(&ring, &mesh);
     bodies = (struct contact_bodies){0};
-    ck_assert_msg(contact_bodies_add(&bodies, &mesh, &turned, &error) == 0, "%s", error.text);
+    UNIT_FINE(contact_bodies_add(&bodies, &mesh, &turned, &error));
     body = contact_bodies_at(&bodies, 1);
 }
 
@@ -42,9 +41,8 @@ static void *take(size_t bytes, int fill)
 
 static void *make_table(int fill)
 {
-    struct cloth_error error = {0};
     void *table = take(contact_body_skin_bytes(body), fill);
-    ck_assert_msg(contact_body_skin_make(body, FIRST_ID, table, &error) == 0, "%s", error.text);
+    UNIT_FINE(contact_body_skin_make(body, FIRST_ID, table, &error));
     return table;
 }
 
@@ -200,7 +198,6 @@ UNIT_TEST(pairs_with_a_cloth)
     void *table[2], *boxes[2];
     struct contact_skin skin[2];
     struct contact_side side[2];
-    struct cloth_error error = {0};
     struct found found = {.capacity = 1000000};
     make_cloth(corner, id, x[0], y[0]);
     memset(stands, 63, sizeof stands);
@@ -215,7 +212,7 @@ UNIT_TEST(pairs_with_a_cloth)
     const struct contact_skin counts = {
         .n_points = 3 * CLOTH, .n_triangles = CLOTH, .n_edges = 3 * CLOTH, .n_vertices = 3 * CLOTH};
     table[0] = take(contact_skin_bytes(&counts), 0);
-    ck_assert_int_eq(contact_skin_make(&from, table[0], &error), 0);
+    UNIT_FINE(contact_skin_make(&from, table[0], &error));
     table[1] = make_table(0);
     step(0.5, 0.7, x[1], y[1], way + 1);
     for (int i = 0; i < 2; i++) {

@@ -298,12 +298,11 @@ UNIT_TEST(bodies_by_frames)
 UNIT_LOOP(figure, 0, access(real_body_path(), R_OK) == 0)
 {
     struct mesh mesh;
-    struct cloth_error error = {0};
     struct shown s = {0};
     bool turned;
     int covered = 0, differ = 0;
-    ck_assert_msg(mesh_read_surface(&mesh, real_body_path(), &error) == 0, "%s", error.text);
-    ck_assert_msg(contact_bodies_add(&s.bodies, &mesh, &turned, &error) == 0, "%s", error.text);
+    UNIT_FINE(mesh_read_surface(&mesh, real_body_path(), &error));
+    UNIT_FINE(contact_bodies_add(&s.bodies, &mesh, &turned, &error));
     mesh_free(&mesh);
     s.body = contact_bodies_at(&s.bodies, 1);
     contact_view_make(s.body, CONTACT_THINNEST, 512, &s.view);

@@ -60,7 +60,6 @@ static inline void make_uneven(struct mesh *mesh, double bumps)
 
 static inline void make_scene(struct scene *s)
 {
-    struct cloth_error error = {0};
     memset(s, 0, sizeof *s);
     for (uint32_t c = 0; c < CLOTHS; c++) {
         s->cloth[c] = (struct model_cloth){.name = (char[]){"cloth"}, .material = c};
@@ -68,9 +67,8 @@ static inline void make_scene(struct scene *s)
             make_uneven(&s->cloth[c].mesh,
                         c == 0 ? 0.1 : 0); /* quadratic bending has a flat rest shape */
         else
-            ck_assert_int_eq(mesh_grid(&s->cloth[c].mesh, COLUMNS - 1, ROWS - 1, COLUMNS, ROWS,
-                                       MESH_ALTERNATE, &error),
-                             0);
+            UNIT_FINE(mesh_grid(&s->cloth[c].mesh, COLUMNS - 1, ROWS - 1, COLUMNS, ROWS,
+                                MESH_ALTERNATE, &error));
     }
     s->model = (struct model){
         .n_materials = CLOTHS,
@@ -81,7 +79,7 @@ static inline void make_scene(struct scene *s)
         .h = 0.01,
         .air = {.density = 1.2, .wind = {1, 2, -3}, .normal = 1.2, .tangent = 0.1},
     };
-    ck_assert_msg(element_cloths_make(&s->cloths, &s->model, &error) == 0, "%s", error.text);
+    UNIT_FINE(element_cloths_make(&s->cloths, &s->model, &error));
 }
 
 static inline void free_scene(struct scene *s)

@@ -24,7 +24,6 @@ static void chain(struct setup *s, double amplitude)
 {
     double vertices[3 * (LINKS + 1)] = {0};
     uint32_t edges[2 * LINKS];
-    struct cloth_error error = {0};
     setup_weight(s);
     mesh_free(&s->cloth.mesh);
     for (uint32_t i = 0; i <= LINKS; i++)
@@ -33,8 +32,7 @@ static void chain(struct setup *s, double amplitude)
         edges[2 * i] = i;
         edges[2 * i + 1] = i + 1;
     }
-    ck_assert_int_eq(
-        mesh_inline(&s->cloth.mesh, LINKS + 1, vertices, LINKS, edges, 0, NULL, &error), 0);
+    UNIT_FINE(mesh_inline(&s->cloth.mesh, LINKS + 1, vertices, LINKS, edges, 0, NULL, &error));
     s->cloth.mass_per_vertex = M;
     s->material.ea = K * 0.1; /* each link is 0.1 m long */
     s->material.damping_stiffness = 0;
@@ -59,9 +57,8 @@ static struct flow_limit limit_of(const struct setup *s)
 {
     struct flow_source source;
     struct flow_limit limit;
-    struct cloth_error error = {0};
-    ck_assert_msg(!flow_source_make(&source, &s->model, 1, &error), "%s", error.text);
-    ck_assert_int_eq(flow_limit_find(&source, &limit, &error), 0);
+    UNIT_FINE(flow_source_make(&source, &s->model, 1, &error));
+    UNIT_FINE(flow_limit_find(&source, &limit, &error));
     flow_source_free(&source);
     return limit;
 }
@@ -141,8 +138,7 @@ UNIT_LOOP(limits_are_where_runs_break, 0, 4)
 static void warning(const struct setup *s, char *text, size_t size)
 {
     struct flow *flow;
-    struct cloth_error error = {0};
-    ck_assert_msg(!flow_prepare(&flow, &s->model, 1, &error), "%s", error.text);
+    UNIT_FINE(flow_prepare(&flow, &s->model, 1, &error));
     snprintf(text, size, "%s", flow_warning(flow, 0) ? flow_warning(flow, 0) : "");
     ck_assert_ptr_null(flow_warning(flow, 1));
     flow_free(flow);
@@ -197,19 +193,17 @@ UNIT_TEST(a_doubled_layer_has_a_scale_of_energy)
                               .tolerance = 1e-6};
     UNIT_OWNED(setup_free) struct setup setup;
     struct flow_source source;
-    struct cloth_error error = {0};
     double release[2];
     setup_sheet(&setup, 3);
     struct model_cloth cloths[2] = {setup.cloth, setup.cloth};
-    ck_assert_int_eq(
-        mesh_inline(&cloths[1].mesh, 2, cloths[0].mesh.position, 1, edge, 0, NULL, &error), 0);
+    UNIT_FINE(mesh_inline(&cloths[1].mesh, 2, cloths[0].mesh.position, 1, edge, 0, NULL, &error));
     cloths[1].mass_per_vertex = 1e-15;
     setup.model.cloths = cloths;
     setup.model.welds = &weld;
     for (uint32_t i = 0; i < 2; i++) {
         setup.model.n_cloths = 1 + i;
         setup.model.n_welds = i;
-        ck_assert_msg(!flow_source_make(&source, &setup.model, 1, &error), "%s", error.text);
+        UNIT_FINE(flow_source_make(&source, &setup.model, 1, &error));
         release[i] = flow_source_release(&source);
         flow_source_free(&source);
     }

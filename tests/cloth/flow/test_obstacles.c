@@ -30,10 +30,9 @@ struct row {
 /* The only body of a model, at a place. */
 static void body_make(struct model *model, struct mesh *mesh, const struct mesh_transform *place)
 {
-    struct cloth_error error = {0};
     bool turned;
     mesh_apply(mesh, place);
-    ck_assert_msg(contact_bodies_add(&model->bodies, mesh, &turned, &error) == 0, "%s", error.text);
+    UNIT_FINE(contact_bodies_add(&model->bodies, mesh, &turned, &error));
     mesh_free(mesh);
 }
 
@@ -60,12 +59,10 @@ static void row_make(struct row *row, int shape)
 {
     static const double vertices[3 * MASSES] = {0, 0, 0, 0, 0.5, 0, 0, 1, 0, 0, 1.5, 0};
     static const uint32_t edges[] = {0, 1, 1, 2, 2, 3};
-    struct cloth_error error = {0};
     struct setup *s = &row->setup;
     setup_weight(s);
     mesh_free(&s->cloth.mesh);
-    ck_assert_int_eq(
-        mesh_inline(&s->cloth.mesh, MASSES, vertices, MASSES - 1, edges, 0, NULL, &error), 0);
+    UNIT_FINE(mesh_inline(&s->cloth.mesh, MASSES, vertices, MASSES - 1, edges, 0, NULL, &error));
     s->cloth.n_pins = 0;
     s->cloth.mass_per_vertex = MASS;
     s->material.ea = EA;
@@ -93,8 +90,7 @@ static double speed_of(const struct record *r, size_t frame, size_t vertex)
 
 static void runs(struct record *record, const struct model *model)
 {
-    record_run(record, model);
-    ck_assert_msg(record->code == 0, "%s", record->error.text);
+    record_fine(record, model);
 }
 
 static const struct way {
@@ -354,13 +350,12 @@ UNIT_TEST(crumples_by_absolute_slopes)
  * step. */
 UNIT_LOOP(a_real_body, 0, access(real_body_path(), R_OK) == 0)
 {
-    struct cloth_error error = {0};
     struct setup s;
     UNIT_OWNED(record_free) struct record record = {0};
     struct mesh mesh;
     sheet_make(&s, 41, &(const struct contact_shape){.kind = 5, .body = 1});
     struct mesh_transform place = {{0.1, 0.1, 0.1}, {1, 0, 0, 0}, {0, -0.8, 0}};
-    ck_assert_msg(mesh_read_surface(&mesh, real_body_path(), &error) == 0, "%s", error.text);
+    UNIT_FINE(mesh_read_surface(&mesh, real_body_path(), &error));
     body_make(&s.model, &mesh, &place);
     runs(&record, &s.model);
     struct contact_pose pose;

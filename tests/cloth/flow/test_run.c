@@ -41,13 +41,11 @@ UNIT_TEST(hash_of_positions_then_velocities)
 {
     static const double vertices[5][3] = {{0, 0, 0.5}, {9, 8, 7}, {1, 0, 0}, {0, 0, 1}, {1, 2, 1}};
     static const uint32_t triangles[] = {0, 2, 3, 2, 4, 3};
-    struct cloth_error error = {0};
     UNIT_OWNED(setup_free) struct setup setup;
     UNIT_OWNED(record_free) struct record record = {0};
     setup_sheet(&setup, 2);
     setup_free(&setup);
-    ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 5, vertices[0], 0, NULL, 2, triangles, &error),
-                     0);
+    UNIT_FINE(mesh_inline(&setup.cloth.mesh, 5, vertices[0], 0, NULL, 2, triangles, &error));
     setup.model.grain = 2;
     setup.model.h = 1;
     setup.model.end = 0.4;
@@ -65,11 +63,12 @@ UNIT_TEST(hash_of_positions_then_velocities)
                       XXH64(state, sizeof state, 0)); /* little-endian machines */
 }
 
-UNIT_TEST(count_makes_exactly_so_many_iterations)
+UNIT_LOOP(count_makes_exactly_so_many_iterations, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     UNIT_OWNED(setup_free) struct setup setup;
     UNIT_OWNED(record_free) struct record record = {0};
     setup_sheet(&setup, 10);
+    setup.model.preconditioner = (enum model_preconditioner)_i;
     setup.model.stop = MODEL_STOP_COUNT;
     setup.model.max_iterations = 7;
     record_fine(&record, &setup.model);
@@ -144,13 +143,12 @@ UNIT_TEST(unused_vertices_stay)
 {
     static const double vertices[] = {0, 0, 0, 9, 8, 7, 1, 0, 0, 0, 0, 1};
     static const uint32_t triangle[] = {0, 2, 3};
-    struct cloth_error error = {0};
     UNIT_OWNED(setup_free) struct setup setup;
     UNIT_OWNED(record_free) struct record record = {0};
     setup_sheet(&setup, 2);
     setup_free(&setup);
     setup.model.grain = 2;
-    ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 4, vertices, 0, NULL, 1, triangle, &error), 0);
+    UNIT_FINE(mesh_inline(&setup.cloth.mesh, 4, vertices, 0, NULL, 1, triangle, &error));
     setup.cloth.velocity[0] = 1;
     record_fine(&record, &setup.model);
     for (size_t f = 0; f < record.frames; f++)

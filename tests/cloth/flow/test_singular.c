@@ -9,12 +9,6 @@
 
 static const double FALL = 9.81e-6 * 55; /* of ten steps of implicit Euler */
 
-static void runs(struct record *record, const struct model *model)
-{
-    record_run(record, model);
-    ck_assert_msg(record->code == 0, "%s", record->error.text);
-}
-
 static void pin_rows(struct setup *setup, uint32_t n)
 {
     static uint32_t all[64];
@@ -36,7 +30,7 @@ UNIT_LOOP(held_blocks, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
         setup.model.preconditioner = (enum model_preconditioner)_i;
         setup.model.grain = grain[i];
         pin_rows(&setup, held[i]);
-        runs(&record, &setup.model);
+        record_fine(&record, &setup.model);
         for (uint32_t v = 0; v < held[i]; v++)
             ck_assert_double_eq(record_at(&record, 10, v, 1), 0);
         if (held[i] < 64)
@@ -50,15 +44,14 @@ UNIT_LOOP(pieces_that_fall, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     static const double vertices[] = {0, 0, 0, 1, 0, 0, 0, 0, 1, 5, 0, 0, 6, 0, 0, 5, 0, 1};
     static const uint32_t triangles[] = {0, 1, 2, 3, 4, 5};
-    struct cloth_error error = {0};
     UNIT_OWNED(setup_free) struct setup setup;
     UNIT_OWNED(record_free) struct record record = {0};
     setup_sheet(&setup, 2);
     mesh_free(&setup.cloth.mesh);
-    ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 6, vertices, 0, NULL, 2, triangles, &error), 0);
+    UNIT_FINE(mesh_inline(&setup.cloth.mesh, 6, vertices, 0, NULL, 2, triangles, &error));
     setup.model.preconditioner = (enum model_preconditioner)_i;
     setup.model.grain = 2;
-    runs(&record, &setup.model);
+    record_fine(&record, &setup.model);
     for (size_t v = 0; v < 6; v++)
         ck_assert_double_eq_tol(record_at(&record, 10, v, 1), -FALL, 1e-9);
 }
@@ -75,7 +68,7 @@ UNIT_LOOP(stiff_beside_soft, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
     setup.model.tolerance = 0.01;
     setup.model.preconditioner = (enum model_preconditioner)_i;
     setup_pin(&setup, 1, (const uint32_t[]){0});
-    runs(&record, &setup.model);
+    record_fine(&record, &setup.model);
     ck_assert_double_eq_tol(record.report.max_stretch, 1, 1e-3);
     ck_assert_double_lt(record_at(&record, 10, 63, 1), -0.4 * FALL);
 }

@@ -48,8 +48,7 @@ static void end(void)
 
 static void make(void)
 {
-    struct cloth_error error = {0};
-    ck_assert_msg(flow_prepare(&flow, &setup.model, 1, &error) == 0, "%s", error.text);
+    UNIT_FINE(flow_prepare(&flow, &setup.model, 1, &error));
     memory = calloc(n_blocks(), sizeof *memory);
     skins = calloc(n_blocks(), sizeof *skins);
     ck_assert(memory && skins);
@@ -58,7 +57,7 @@ static void make(void)
         memory[b] = aligned_alloc(64, bytes);
         ck_assert_ptr_nonnull(memory[b]);
         memset(memory[b], 0xff, bytes);
-        ck_assert_int_eq(flow_source_skin(&flow->source, b, memory[b], &error), 0);
+        UNIT_FINE(flow_source_skin(&flow->source, b, memory[b], &error));
         skins[b] = flow_skin_open(memory[b]);
     }
 }
@@ -197,9 +196,8 @@ UNIT_TEST(welded_sides)
 /* Other contact has no skins. */
 UNIT_TEST(none)
 {
-    struct cloth_error error = {0};
     setup.model.contact.mode = MODEL_CONTACT_PROJECT;
-    ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), 0);
+    UNIT_FINE(flow_prepare(&flow, &setup.model, 1, &error));
     ck_assert_ptr_null(flow->source.skins.start);
     ck_assert_uint_eq(flow->source.shape[0].skin.n_points, 0);
 }

@@ -1,6 +1,6 @@
 /* Runs with every preconditioner and stop: the same motion as without, few iterations, errors kept;
- * and cloths that leave a preconditioner nothing to hold on to: blocks that are held or have no
- * free vertex, one block, several pieces, chains, springs in compression. */
+ * also of a chain and of springs in compression. What leaves a preconditioner nothing to hold on to
+ * is in test_singular.c. */
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 
@@ -38,14 +38,12 @@ static uint64_t compare(struct setup *setup, uint64_t iterations[KINDS])
     struct record plain = {0};
     setup->model.tolerance = 1e-10;
     setup->model.preconditioner = MODEL_PLAIN;
-    record_run(&plain, &setup->model);
-    ck_assert_msg(plain.code == 0, "%s", plain.error.text);
+    record_fine(&plain, &setup->model);
     const uint64_t alone = plain.report.cg_iterations_total;
     for (int i = 0; i < KINDS; i++) {
         UNIT_OWNED(record_free) struct record record = {.threads = 1 + (unsigned)i % 2};
         setup->model.preconditioner = kinds[i];
-        record_run(&record, &setup->model);
-        ck_assert_msg(record.code == 0, "%s", record.error.text);
+        record_fine(&record, &setup->model);
         ck_assert_double_le(farthest(&plain, &record), 1e-6);
         iterations[i] = record.report.cg_iterations_total;
     }
@@ -83,8 +81,7 @@ UNIT_LOOP(patches_move_alike, 0, 2)
     setup.model.tolerance = 1e-10;
     setup.model.grain = _i ? 3 : 90;
     setup.model.preconditioner = MODEL_PLAIN;
-    record_run(&none, &setup.model);
-    ck_assert_msg(none.code == 0, "%s", none.error.text);
+    record_fine(&none, &setup.model);
     setup.model.preconditioner = MODEL_IC0_COARSE;
     for (uint32_t patches = 1; patches <= 4; patches++) {
         UNIT_OWNED(record_free) struct record record = {.threads = 1 + patches % 2};
@@ -107,8 +104,7 @@ UNIT_TEST(formats_move_alike)
     setup.material.bend = 50;
     setup.model.grain = 30;
     setup.model.tolerance = 1e-10;
-    record_run(&springs, &setup.model);
-    ck_assert_msg(springs.code == 0, "%s", springs.error.text);
+    record_fine(&springs, &setup.model);
     for (int i = 0; i < 2 * KINDS; i++) {
         UNIT_OWNED(record_free) struct record record = {.threads = 1 + (unsigned)i % 2};
         setup.model.preconditioner = kinds[i / 2];
@@ -126,8 +122,7 @@ static uint64_t iterations_of(struct setup *setup, enum model_guess guess, doubl
     setup->model.guess = guess;
     setup->model.h = h;
     setup->model.end = 10 * h;
-    record_run(record, &setup->model);
-    ck_assert_msg(record->code == 0, "%s", record->error.text);
+    record_fine(record, &setup->model);
     return record->report.cg_iterations_total;
 }
 
@@ -202,8 +197,7 @@ static void run_in_units(double mass, double time, double length, double toleran
     setup.model.stop = MODEL_STOP_NORMALISED;
     setup.model.tolerance = tolerance;
     setup.model.preconditioner = MODEL_IC0_COARSE;
-    record_run(record, &setup.model);
-    ck_assert_msg(record->code == 0, "%s", record->error.text);
+    record_fine(record, &setup.model);
 }
 
 /* By powers of two, of masses by powers of four, since matrices hold roots, every number is the
@@ -226,65 +220,11 @@ UNIT_TEST(normalised_in_any_units)
     record_free(&closer);
 }
 
-UNIT_TEST(one_block)
-{
-    struct setup setup;
-    int rank, ranks;
-    record_mpi(&rank, &ranks);
-    if (ranks > 1) /* more than there are blocks */
-        return;
-    setup_sheet(&setup, 10);
-    setup.model.grain = 1000;
-    check(&setup);
-}
-
-/* A sheet in blocks of four vertices, the first of which are held. */
-static void check_held(uint32_t side, uint32_t n_held)
-{
-    struct setup setup;
-    uint32_t held[40];
-    for (uint32_t i = 0; i < n_held; i++)
-        held[i] = i;
-    setup_sheet(&setup, side);
-    setup.model.grain = 4;
-    setup_pin(&setup, n_held, held);
-    check(&setup);
-}
-
-/* Some blocks have no vertex that is free. */
-UNIT_TEST(held_blocks)
-{
-    check_held(10, 40);
-}
-
-/* Nothing is free at all. */
-UNIT_TEST(all_held)
-{
-    check_held(4, 16);
-}
-
 UNIT_TEST(a_chain)
 {
     struct setup setup;
     setup_weight(&setup);
     check(&setup);
-}
-
-/* Two sheets that nothing joins, each cut into blocks. */
-UNIT_TEST(several_pieces)
-{
-    struct setup setup;
-    struct model_cloth cloths[2];
-    struct cloth_error error = {0};
-    setup_sheet(&setup, 8);
-    cloths[0] = cloths[1] = setup.cloth;
-    ck_assert_int_eq(mesh_grid(&cloths[1].mesh, 1, 2, 6, 9, MESH_SAME, &error), 0);
-    cloths[1].velocity[0] = 3;
-    setup.model.cloths = cloths;
-    setup.model.n_cloths = 2;
-    uint64_t iterations[KINDS];
-    compare(&setup, iterations);
-    mesh_free(&cloths[1].mesh);
 }
 
 /* A sheet that is thrown into itself: springs in compression everywhere, stiff ones. */
@@ -337,17 +277,4 @@ UNIT_TEST(too_few_iterations)
     record_run(&record, &setup.model);
     ck_assert_int_eq(record.code, CLOTH_E_RUN);
     ck_assert_ptr_nonnull(strstr(record.error.text, "step 1: conjugate gradients stopped at"));
-}
-
-/* Exactly so many iterations, under a preconditioner too. */
-UNIT_TEST(count)
-{
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 10);
-    setup.model.preconditioner = MODEL_IC0_COARSE;
-    setup.model.stop = MODEL_STOP_COUNT;
-    setup.model.max_iterations = 7;
-    record_fine(&record, &setup.model);
-    ck_assert_uint_eq(record.report.cg_iterations_total, 70);
 }

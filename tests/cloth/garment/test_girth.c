@@ -48,14 +48,13 @@ static struct girth_worst compare(const struct garment_pattern *pattern, uint32_
     struct garment garment;
     struct girth_seam seam[32];
     struct girth_worst worst;
-    struct cloth_error error = {0};
     make_garment(&garment, pattern, 0.03, 0);
     const struct girth_mesh mesh = {garment.n_triangles, (const double(*)[3])garment.position,
                                     (const uint32_t(*)[3])garment.triangle};
     for (uint32_t s = 0; s < n_seams; s++)
         seam[s] = (struct girth_seam){garment.seam[s].n_pairs,
                                       (const uint32_t(*)[2])garment.seam[s].pair};
-    ck_assert_int_eq(girth_compare(&worst, &mesh, n_seams, seam, body, &error), 0);
+    UNIT_FINE(girth_compare(&worst, &mesh, n_seams, seam, body, &error));
     garment_free(&garment);
     return worst;
 }
@@ -151,13 +150,12 @@ UNIT_TEST(skirts_of_random_waists)
     const int waist = garment_own_measure(own, "waist");
     for (int i = 0; i < 20; i++) {
         UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
-        struct cloth_error error = {0};
         struct prism prism;
         double value[GARMENT_MEASURES];
         const double radius = 0.11 + 0.003 * (i * 7 % 20);
         garment_own_size(own, SIZE_M, value);
         value[waist] = 0.7 + 0.012 * (i * 11 % 20);
-        ck_assert_int_eq(garment_own_make(&pattern, own, value, &error), 0);
+        UNIT_FINE(garment_own_make(&pattern, own, value, &error));
         prism_make(&prism, radius, 0, 0);
         const struct girth_mesh body = body_of(&prism, 1);
         const struct girth_worst worst = compare(&pattern, pattern.n_stitches, &body);

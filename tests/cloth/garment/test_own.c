@@ -16,9 +16,8 @@ static const struct shape {
 
 static void own_of(struct garment_pattern *pattern, int which, const double *value)
 {
-    struct cloth_error error = {0};
     const struct garment_own *own = garment_own_find(SHAPES[which].name);
-    ck_assert_msg(garment_own_make(pattern, own, value, &error) == 0, "%s", error.text);
+    UNIT_FINE(garment_own_make(pattern, own, value, &error));
 }
 
 static void size_of(struct garment_pattern *pattern, int which, int size)

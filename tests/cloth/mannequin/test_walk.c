@@ -13,9 +13,7 @@ struct figure_at {
 
 static void make(struct figure_at *figure, const struct mannequin *mannequin)
 {
-    struct cloth_error error = {0};
-    ck_assert_msg(mannequin_make_rigged(&figure->mesh, &figure->rig, mannequin, NULL, &error) == 0,
-                  "%s", error.text);
+    UNIT_FINE(mannequin_make_rigged(&figure->mesh, &figure->rig, mannequin, NULL, &error));
     figure->x = calloc(figure->mesh.n_vertices, sizeof *figure->x);
 }
 

@@ -9,9 +9,8 @@ enum { RINGS = 40, N = 1 + 3 * RINGS * (RINGS + 1) };
 
 static struct mesh disc(double radius, uint32_t rings)
 {
-    struct cloth_error error = {0};
     struct mesh mesh;
-    ck_assert_msg(mesh_disc(&mesh, radius, rings, &error) == CLOTH_OK, "%s", error.text);
+    UNIT_FINE(mesh_disc(&mesh, radius, rings, &error));
     return mesh;
 }
 

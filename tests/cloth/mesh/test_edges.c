@@ -5,9 +5,8 @@
 
 static struct mesh_edges edges_of(const struct mesh *mesh)
 {
-    struct cloth_error error = {0};
     struct mesh_edges edges;
-    ck_assert_msg(mesh_edges_find(&edges, mesh, &error) == CLOTH_OK, "%s", error.text);
+    UNIT_FINE(mesh_edges_find(&edges, mesh, &error));
     for (uint32_t e = 0; e < edges.n; e++) {
         ck_assert_uint_lt(edges.edge[e].a, edges.edge[e].b);
         ck_assert(

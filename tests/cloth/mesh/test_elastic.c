@@ -18,9 +18,8 @@ static struct mesh elastic_grid(double a, double b)
 static void stiffness(const struct mesh *mesh, const struct mesh_moduli *moduli, uint32_t middle,
                       double area, double c[3][3])
 {
-    struct cloth_error error = {0};
     struct mesh_lattice lattice;
-    ck_assert_int_eq(mesh_lattice_build(&lattice, mesh, moduli, &error), CLOTH_OK);
+    UNIT_FINE(mesh_lattice_build(&lattice, mesh, moduli, &error));
     struct mesh_spring *spring = springs_of(&lattice);
     memset(c, 0, 9 * sizeof(double));
     for (uint32_t s = 0; s < lattice.n; s++) {
@@ -89,9 +88,8 @@ UNIT_TEST(every_lattice)
 UNIT_TEST(cells_by_turns)
 {
     const struct mesh_moduli moduli = {1000, 400, 60, 0, -700, NULL, 0};
-    struct cloth_error error = {0};
     UNIT_OWNED(mesh_free) struct mesh mesh;
-    ck_assert_int_eq(mesh_grid(&mesh, 0.6, 1.5, SIDE, SIDE, MESH_ALTERNATE, &error), CLOTH_OK);
+    UNIT_FINE(mesh_grid(&mesh, 0.6, 1.5, SIDE, SIDE, MESH_ALTERNATE, &error));
     const struct mesh_elastic found = mesh_elastic_of(&mesh, &moduli);
     double c[3][3], other[3][3];
     stiffness(&mesh, &moduli, MIDDLE, 2 * 0.1 * 0.25, c);
@@ -106,9 +104,8 @@ UNIT_TEST(cells_by_turns)
 UNIT_TEST(mirrored_cells)
 {
     struct mesh_moduli moduli = {1000, 400, 0, 0, 0, NULL, 0};
-    struct cloth_error error = {0};
     UNIT_OWNED(mesh_free) struct mesh mesh;
-    ck_assert_int_eq(mesh_grid(&mesh, 1, 1, SIDE, SIDE, MESH_MIRRORED, &error), CLOTH_OK);
+    UNIT_FINE(mesh_grid(&mesh, 1, 1, SIDE, SIDE, MESH_MIRRORED, &error));
     ck_assert(isnan(mesh_elastic_of(&mesh, &moduli).warp));
     moduli.both_diagonals = 1;
     near(mesh_elastic_of(&mesh, &moduli).shear, 400);

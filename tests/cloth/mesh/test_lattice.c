@@ -91,12 +91,11 @@ UNIT_TEST(one_diagonal_is_that_of_the_triangles)
 {
     const enum mesh_cells all[] = {MESH_SAME, MESH_ALTERNATE, MESH_MIRRORED};
     for (size_t k = 0; k < 3; k++) {
-        struct cloth_error error = {0};
         UNIT_OWNED(mesh_free) struct mesh mesh = grid_of(4, 6, 6, 5, all[k]);
         UNIT_OWNED(mesh_lattice_free)
         struct mesh_lattice lattice = lattice_of(&mesh, 100, 10, 0, 0);
         struct mesh_edges edges;
-        ck_assert_int_eq(mesh_edges_find(&edges, &mesh, &error), 0);
+        UNIT_FINE(mesh_edges_find(&edges, &mesh, &error));
         ck_assert_uint_eq(lattice.n, edges.n);
         for (uint32_t e = 0; e < edges.n; e++) {
             ck_assert_uint_eq(lattice.spring[e].a, edges.edge[e].a);
@@ -112,11 +111,10 @@ UNIT_TEST(one_diagonal_is_that_of_the_triangles)
 /* All springs alike, but half of it at the border: E = 2 / sqrt(3) k is the modulus. */
 UNIT_TEST(equilateral_springs)
 {
-    struct cloth_error error = {0};
     UNIT_OWNED(mesh_free) struct mesh mesh = grid_of(1, 0, 9, 8, MESH_EQUILATERAL);
     UNIT_OWNED(mesh_lattice_free) struct mesh_lattice lattice = lattice_of(&mesh, 100, 10, 0, 1);
     UNIT_OWNED(mesh_edges_free) struct mesh_edges edges;
-    ck_assert_int_eq(mesh_edges_find(&edges, &mesh, &error), 0);
+    UNIT_FINE(mesh_edges_find(&edges, &mesh, &error));
     ck_assert_uint_eq(lattice.n, edges.n);
     for (uint32_t e = 0; e < edges.n; e++) {
         const double k = edges.edge[e].opposite[1] == UINT32_MAX ? 0.5 : 1;

@@ -201,41 +201,6 @@ UNIT_TEST(a_bent_quad_is_a_fan)
     ck_assert_mem_eq(mesh.triangle, fan, sizeof fan);
 }
 
-static void fails(const char *text, const char *says)
-{
-    struct cloth_error error = {0};
-    struct mesh mesh;
-    struct file file = file_new(text, strlen(text));
-    char expected[256];
-    snprintf(expected, sizeof expected, "%s:%s", file.path, says);
-    ck_assert_int_eq(mesh_read_obj(&mesh, file.path, &error), CLOTH_E_INPUT);
-    ck_assert_msg(strncmp(error.text, expected, strlen(expected)) == 0,
-                  "\n     got: %s\nexpected: %s", error.text, expected);
-    close(file.descriptor);
-}
-
-UNIT_TEST(faulty_ones_are_refused)
-{
-    fails("v 0 0 0\nv 2 0 0\nv 0 1 0\nv 3 3 0\nf 1 2 3\nf 1 2 3 4\n",
-          "6: the face crosses or touches itself where its sides between vertices 2 and 3 and "
-          "between 4 and 1 meet");
-    fails("v 0 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nf 1 2 3 4\n",
-          "5: the face has no area: its corners lie on a line, or it crosses itself");
-    fails("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3 4\n", "5: the face has no area");
-    fails("v 3 3 3\nv 3 3 3\nv 3 3 3\nv 3 3 3\nf 1 2 3 4\n", "5: the face has no area");
-    /* a corner on another side, a side that folds back, two corners at one place */
-    fails("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 0 0\nv 0 4 0\nf 1 2 3 4 5\n",
-          "6: the face crosses or touches itself where its sides between vertices 1 and 2 and "
-          "between 3 and 4 meet");
-    fails("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 4 2 0\nv 0 4 0\nf 1 2 3 4 5\n",
-          "6: the face crosses or touches itself where its sides between vertices 2 and 3 and "
-          "between 3 and 4 meet");
-    fails("v 0 0 0\nv 4 0 0\nv 4 0 0\nv 4 4 0\nf 1 2 3 4\n", "5: the face crosses or touches");
-    /* every corner turns left: a pentagram */
-    fails("v 0 1 0\nv -0.59 -0.81 0\nv 0.95 0.31 0\nv -0.95 0.31 0\nv 0.59 -0.81 0\nf 1 2 3 4 5\n",
-          "6: the face crosses or touches itself");
-}
-
 UNIT_TEST(too_many_corners)
 {
     enum { N = 10001 };
@@ -247,8 +212,14 @@ UNIT_TEST(too_many_corners)
     for (int i = 1; i <= N; i++)
         n += (size_t)sprintf(text + n, " %d", i);
     sprintf(text + n, "\n");
-    fails(text,
-          "10002: the face is not convex and has 10001 corners; at most 10000 can be cut into "
-          "triangles");
+    struct cloth_error error = {0};
+    struct mesh mesh;
+    struct file file = file_new(text, strlen(text));
+    ck_assert_int_eq(mesh_read_obj(&mesh, file.path, &error), CLOTH_E_INPUT);
+    ck_assert_msg(strstr(error.text,
+                         ":10002: the face is not convex and has 10001 corners; at most "
+                         "10000 can be cut into triangles"),
+                  "%s", error.text);
+    close(file.descriptor);
     free(text);
 }

@@ -11,11 +11,10 @@ static const double up[3] = {0, 1, 0};
 
 static double shadow_of(const struct mesh *mesh, const double *position, const double axis[3])
 {
-    struct cloth_error error = {0};
     const struct mesh_shape shape = {mesh->n_vertices, mesh->n_triangles, position,
                                      (const uint32_t(*)[3])mesh->triangle};
     double area;
-    ck_assert_msg(mesh_shadow(&shape, axis, &area, &error) == CLOTH_OK, "%s", error.text);
+    UNIT_FINE(mesh_shadow(&shape, axis, &area, &error));
     return area;
 }
 
@@ -27,9 +26,8 @@ static double polygon(double radius, uint32_t rings)
 
 static struct mesh disc(void)
 {
-    struct cloth_error error = {0};
     struct mesh mesh;
-    ck_assert_msg(mesh_disc(&mesh, 0.15, RINGS, &error) == CLOTH_OK, "%s", error.text);
+    UNIT_FINE(mesh_disc(&mesh, 0.15, RINGS, &error));
     return mesh;
 }
 

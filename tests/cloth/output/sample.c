@@ -18,7 +18,6 @@ static const char *const NAMES[2] = {"sheet", "a\npatch"};
 
 void sample_make(struct sample *sample)
 {
-    struct cloth_error error = {0};
     memset(sample, 0, sizeof *sample);
     strcpy(sample->folder, "/tmp/duite-output.XXXXXX");
     ck_assert_ptr_nonnull(mkdtemp(sample->folder));
@@ -26,9 +25,8 @@ void sample_make(struct sample *sample)
     char quad[96];
     snprintf(quad, sizeof quad, "%s/quad.obj", sample->folder);
     sample_write(quad, QUAD, strlen(QUAD));
-    ck_assert_msg(mesh_grid(&sample->mesh[0], 1, 1, 4, 3, MESH_SAME, &error) == 0, "%s",
-                  error.text);
-    ck_assert_msg(mesh_read_obj(&sample->mesh[1], quad, &error) == 0, "%s", error.text);
+    UNIT_FINE(mesh_grid(&sample->mesh[0], 1, 1, 4, 3, MESH_SAME, &error));
+    UNIT_FINE(mesh_read_obj(&sample->mesh[1], quad, &error));
     sample->meshes[0] = &sample->mesh[0];
     sample->meshes[1] = &sample->mesh[1];
     sample->setup = (struct output_setup){.folder = sample->frames,
@@ -89,19 +87,17 @@ void sample_write(const char *path, const char *bytes, size_t size)
 
 void sample_run(struct sample *sample, unsigned run, uint64_t n)
 {
-    struct cloth_error error = {0};
     struct output_frames *frames = NULL;
     double position[3 * SAMPLE_POINTS];
     struct output_settler **settler = &sample->setup.settler;
     if (sample->settles)
-        ck_assert_int_eq(output_settler_open(settler, &error), 0);
-    ck_assert_msg(output_open(&frames, &sample->setup, &error) == 0, "%s", error.text);
+        UNIT_FINE(output_settler_open(settler, &error));
+    UNIT_FINE(output_open(&frames, &sample->setup, &error));
     for (uint64_t i = 0; i < n; i++) {
         sample_positions(run, i, position);
-        ck_assert_msg(output_frame(frames, i, (double)i / 25, position, &error) == 0, "%s",
-                      error.text);
+        UNIT_FINE(output_frame(frames, i, (double)i / 25, position, &error));
     }
-    ck_assert_msg(output_settler_close(settler, &error) == 0, "%s", error.text);
-    ck_assert_msg(output_close(&frames, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_settler_close(settler, &error));
+    UNIT_FINE(output_close(&frames, &error));
     ck_assert_ptr_null(frames);
 }

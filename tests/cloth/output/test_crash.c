@@ -92,17 +92,16 @@ static int survives(long n, bool settles)
  * cache. */
 static int check_folder(void)
 {
-    struct cloth_error error = {0};
     struct output_cache cache;
     if (access(sample_path(&sample, "cloth.pc2"), F_OK) != 0)
         return -1;
-    ck_assert_msg(output_cache_open(&cache, sample.frames, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_cache_open(&cache, sample.frames, &error));
     int n = (int)cache.n_frames;
     unsigned run = n == 4 ? 1 : 2;
     double want[3 * SAMPLE_POINTS], got[3 * SAMPLE_POINTS];
     for (int i = 0; i < n; i++) {
         sample_positions(run, (uint64_t)i, want);
-        ck_assert_int_eq(output_cache_frame(&cache, (uint64_t)i, got, &error), 0);
+        UNIT_FINE(output_cache_frame(&cache, (uint64_t)i, got, &error));
         ck_assert_mem_eq(got, want, sizeof want);
     }
     output_cache_close(&cache);

@@ -85,11 +85,10 @@ UNIT_TEST(index_tells_time)
 
 UNIT_TEST(replaces_an_earlier_run)
 {
-    struct cloth_error error = {0};
     struct output_cache cache;
     sample_run(&sample, 1, 5);
     sample_run(&sample, 2, 1);
-    ck_assert_msg(output_cache_open(&cache, sample.frames, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_cache_open(&cache, sample.frames, &error));
     ck_assert_uint_eq(cache.n_frames, 1);
     output_cache_close(&cache);
 }
@@ -97,7 +96,6 @@ UNIT_TEST(replaces_an_earlier_run)
 /* The bytes of a frame and its line are there, but the count was not rewritten. */
 UNIT_TEST(interrupted_frame_is_ignored)
 {
-    struct cloth_error error = {0};
     struct output_cache cache;
     sample_run(&sample, 1, 2);
     FILE *file = fopen(sample_path(&sample, "cloth.pc2"), "ab");
@@ -106,7 +104,7 @@ UNIT_TEST(interrupted_frame_is_ignored)
     file = fopen(sample_path(&sample, "frames.csv"), "ab");
     fputs("2,0.0", file);
     fclose(file);
-    ck_assert_msg(output_cache_open(&cache, sample.frames, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_cache_open(&cache, sample.frames, &error));
     ck_assert_uint_eq(cache.n_frames, 2);
     output_cache_close(&cache);
 }

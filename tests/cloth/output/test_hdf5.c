@@ -75,13 +75,12 @@ static void give(struct output_hdf5 *frames, uint64_t frame)
 /* Writes those of the frames from one up to, not including, another that it takes. */
 static void run_from(const struct output_hdf5_setup *setup, uint64_t first, uint64_t end)
 {
-    struct cloth_error error = {0};
     struct output_hdf5 *frames;
-    ck_assert_msg(output_hdf5_open(&frames, setup, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_hdf5_open(&frames, setup, &error));
     for (uint64_t i = first; i < end; i++)
         if (output_hdf5_takes(frames, i))
             give(frames, i);
-    ck_assert_msg(output_hdf5_close(&frames, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_hdf5_close(&frames, &error));
     ck_assert_ptr_null(frames);
 }
 
@@ -228,7 +227,6 @@ UNIT_TEST(equal_frames_are_equal_files)
 
 UNIT_TEST(replaces_an_earlier_run)
 {
-    struct cloth_error error = {0};
     const struct output_hdf5_setup setup = setup_of(false, 1, 0);
     run(&setup, 3);
     sample_write(path_of("hdf5/frame-000007.vtkhdf.part"), "x", 1);
@@ -236,7 +234,7 @@ UNIT_TEST(replaces_an_earlier_run)
     run(&setup, 1);
     ck_assert(is_there("hdf5/frame-000000.vtkhdf") && !is_there("hdf5/frame-000001.vtkhdf"));
     ck_assert(!is_there("hdf5/frame-000007.vtkhdf.part") && is_there("hdf5/mine.txt"));
-    ck_assert_int_eq(output_hdf5_forget(sample.folder, NULL, &error), 0);
+    UNIT_FINE(output_hdf5_forget(sample.folder, NULL, &error));
     ck_assert(!is_there("hdf5/frame-000000.vtkhdf") && !is_there("cloth.xmf"));
     ck_assert(is_there("hdf5/mine.txt"));
 }
@@ -301,7 +299,6 @@ UNIT_TEST(goes_on_with_an_earlier_run)
 UNIT_TEST(keeps_frames_of_a_run_that_writes_no_more)
 {
     static char alone[2][TEXT], text[TEXT];
-    struct cloth_error error = {0};
     const uint64_t stay = 3;
     const struct output_hdf5_setup setup = setup_of(true, 1, 0);
     run(&setup, 3);
@@ -309,7 +306,7 @@ UNIT_TEST(keeps_frames_of_a_run_that_writes_no_more)
         sample_read(path_of(INDEXES[i]), alone[i], TEXT);
     run(&setup, 5);
     for (int again = 0; again < 2; again++)
-        ck_assert_int_eq(output_hdf5_forget(sample.folder, &stay, &error), 0);
+        UNIT_FINE(output_hdf5_forget(sample.folder, &stay, &error));
     for (int i = 0; i < 2; i++) {
         sample_read(path_of(INDEXES[i]), text, TEXT);
         ck_assert_str_eq(text, alone[i]);

@@ -96,9 +96,8 @@ UNIT_FIXTURE(make, end)
 
 UNIT_TEST(the_matrix_is_the_product)
 {
-    struct cloth_error error = {0};
     double p[ROWS], y[ROWS];
-    ck_assert_msg(output_system(sample.folder, &system_, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_system(sample.folder, &system_, &error));
     read_matrix();
     for (size_t i = 0; i < ROWS; i++)
         p[i] = 1 / (1 + (double)(i * i % 11));
@@ -113,9 +112,8 @@ UNIT_TEST(the_matrix_is_the_product)
 
 UNIT_TEST(vectors_are_filtered)
 {
-    struct cloth_error error = {0};
     double value[ROWS];
-    ck_assert_int_eq(output_system(sample.folder, &system_, &error), 0);
+    UNIT_FINE(output_system(sample.folder, &system_, &error));
     read_array("rhs", value);
     for (size_t i = 0; i < ROWS; i++)
         ck_assert_double_eq(value[i], system_.free[i / 3] * system_.b[i]);

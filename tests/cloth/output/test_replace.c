@@ -84,12 +84,11 @@ static struct contact_bodies boxes_make(uint32_t n)
     static const struct contact_shape shape[] = {{.kind = 5, .body = 1}, {.kind = 5, .body = 2}};
     struct contact_bodies bodies = {0};
     for (uint32_t i = 0; i < n; i++) {
-        struct cloth_error error = {0};
         UNIT_OWNED(mesh_free) struct mesh mesh;
         bool turned;
         surface_box(&box, 1 + i, 1, 1);
         surface_mesh(&box, &mesh);
-        ck_assert_int_eq(contact_bodies_add(&bodies, &mesh, &turned, &error), 0);
+        UNIT_FINE(contact_bodies_add(&bodies, &mesh, &turned, &error));
     }
     sample.setup.n_obstacles = n;
     sample.setup.obstacles = shape;
@@ -99,14 +98,13 @@ static struct contact_bodies boxes_make(uint32_t n)
 /* The folder is as it was, and nothing is beside its files. */
 static void check_untouched(const char *const *name, size_t n, uint64_t n_frames)
 {
-    struct cloth_error error = {0};
     struct output_cache cache;
     for (size_t i = 0; i < n; i++) {
         char part[40];
         snprintf(part, sizeof part, "%s.part", name[i]);
         ck_assert_int_ne(access(sample_path(&sample, part), F_OK), 0);
     }
-    ck_assert_msg(output_cache_open(&cache, sample.frames, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_cache_open(&cache, sample.frames, &error));
     ck_assert_uint_eq(cache.n_frames, n_frames);
     output_cache_close(&cache);
 }

@@ -28,13 +28,12 @@ static int settle_slowly(void *context, uint32_t n, struct cloth_error *error)
 UNIT_TEST(frames_that_come_later_are_not_waited_for)
 {
     struct slow slow = {.member = {.settle = settle_slowly, .context = &slow}};
-    struct cloth_error error = {0};
-    ck_assert_int_eq(output_settler_open(&slow.settler, &error), 0);
+    UNIT_FINE(output_settler_open(&slow.settler, &error));
     output_member_add(&slow.member, slow.settler, 0);
-    ck_assert_int_eq(output_member_wrote(&slow.member, 1, &error), 0);
-    ck_assert_int_eq(output_settler_wait(slow.settler, &error), 0);
+    UNIT_FINE(output_member_wrote(&slow.member, 1, &error));
+    UNIT_FINE(output_settler_wait(slow.settler, &error));
     atomic_store(&slow.stop, true);
-    ck_assert_int_eq(output_settler_close(&slow.settler, &error), 0);
+    UNIT_FINE(output_settler_close(&slow.settler, &error));
     ck_assert_uint_ge(slow.settled, 1);
     ck_assert_uint_lt(slow.settled, MANY);
 }

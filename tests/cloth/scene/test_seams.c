@@ -165,7 +165,6 @@ UNIT_TEST(welds_come_before_joints)
     UNIT_OWNED(model_free)
     struct model model =
         read_scene(BAG_OF, "{tolerance: 0.031, some: [{numbers: [1, 2], state: welded}]}");
-    struct cloth_error error = {0};
     struct flow *flow;
     const struct model_seam *seam = model.cloths[0].seams.seam;
     ck_assert_uint_eq(model.n_joints, 1);
@@ -175,7 +174,7 @@ UNIT_TEST(welds_come_before_joints)
     for (uint32_t s = 0; s < 3; s++)
         for (uint32_t i = 0; i < seam[s].n_pairs; i++)
             ck_assert_uint_eq(vertex[seam[s].pair[i][0]], vertex[seam[s].pair[i][1]]);
-    ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
+    UNIT_FINE(flow_prepare(&flow, &model, 1, &error));
     flow_free(flow);
 }
 
@@ -189,14 +188,13 @@ UNIT_TEST(corners_of_three_seams)
     UNIT_OWNED(model_free)
     struct model model = read_scene(
         stitches, "{tolerance: 4, reversed: [0, 2], some: [{numbers: [0, 1], state: welded}]}");
-    struct cloth_error error = {0};
     struct flow *flow;
     for (int s = 0; s < 3; s++)
         ck_assert(model.cloths[0].seams.seam[s].reversed);
     ck_assert_uint_eq(model.n_welds, 2);
     ck_assert_uint_eq(model.n_joints, 1);
     ck_assert_uint_eq(model.joints[0].pairs.end[0].n, model.cloths[0].seams.seam[2].n_pairs - 1);
-    ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
+    UNIT_FINE(flow_prepare(&flow, &model, 1, &error));
     flow_free(flow);
 }
 
@@ -257,9 +255,8 @@ UNIT_LOOP(what_is_sewn, 0, sizeof GARMENTS / sizeof *GARMENTS)
     const struct sewn *sewn = GARMENTS + _i;
     UNIT_OWNED(model_free)
     struct model model = read_scene(sewn->stitches, "{state: welded, tolerance: 0.031}");
-    struct cloth_error error = {0};
     struct flow *flow;
-    ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
+    UNIT_FINE(flow_prepare(&flow, &model, 1, &error));
     const struct flow_source *source = &flow->source;
     const struct model_seams *seams = &model.cloths[0].seams;
     const struct mesh *mesh = &model.cloths[0].mesh;
@@ -311,9 +308,8 @@ UNIT_TEST(hinges_of_seams)
                                          "[{numbers: [1], bending: 6e-5}]}")};
     for (int i = 0; i < 4; i++) {
         UNIT_OWNED(model_free) struct model model = read_scene(SIDES_OF, keys[i]);
-        struct cloth_error error = {0};
         struct flow *flow;
-        ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
+        UNIT_FINE(flow_prepare(&flow, &model, 1, &error));
         struct hinges hinges = {.cloths = &flow->source.elements};
         element_each(&flow->source.elements, take_hinge, &hinges);
         ck_assert_uint_eq(hinges.n, flow->source.elements.n_seams);

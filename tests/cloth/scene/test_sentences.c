@@ -239,16 +239,20 @@ static bool ends_case(const char *line)
     return after(line, "=") || after(line, "~") || after(line, "ok");
 }
 
-/* How long the place is with which a sentence begins: that of the file, or the set. */
+/* How long the place is with which a sentence begins: that of the file, and of a file that is named
+ * there, or the set. */
 static size_t place_of(const char *sentence)
 {
     const char *end = sentence;
     const bool set = after(sentence, "--set") != NULL;
+    int more = 0;
     for (int i = 0; !set && end && i < 3; i++)
         end = strchr(end + (i > 0), ':');
     if (set)
         end = strstr(sentence, ": ");
-    return end ? (size_t)(end - sentence) : 0;
+    if (end)
+        (void)sscanf(end, ": %*[a-z]: %*[a-z.]:%*u%n", &more);
+    return end ? (size_t)(end - sentence + more) : 0;
 }
 
 /* Reads the case that the line ends. Returns whether its sentence is this one, and says it if not;

@@ -306,8 +306,7 @@ UNIT_TEST(probes_and_rest)
         scene_right, "\ntime: {h: 0.001, end: 0.1",
         "\nprobes: [{vertices: [3, 1]}, {box: [[-9, -9, -9], [9, 9, 9]], name: all-1, cloth: "
         "sheet, values: [total, velocity]}]\ntime: {h: 0.001, end: 0.1, rest: {hold: 0}");
-    struct cloth_error error = {0};
-    ck_assert_msg(scene_read_text(&model, text, 0, NULL, &error) == 0, "%s", error.text);
+    UNIT_FINE(scene_read_text(&model, text, 0, NULL, &error));
     ck_assert_double_eq(model.rest.speed, 0.001);
     ck_assert_double_eq(model.rest.hold, 0);
     ck_assert_uint_eq(model.n_probes, 2);

@@ -223,8 +223,7 @@ static void check_factor(uint32_t n)
     static double x[SOLVE_COARSE * BLOCKS], y[SOLVE_COARSE * BLOCKS];
     static _Alignas(32) double back[SOLVE_COARSE_STRIDE * BLOCKS];
     struct solve_pattern pattern;
-    struct cloth_error error = {0};
-    ck_assert_int_eq(solve_pattern_make(&pattern, n, first, neighbour, &error), 0);
+    UNIT_FINE(solve_pattern_make(&pattern, n, first, neighbour, &error));
     double *factor = aligned_alloc(32, solve_coarse_doubles(&pattern) * sizeof *factor);
     ck_assert(factor != NULL);
     for (uint32_t i = 0; i < SOLVE_COARSE * n; i++)
@@ -262,9 +261,8 @@ UNIT_TEST(sparse_factor_of_every_graph)
 UNIT_TEST(least_degree_first)
 {
     struct solve_pattern pattern;
-    struct cloth_error error = {0};
     uint32_t star_first[] = {0, 4, 5, 6, 7, 8}, star[] = {1, 2, 3, 4, 0, 0, 0, 0};
-    ck_assert_int_eq(solve_pattern_make(&pattern, 5, star_first, star, &error), 0);
+    UNIT_FINE(solve_pattern_make(&pattern, 5, star_first, star, &error));
     ck_assert_uint_eq(pattern.first[5], 4);
     solve_pattern_free(&pattern);
 }

@@ -91,7 +91,6 @@ static size_t count_pairs(const phys_vec *at)
 {
     static double place[SHEETS * POINTS][3];
     struct cloth_list pairs = {0};
-    struct cloth_error error = {0};
     for (uint32_t p = 0; p < sheets * POINTS; p++)
         for (int c = 0; c < 3; c++)
             place[p][c] = verify_coordinate(at[p][c]);
@@ -100,7 +99,7 @@ static size_t count_pairs(const phys_vec *at)
                                      .n_first = count_triangles(),
                                      .x = (const double(*)[3])place,
                                      .corner = (const uint32_t(*)[3])corner};
-    ck_assert_msg(verify_pairs(&soup, &pairs, &error) == 0, "%s", error.text);
+    UNIT_FINE(verify_pairs(&soup, &pairs, &error));
     free(pairs.items);
     return pairs.n;
 }
@@ -146,9 +145,8 @@ static struct untangle_result run(void)
     const struct untangle_cloths cloths = {
         .soup = &soup, .layer = layer, .held = held, .apart = ignored, .thickness = THICKNESS};
     struct untangle_result result;
-    struct cloth_error error = {0};
     memcpy(x, start, sizeof x);
-    ck_assert_msg(untangle(&cloths, x, NULL, &result, &error) == 0, "%s", error.text);
+    UNIT_FINE(untangle(&cloths, x, NULL, &result, &error));
     return result;
 }
 

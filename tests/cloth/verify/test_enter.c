@@ -77,10 +77,8 @@ static void check_place(const struct place *place, int count[3])
     static const uint32_t corner[1][3] = {{0, 1, 2}};
     const struct verify_soup soup = {3, 1, 1, place->x, corner, NULL};
     struct cloth_list list = {0};
-    struct cloth_error error = {0};
     phys_vec normal;
-    ck_assert_int_eq(verify_enter(&soup, place->shape, &place->pose, DEPTH, &list, &error),
-                     CLOTH_OK);
+    UNIT_FINE(verify_enter(&soup, place->shape, &place->pose, DEPTH, &list, &error));
     const double gap = least_gap(place, -1, &normal);
     const bool shallow = gap > -0.99 * DEPTH, deep = gap < -2.01 * DEPTH;
     ck_assert_msg(!shallow || !list.n, "%s: found at gap %.17g",
@@ -139,8 +137,7 @@ UNIT_TEST(numbers)
     const struct verify_soup soup = {9, 4, 3, x, corner, NULL};
     const struct contact_pose pose = {0};
     struct cloth_list list = {0};
-    struct cloth_error error = {0};
-    ck_assert_int_eq(verify_enter(&soup, &ball, &pose, 1e-9, &list, &error), CLOTH_OK);
+    UNIT_FINE(verify_enter(&soup, &ball, &pose, 1e-9, &list, &error));
     ck_assert_uint_eq(list.n, 2);
     ck_assert_uint_eq(((uint32_t *)list.items)[0], 0);
     ck_assert_uint_eq(((uint32_t *)list.items)[1], 2);

@@ -43,8 +43,7 @@ static void make_sheet(void)
 
 static void draw_beside(double elevation, size_t n, const struct contact_shape *beside)
 {
-    struct cloth_error error = {0};
-    ck_assert_int_eq(view_obstacles_make(&obstacles, n, beside, NULL, NULL, &error), 0);
+    UNIT_FINE(view_obstacles_make(&obstacles, n, beside, NULL, NULL, &error));
     struct view_shape shape = {.n_vertices = N * N,
                                .n_triangles = 2 * (N - 1) * (N - 1),
                                .triangle = triangle,
@@ -54,10 +53,10 @@ static void draw_beside(double elevation, size_t n, const struct contact_shape *
     view_fit_add(&fit, N * N, position);
     view_fit_planes(&fit, obstacles.n_planes, (const double(*)[6])obstacles.plane);
     view_fit_camera(&fit, &camera);
-    ck_assert_msg(view_scene_new(&scene, &shape, &error) == 0, "%s", error.text);
-    ck_assert_msg(view_scene_move(scene, position, &error) == 0, "%s", error.text);
+    UNIT_FINE(view_scene_new(&scene, &shape, &error));
+    UNIT_FINE(view_scene_move(scene, position, &error));
     picture = (struct view_picture){WIDTH, HEIGHT, NULL};
-    ck_assert_msg(view_picture_draw(&picture, scene, &camera, &error) == 0, "%s", error.text);
+    UNIT_FINE(view_picture_draw(&picture, scene, &camera, &error));
 }
 
 static void draw(double elevation, size_t n_planes)
@@ -67,8 +66,7 @@ static void draw(double elevation, size_t n_planes)
 
 static void start(void)
 {
-    struct cloth_error error = {0};
-    ck_assert_msg(view_context_open(&context, &error) == 0, "%s", error.text);
+    UNIT_FINE(view_context_open(&context, &error));
     make_sheet();
 }
 
@@ -226,7 +224,6 @@ UNIT_TEST(front_and_back_differ)
 /* A chain of two edges without triangles. */
 UNIT_TEST(draws_lines)
 {
-    struct cloth_error error = {0};
     static const uint32_t line[4] = {0, 1, 1, 2};
     static const double place[9] = {0, 0, 0, 0.5, 0.2, 0, 1, 0, 0};
     struct view_shape shape = {.n_vertices = 3, .n_lines = 2, .line = line};
@@ -234,10 +231,10 @@ UNIT_TEST(draws_lines)
     view_fit_start(&fit, 0, 0, (double)WIDTH / HEIGHT, 1);
     view_fit_add(&fit, 3, place);
     view_fit_camera(&fit, &camera);
-    ck_assert_int_eq(view_scene_new(&scene, &shape, &error), 0);
-    ck_assert_int_eq(view_scene_move(scene, place, &error), 0);
+    UNIT_FINE(view_scene_new(&scene, &shape, &error));
+    UNIT_FINE(view_scene_move(scene, place, &error));
     picture = (struct view_picture){WIDTH, HEIGHT, NULL};
-    ck_assert_msg(view_picture_draw(&picture, scene, &camera, &error) == 0, "%s", error.text);
+    UNIT_FINE(view_picture_draw(&picture, scene, &camera, &error));
     int n = 0;
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         n += is_cloth(i % WIDTH, i / WIDTH);
@@ -248,7 +245,6 @@ UNIT_TEST(draws_lines)
 /* Two triangles beside each other, each a cloth. */
 UNIT_TEST(cloths_differ_in_colour)
 {
-    struct cloth_error error = {0};
     static const uint32_t apart[6] = {0, 1, 2, 3, 4, 5}, end[2] = {3, 6};
     static const double place[18] = {0,   0, 0, 0.4, 0, 0, 0.2, 0.4, 0,
                                      0.6, 0, 0, 1,   0, 0, 0.8, 0.4, 0};
@@ -258,10 +254,10 @@ UNIT_TEST(cloths_differ_in_colour)
     view_fit_start(&fit, 0, 0, (double)WIDTH / HEIGHT, 1);
     view_fit_add(&fit, 6, place);
     view_fit_camera(&fit, &camera);
-    ck_assert_int_eq(view_scene_new(&scene, &shape, &error), 0);
-    ck_assert_int_eq(view_scene_move(scene, place, &error), 0);
+    UNIT_FINE(view_scene_new(&scene, &shape, &error));
+    UNIT_FINE(view_scene_move(scene, place, &error));
     picture = (struct view_picture){WIDTH, HEIGHT, NULL};
-    ck_assert_msg(view_picture_draw(&picture, scene, &camera, &error) == 0, "%s", error.text);
+    UNIT_FINE(view_picture_draw(&picture, scene, &camera, &error));
     int red = 0, blue = 0;
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
         const unsigned char *pixel = picture.rgb + (size_t)3 * (size_t)i;
@@ -274,11 +270,10 @@ UNIT_TEST(cloths_differ_in_colour)
 
 UNIT_TEST(png_holds_the_picture)
 {
-    struct cloth_error error = {0};
     char path[] = "/tmp/duite-view.XXXXXX";
     close(mkstemp(path));
     draw(20, 1);
-    ck_assert_msg(view_picture_write(&picture, path, &error) == 0, "%s", error.text);
+    UNIT_FINE(view_picture_write(&picture, path, &error));
     png_image image = {.version = PNG_IMAGE_VERSION};
     ck_assert_int_ne(png_image_begin_read_from_file(&image, path), 0);
     ck_assert(image.width == WIDTH && image.height == HEIGHT);

@@ -134,55 +134,6 @@ UNIT_LOOP(limits_are_where_runs_break, 0, 4)
     ck_assert_double_gt(moved(rows[_i].integrator, stiffness, 1.02 * h), 1e-3);
 }
 
-/* The warning of a model, or the empty text. */
-static void warning(const struct setup *s, char *text, size_t size)
-{
-    struct flow *flow;
-    UNIT_FINE(flow_prepare(&flow, &s->model, 1, &error));
-    snprintf(text, size, "%s", flow_warning(flow, 0) ? flow_warning(flow, 0) : "");
-    ck_assert_ptr_null(flow_warning(flow, 1));
-    flow_free(flow);
-}
-
-UNIT_TEST(warnings)
-{
-    UNIT_OWNED(chain_free) struct setup setup;
-    char text[600], place[] = "scene.yaml:9:12";
-    chain(&setup, 0);
-    setup.model.h = 0.01;
-    setup.model.h_place = place;
-    warning(&setup, text, sizeof text);
-    ck_assert_str_eq(text, ""); /* implicit */
-    setup.model.integrator = MODEL_VERLET;
-    warning(&setup, text, sizeof text);
-    ck_assert_ptr_nonnull(strstr(text, "scene.yaml:9:12: steps of 0.01 s are beyond the limit of "
-                                       "verlet, 0.00632456 s: the fastest vibration (up to "
-                                       "316.228 rad/s, at vertex "));
-    setup.model.h = 0.0063;
-    warning(&setup, text, sizeof text);
-    ck_assert_str_eq(text, "");
-    setup.model.integrator = MODEL_RK4;
-    setup.model.h = 0.009;
-    warning(&setup, text, sizeof text);
-    ck_assert_ptr_nonnull(strstr(text, "limit of rk4, 0.00894427 s"));
-    setup.model.integrator = MODEL_EXPLICIT_EULER;
-    setup.model.h = 0.001;
-    warning(&setup, text, sizeof text);
-    ck_assert_ptr_nonnull(strstr(text, "no step is short enough for explicit_euler"));
-    ck_assert_ptr_nonnull(strstr(text, "can grow by 4.88088 %")); /* sqrt(1.1) - 1 */
-    setup.model.integrator = MODEL_MIDPOINT;
-    warning(&setup, text, sizeof text);
-    ck_assert_ptr_nonnull(strstr(text, "no step is short enough for midpoint"));
-    ck_assert_ptr_nonnull(strstr(text, "can grow by 0.124922 %")); /* sqrt(1.0025) - 1 */
-    setup.model.integrator = MODEL_EXPLICIT_EULER;
-    setup.material.damping_stiffness = 0.0011; /* 2 zeta / omega */
-    warning(&setup, text, sizeof text);
-    ck_assert_str_eq(text, "");
-    setup.material.damping_stiffness = 0.0009;
-    warning(&setup, text, sizeof text);
-    ck_assert_ptr_nonnull(strstr(text, "limit of explicit_euler, 0.0009 s"));
-}
-
 /* All vertices of a cloth are other names of a sheet's, which has their masses. */
 UNIT_TEST(a_doubled_layer_has_a_scale_of_energy)
 {

@@ -167,31 +167,3 @@ UNIT_TEST(sliders_meet_the_floor)
         setup_free(&g.setup);
     }
 }
-
-/* Two pins may say the same of a vertex, and not two things. */
-UNIT_TEST(two_pins_on_a_vertex)
-{
-    for (int i = 0; i < 4; i++) {
-        struct sliding g;
-        struct record record = {0};
-        struct model_slider sliders[2];
-        setup_sliding(&g, MODEL_LINE, 0, 1, 0);
-        struct model_pin pins[2] = {g.setup.pin, g.setup.pin};
-        sliders[0] = sliders[1] = g.slider;
-        pins[1].slider = i == 3 ? 0 : 2;
-        sliders[1].kind = i == 1 ? MODEL_PLANE : MODEL_LINE;
-        sliders[1].direction[2] = i == 2 ? 0.1 : 0;
-        g.setup.model.n_sliders = 2;
-        g.setup.model.sliders = sliders;
-        g.setup.cloth.pins = pins;
-        g.setup.cloth.n_pins = 2;
-        record_run(&record, &g.setup.model);
-        ck_assert_int_eq(record.code, i ? CLOTH_E_INPUT : CLOTH_OK);
-        if (i)
-            ck_assert_str_eq(record.error.text,
-                             "vertex 36 of cloth 'test' is held by two pins that do not hold and "
-                             "move alike; one is expected (vertices count from 1)");
-        record_free(&record);
-        setup_free(&g.setup);
-    }
-}

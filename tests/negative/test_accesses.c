@@ -1,36 +1,10 @@
 /* Forks whose objects do not fit their kernel, and objects that are not there. */
 
-#include "tests/negative/misuse.h"
-#include "tests/support/unit.h"
+#include "tests/negative/refused.h"
 
 #include <stdint.h>
 
-static duite *rt;
-static duite_object a, b;
-
-static void begin(void)
-{
-    rt = misuse_start(MPI_COMM_WORLD, 2);
-    ck_assert_ptr_nonnull(rt);
-    a = misuse_new(rt, 4);
-    b = misuse_new(rt, 4);
-}
-
-static void end(void)
-{
-    duite_free(rt, a);
-    duite_free(rt, b);
-    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
-}
-
-UNIT_FIXTURE(begin, end)
-
-static void refused(int code, int expected)
-{
-    ck_assert_int_eq(code, expected);
-    ck_assert_int_eq(duite_wait(rt), expected);
-    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
-}
+UNIT_FIXTURE(refused_begin, refused_end)
 
 UNIT_TEST(number_of_objects)
 {
@@ -123,12 +97,13 @@ UNIT_TEST(repeated_forks_after_free)
     enum { FORKS = 1000 };
     duite_options options = misuse_options(MPI_COMM_WORLD);
 
-    end(); /* what began without recognition */
+    refused_end(); /* what began without recognition */
     options.threads = 1;
     options.memo = 2;
     ck_assert_int_eq(duite_start(&rt, &options), DUITE_OK);
     a = misuse_new(rt, 4);
     b = misuse_new(rt, 4);
+    c = misuse_new(rt, 4);
     for (int i = 0; i < FORKS; i++)
         ck_assert_int_eq(DUITE_FORK(rt, &COPY, NULL, a, b), DUITE_OK);
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);

@@ -7,7 +7,6 @@
 #include <string.h>
 #include <zmq.h>
 
-static struct sample sample;
 static struct live_publisher *publisher;
 static struct live_follower *follower;
 static struct cloth_error error;
@@ -21,23 +20,22 @@ static void warn(const char *text)
 
 static void open_run(const char *address)
 {
-    ck_assert_msg(!live_publish_open(&publisher, address, warn, &error), "%s", error.text);
-    ck_assert_msg(!live_publish_scene(publisher, &sample.setup, 0, &error), "%s", error.text);
+    UNIT_FINE(live_publish_open(&publisher, address, warn, &error));
+    UNIT_FINE(live_publish_scene(publisher, &sample.setup, 0, &error));
 }
 
 static void start(void)
 {
-    sample_make(&sample);
+    sample_make();
     open_run("0");
-    ck_assert_msg(!live_follow_open(&follower, live_publish_address(publisher), &error), "%s",
-                  error.text);
+    UNIT_FINE(live_follow_open(&follower, live_publish_address(publisher), &error));
 }
 
 static void end(void)
 {
     live_publish_close(&publisher);
     live_follow_close(&follower);
-    sample_free(&sample);
+    sample_free();
 }
 
 static void publish(uint64_t frame)
@@ -52,7 +50,7 @@ static void expect(enum live_news wanted, uint64_t frame)
 {
     double x[3 * SAMPLE_POINTS];
     enum live_news news;
-    ck_assert_msg(!live_follow(follower, wanted ? 60 : 0.2, &news, &error), "%s", error.text);
+    UNIT_FINE(live_follow(follower, wanted ? 60 : 0.2, &news, &error));
     ck_assert_int_eq(news, wanted);
     if (wanted == LIVE_NOTHING)
         return;
@@ -70,7 +68,7 @@ static void expect_state(const char *wanted, bool waiting)
     bool waits;
     const char *state = live_follow_state(follower, &waits);
     for (int i = 0; i < 600 && strncmp(state, wanted, strlen(wanted)) != 0; i++) {
-        ck_assert_msg(!live_follow(follower, 0.1, &news, &error), "%s", error.text);
+        UNIT_FINE(live_follow(follower, 0.1, &news, &error));
         ck_assert_int_eq(news, LIVE_NOTHING);
         state = live_follow_state(follower, &waits);
     }
@@ -100,7 +98,7 @@ UNIT_TEST(another_scene_of_the_run)
     expect(LIVE_NEW_SCENE, 0);
     expect(LIVE_NOTHING, 0);
     sample.setup.n_obstacles = 1;
-    ck_assert_msg(!live_publish_scene(publisher, &sample.setup, 0, &error), "%s", error.text);
+    UNIT_FINE(live_publish_scene(publisher, &sample.setup, 0, &error));
     publish(1);
     expect(LIVE_NEW_SCENE, 1);
     ck_assert_uint_eq(live_follow_cache(follower)->n_obstacles, 1);
@@ -169,7 +167,7 @@ UNIT_TEST(a_viewer_of_another_kind)
         ck_assert_int_gt(zmq_send(socket, bytes, live_message_write(bytes, &message), 0), 0);
         const int n = zmq_recv(socket, bytes, sizeof bytes, 0);
         ck_assert_int_gt(n, 0);
-        ck_assert_msg(!live_message_read(bytes, (size_t)n, &message, &error), "%s", error.text);
+        UNIT_FINE(live_message_read(bytes, (size_t)n, &message, &error));
         ck_assert_int_eq(message.kind, i ? LIVE_FRAME : LIVE_SCENE);
         message.number = 0;
     }

@@ -6,7 +6,6 @@
 
 #include <string.h>
 
-static struct sample sample;
 static struct contact_bodies bodies;
 static bool posed[2] = {false, true};
 static struct contact_shape obstacles[3];
@@ -20,13 +19,13 @@ static struct cloth_error error;
 static void start(void)
 {
     static struct surface box;
-    sample_make(&sample);
+    sample_make();
     for (uint32_t i = 0; i < 2; i++) {
         UNIT_OWNED(mesh_free) struct mesh mesh;
         bool turned;
         surface_box(&box, 1, 2, 3 + i);
         surface_mesh(&box, &mesh);
-        ck_assert_int_eq(contact_bodies_add(&bodies, &mesh, &turned, &error), 0);
+        UNIT_FINE(contact_bodies_add(&bodies, &mesh, &turned, &error));
     }
     uint32_t kind = 0;
     while (contact_kinds[kind] != &contact_body_kind)
@@ -38,13 +37,13 @@ static void start(void)
     sample.setup.obstacles = obstacles;
     sample.setup.bodies = &bodies;
     sample.setup.posed = posed;
-    ck_assert_int_eq(live_scene_write(&sample.setup, 9, 4, &bytes, &n, &error), 0);
+    UNIT_FINE(live_scene_write(&sample.setup, 9, 4, &bytes, &n, &error));
 }
 
 static void end(void)
 {
     output_cache_close(&cache);
-    sample_free(&sample);
+    sample_free();
     free(bodies.memory);
     free(bytes);
 }
@@ -53,7 +52,7 @@ static int open_scene(void)
 {
     live_message_seal(bytes, n, LIVE_SCENE);
     error = (struct cloth_error){0};
-    ck_assert_msg(!live_message_read(bytes, n, &said, &error), "%s", error.text);
+    UNIT_FINE(live_message_read(bytes, n, &said, &error));
     return live_scene_open(&said, &cache, &error);
 }
 
@@ -131,8 +130,8 @@ UNIT_TEST(frames)
     ck_assert_msg(!show_frame(8), "%s", error.text);
     sample_positions(1, 3, wanted);
     ck_assert_uint_eq(cache.n_frames, 1);
-    ck_assert_int_eq(output_cache_frame(&cache, 0, x, &error), 0);
-    ck_assert_int_eq(output_cache_pose(&cache, 0, &error), 0);
+    UNIT_FINE(output_cache_frame(&cache, 0, x, &error));
+    UNIT_FINE(output_cache_pose(&cache, 0, &error));
     ck_assert_mem_eq(x, wanted, sizeof x);
     ck_assert_double_eq(cache.time[0], 0.12);
     const phys_vec *body = contact_body_vertices(contact_bodies_at(&cache.bodies, 2));

@@ -10,7 +10,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static struct sample sample;
 static struct cloth_error error, note;
 static struct output_checkpoints *checkpoints;
 static struct output_checkpoint read_back;
@@ -19,8 +18,8 @@ static void start(void)
 {
     memset(&error, 0, sizeof error);
     memset(&note, 0, sizeof note);
-    sample_make(&sample);
-    ck_assert_msg(!output_checkpoints_open(&checkpoints, sample.folder, &error), "%s", error.text);
+    sample_make();
+    UNIT_FINE(output_checkpoints_open(&checkpoints, sample.folder, &error));
 }
 
 static void end(void)
@@ -28,7 +27,7 @@ static void end(void)
     output_checkpoint_free(&read_back);
     output_checkpoints_close(&checkpoints);
     output_checkpoints_forget(sample.folder, &error);
-    sample_free(&sample);
+    sample_free();
 }
 
 /* Three parts, of which the second has no whole number of words: `mark` and what follows. */
@@ -39,7 +38,7 @@ static void write_one(unsigned char mark)
     memset(bytes, mark, sizeof bytes);
     const struct output_part part[OUTPUT_CHECKPOINT_PARTS] = {
         {"key: value\n", 11}, {bytes, sizeof bytes}, {numbers, sizeof numbers}};
-    ck_assert_msg(!output_checkpoints_write(checkpoints, part, &error), "%s", error.text);
+    UNIT_FINE(output_checkpoints_write(checkpoints, part, &error));
 }
 
 static void path_of(unsigned number, char path[160])
@@ -102,7 +101,7 @@ UNIT_TEST(three_are_kept_after_a_run_that_was_killed)
     path_of(1, first);
     path_of(2, second);
     ck_assert_int_eq(link(second, first), 0);
-    ck_assert_msg(!output_checkpoints_open(&checkpoints, sample.folder, &error), "%s", error.text);
+    UNIT_FINE(output_checkpoints_open(&checkpoints, sample.folder, &error));
     for (unsigned number = 1; number <= 4; number++)
         ck_assert(is_there(number));
     write_one(5);
@@ -129,7 +128,7 @@ static void write_long(size_t length)
 {
     static char bytes[5000];
     const struct output_part part[OUTPUT_CHECKPOINT_PARTS] = {{bytes, length}, {"b", 1}, {"c", 1}};
-    ck_assert_msg(!output_checkpoints_write(checkpoints, part, &error), "%s", error.text);
+    UNIT_FINE(output_checkpoints_write(checkpoints, part, &error));
     ck_assert_msg(!read_newest(), "%s", error.text);
     ck_assert_uint_eq(read_back.part[0].n, length);
     ck_assert_int_eq(note.code, 0);
@@ -167,7 +166,7 @@ UNIT_TEST(what_has_another_name_stays)
     for (unsigned char i = 2; i <= 6; i++)
         write_one(i);
     ck_assert(!is_there(1));
-    ck_assert_int_eq(output_checkpoint_read(&read_back, other, &error), 0);
+    UNIT_FINE(output_checkpoint_read(&read_back, other, &error));
     ck_assert_uint_eq(*(const uint64_t *)read_back.part[2].bytes, 1);
     ck_assert_int_eq(unlink(other), 0);
 }
@@ -178,7 +177,7 @@ UNIT_TEST(counts_on)
     for (unsigned char i = 1; i <= 3; i++)
         write_one(i);
     output_checkpoints_close(&checkpoints);
-    ck_assert_int_eq(output_checkpoints_open(&checkpoints, sample.folder, &error), 0);
+    UNIT_FINE(output_checkpoints_open(&checkpoints, sample.folder, &error));
     write_one(4);
     ck_assert(!is_there(1) && is_there(2) && is_there(4));
     check_mark(4);
@@ -197,7 +196,7 @@ UNIT_TEST(other_numbers_are_nobodys)
     check_mark(1);
     ck_assert_int_eq(note.code, 0);
     output_checkpoints_close(&checkpoints);
-    ck_assert_int_eq(output_checkpoints_open(&checkpoints, sample.folder, &error), 0);
+    UNIT_FINE(output_checkpoints_open(&checkpoints, sample.folder, &error));
     write_one(2);
     ck_assert(is_there(2));
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
@@ -343,9 +342,9 @@ UNIT_TEST(cleans_up)
         ck_assert_ptr_nonnull(file);
         fclose(file);
     }
-    ck_assert_int_eq(output_checkpoints_open(&checkpoints, sample.folder, &error), 0);
+    UNIT_FINE(output_checkpoints_open(&checkpoints, sample.folder, &error));
     ck_assert(access(half, F_OK) != 0 && access(other, F_OK) == 0);
-    ck_assert_int_eq(output_checkpoints_forget(sample.folder, &error), 0);
+    UNIT_FINE(output_checkpoints_forget(sample.folder, &error));
     ck_assert(!is_there(1) && access(other, F_OK) == 0);
     ck_assert_int_eq(unlink(other), 0);
 }

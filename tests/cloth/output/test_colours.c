@@ -13,7 +13,6 @@
 enum { N = 5, BLOCKS = 2 };
 static const int32_t BLOCK[N] = {0, 1, -1, 1, 0};
 
-static struct sample sample;
 static struct output_colours *writer;
 static struct output_colours_read *reader;
 static struct cloth_error error;
@@ -21,32 +20,31 @@ static char path[200];
 
 static void make(void)
 {
-    sample_make(&sample);
+    sample_make();
     snprintf(path, sizeof path, "%s/colours.bin", sample.folder);
 }
 
 static void end(void)
 {
     output_colours_unload(reader);
-    sample_free(&sample);
+    sample_free();
 }
 
 static void begins(const uint64_t *n_frames)
 {
-    ck_assert_msg(!output_colours_open(&writer, sample.folder, N, n_frames, &error), "%s",
-                  error.text);
+    UNIT_FINE(output_colours_open(&writer, sample.folder, N, n_frames, &error));
 }
 
 static void ends(void)
 {
-    ck_assert_int_eq(output_colours_close(&writer, &error), 0);
+    UNIT_FINE(output_colours_close(&writer, &error));
     ck_assert_ptr_null(writer);
 }
 
 static void places(uint64_t frame, int32_t first, int32_t second)
 {
     const int32_t rank[BLOCKS] = {first, second};
-    ck_assert_int_eq(output_colours_places(writer, frame, BLOCK, BLOCKS, rank, &error), 0);
+    UNIT_FINE(output_colours_places(writer, frame, BLOCK, BLOCKS, rank, &error));
 }
 
 static long size_of(void)
@@ -62,14 +60,14 @@ static long size_of(void)
 static void opens(void)
 {
     output_colours_unload(reader);
-    ck_assert_msg(!output_colours_load(&reader, sample.folder, N, &error), "%s", error.text);
+    UNIT_FINE(output_colours_load(&reader, sample.folder, N, &error));
 }
 
 static void has_ranks(uint64_t frame, int32_t first, int32_t second)
 {
     int32_t rank[N];
     const int32_t expected[N] = {first, second, -1, second, first};
-    ck_assert_msg(!output_colours_ranks(reader, frame, rank, &error), "%s", error.text);
+    UNIT_FINE(output_colours_ranks(reader, frame, rank, &error));
     ck_assert_mem_eq(rank, expected, sizeof rank);
 }
 
@@ -82,7 +80,7 @@ UNIT_TEST(places_are_read_again)
     places(0, 0, 3);
     ends();
     opens();
-    ck_assert_int_eq(output_colours_blocks(reader, 7, block, &error), 0);
+    UNIT_FINE(output_colours_blocks(reader, 7, block, &error));
     ck_assert_mem_eq(block, BLOCK, sizeof block);
     has_ranks(0, 0, 3);
     has_ranks(7, 0, 3);
@@ -145,7 +143,7 @@ UNIT_TEST(what_is_not_whole_was_not_written)
 static void fill(struct output_rest *rest)
 {
     *rest = (struct output_rest){.n_triangles = 1, .n_edges = 1, .n_materials = 2};
-    ck_assert_int_eq(output_rest_make(rest, &error), 0);
+    UNIT_FINE(output_rest_make(rest, &error));
     memcpy(rest->corner[0], (uint32_t[]){2, 0, 4, 1}, sizeof *rest->corner);
     memcpy(rest->gradient[0], (double[]){1, -2, 0.5, 4}, sizeof *rest->gradient);
     rest->area[0] = 0.125;
@@ -159,7 +157,7 @@ static void write_rest(uint64_t frame)
 {
     UNIT_OWNED(output_rest_free) struct output_rest rest;
     fill(&rest);
-    ck_assert_int_eq(output_colours_rest(writer, frame, &rest, &error), 0);
+    UNIT_FINE(output_colours_rest(writer, frame, &rest, &error));
 }
 
 UNIT_TEST(the_size_is_known_before)
@@ -184,7 +182,7 @@ UNIT_TEST(shapes_are_read_again)
     fill(&rest);
     ck_assert_uint_eq(output_colours_rest_since(reader, 2), 0);
     ck_assert_uint_eq(output_colours_rest_since(reader, 9), 3);
-    ck_assert_int_eq(output_colours_rest_at(reader, 2, &read, &error), 0);
+    UNIT_FINE(output_colours_rest_at(reader, 2, &read, &error));
     ck_assert_uint_eq(read.n_triangles, 1);
     ck_assert_mem_eq(read.corner, rest.corner, sizeof *rest.corner);
     ck_assert_mem_eq(read.gradient, rest.gradient, sizeof *rest.gradient);

@@ -56,18 +56,6 @@ int rename(const char *from, const char *to)
     return strikes() ? -1 : (int)syscall(SYS_rename, from, to);
 }
 
-static struct sample sample;
-
-static void start(void)
-{
-    sample_make(&sample);
-}
-
-static void end(void)
-{
-    sample_free(&sample);
-}
-
 /* Runs 3 frames of run 2, to die at call n. settles: a thread brings them to the disk. Returns
  * whether it got through. */
 static int survives(long n, bool settles)
@@ -79,7 +67,7 @@ static int survives(long n, bool settles)
         sample.settles = settles;
         mode = DIE;
         calls_left = n;
-        sample_run(&sample, 2, 3);
+        sample_run(2, 3);
         _exit(0);
     }
     int status = 0;
@@ -93,7 +81,7 @@ static int survives(long n, bool settles)
 static int check_folder(void)
 {
     struct output_cache cache;
-    if (access(sample_path(&sample, "cloth.pc2"), F_OK) != 0)
+    if (access(sample_path("cloth.pc2"), F_OK) != 0)
         return -1;
     UNIT_FINE(output_cache_open(&cache, sample.frames, &error));
     int n = (int)cache.n_frames;
@@ -108,14 +96,14 @@ static int check_folder(void)
     return n;
 }
 
-UNIT_FIXTURE(start, end)
+UNIT_FIXTURE(sample_make, sample_free)
 
 UNIT_TEST(dies_anywhere)
 {
     int seen[6] = {0}, through = 0;
     for (long n = 0; !through; n++) {
         ck_assert_int_lt(n, 200);
-        sample_run(&sample, 1, 4);
+        sample_run(1, 4);
         through = survives(n, false);
         seen[check_folder() + 1]++;
     }
@@ -128,7 +116,7 @@ UNIT_TEST(dies_anywhere_with_a_thread)
     int through = 0;
     for (long n = 0; !through; n++) {
         ck_assert_int_lt(n, 200);
-        sample_run(&sample, 1, 4);
+        sample_run(1, 4);
         through = survives(n, true);
         check_folder();
     }
@@ -142,7 +130,7 @@ UNIT_TEST(fails_to_open_whole)
         ck_assert_int_lt(n, 200);
         struct cloth_error error = {0};
         struct output_frames *frames = NULL;
-        sample_run(&sample, 1, 4);
+        sample_run(1, 4);
         mode = FULL;
         calls_left = n;
         int code = output_open(&frames, &sample.setup, &error);
@@ -153,7 +141,7 @@ UNIT_TEST(fails_to_open_whole)
         int left = check_folder();
         ck_assert(code == 0 ? left == 0 : left == 4 || left == -1);
         output_close(&frames, &error);
-        ck_assert_int_ne(access(sample_path(&sample, "cloth.pc2.part"), F_OK), 0);
+        ck_assert_int_ne(access(sample_path("cloth.pc2.part"), F_OK), 0);
     }
 }
 
@@ -167,7 +155,7 @@ UNIT_TEST(tells_whose_fault)
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         struct cloth_error error = {0};
         struct output_frames *frames = NULL;
-        sample_run(&sample, 1, 1);
+        sample_run(1, 1);
         reason = all[i].reason;
         mode = FULL;
         calls_left = 4; /* after four files: the old cache is not to be removed */
@@ -190,9 +178,9 @@ UNIT_TEST(full_disk_keeps_whole_frames)
         struct output_frames *frames = NULL;
         double position[3 * SAMPLE_POINTS];
         struct stat status;
-        ck_assert_int_eq(output_open(&frames, &sample.setup, &error), 0);
+        UNIT_FINE(output_open(&frames, &sample.setup, &error));
         sample_positions(2, 0, position);
-        ck_assert_int_eq(output_frame(frames, 0, 0, position, &error), 0);
+        UNIT_FINE(output_frame(frames, 0, 0, position, &error));
         sample_positions(2, 1, position);
         mode = FULL;
         calls_left = n;
@@ -200,15 +188,15 @@ UNIT_TEST(full_disk_keeps_whole_frames)
         through = calls_left >= 0;
         mode = OFF;
         ck_assert_int_eq(check_folder(), through ? 2 : 1);
-        stat(sample_path(&sample, "cloth.pc2"), &status);
+        stat(sample_path("cloth.pc2"), &status);
         ck_assert_int_eq(status.st_size, 32 + (through ? 2 : 1) * 12 * SAMPLE_POINTS);
-        stat(sample_path(&sample, "frames.csv"), &status);
+        stat(sample_path("frames.csv"), &status);
         ck_assert_int_eq(status.st_size, through ? 38 : 15);
         if (!through) {
             ck_assert_int_eq(code, CLOTH_E_IO);
             ck_assert_ptr_nonnull(strstr(error.text, "No space left"));
             error.code = 0;
-            ck_assert_int_eq(output_frame(frames, 1, 0.04, position, &error), 0);
+            UNIT_FINE(output_frame(frames, 1, 0.04, position, &error));
             ck_assert_int_eq(check_folder(), 2);
         }
         output_close(&frames, &error);
@@ -224,11 +212,11 @@ UNIT_TEST(full_disk_is_said_later)
         struct cloth_error error = {0};
         struct output_frames *frames = NULL;
         double position[3 * SAMPLE_POINTS];
-        ck_assert_int_eq(output_settler_open(&sample.setup.settler, &error), 0);
-        ck_assert_int_eq(output_open(&frames, &sample.setup, &error), 0);
+        UNIT_FINE(output_settler_open(&sample.setup.settler, &error));
+        UNIT_FINE(output_open(&frames, &sample.setup, &error));
         sample_positions(2, 0, position);
-        ck_assert_int_eq(output_frame(frames, 0, 0, position, &error), 0);
-        ck_assert_int_eq(output_settler_wait(sample.setup.settler, &error), 0);
+        UNIT_FINE(output_frame(frames, 0, 0, position, &error));
+        UNIT_FINE(output_settler_wait(sample.setup.settler, &error));
         sample_positions(2, 1, position);
         mode = FULL;
         calls_left = n;
@@ -247,7 +235,7 @@ UNIT_TEST(full_disk_is_said_later)
         ck_assert_int_eq(output_settler_close(&sample.setup.settler, &error), settled);
         output_close(&frames, &error);
         struct stat status;
-        stat(sample_path(&sample, "frames.csv"), &status);
+        stat(sample_path("frames.csv"), &status);
         ck_assert_int_eq(status.st_size, through ? 38 : 15);
         ck_assert_int_eq(check_folder(), through ? 2 : 1);
     }
@@ -264,7 +252,7 @@ UNIT_TEST(report_is_whole_or_not_at_all)
         struct cloth_error error = {0};
         struct output_report *report = NULL;
         sample_write(path, "old", 3);
-        ck_assert_int_eq(output_report_new(&report, &error), 0);
+        UNIT_FINE(output_report_new(&report, &error));
         output_report_integer(report, "steps", 3);
         mode = FULL;
         calls_left = n;

@@ -11,7 +11,6 @@
 
 enum { N = 7, ROWS = 3 * N };
 
-static struct sample sample;
 static struct solve_system system_;
 static double matrix[ROWS][ROWS];
 
@@ -20,7 +19,7 @@ static void make(void)
 {
     static const uint32_t end[][2] = {{4, 1}, {0, 1}, {1, 4}, {2, 3}, {5, 0}, {3, 1}, {2, 5}};
     const size_t n = sizeof end / sizeof *end;
-    sample_make(&sample);
+    sample_make();
     ck_assert_int_eq(solve_system_make(&system_, N, n, SOLVE_PAIRS_OF_SPRINGS, NULL), 0);
     system_.h = 0.5;
     for (uint32_t v = 0; v < N; v++) {
@@ -43,7 +42,7 @@ static void make(void)
 static void end(void)
 {
     solve_system_free(&system_);
-    sample_free(&sample);
+    sample_free();
 }
 
 static FILE *open_file(const char *name, const char *banner)

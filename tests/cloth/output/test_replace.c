@@ -8,19 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static struct sample sample;
-
-static void start(void)
-{
-    sample_make(&sample);
-}
-
-static void end(void)
-{
-    sample_free(&sample);
-}
-
-UNIT_FIXTURE(start, end)
+UNIT_FIXTURE(sample_make, sample_free)
 
 UNIT_TEST(folder_in_the_way)
 {
@@ -51,13 +39,13 @@ UNIT_TEST(file_in_the_way)
     for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
         struct cloth_error error = {0};
         struct output_frames *frames = NULL;
-        sample_run(&sample, 1, 1);
-        unlink(sample_path(&sample, name[i]));
-        ck_assert_int_eq(mkdir(sample_path(&sample, name[i]), 0777), 0);
+        sample_run(1, 1);
+        unlink(sample_path(name[i]));
+        ck_assert_int_eq(mkdir(sample_path(name[i]), 0777), 0);
         ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-        ck_assert_msg(strstr(error.text, sample_path(&sample, name[i])) != NULL, "%s", error.text);
+        ck_assert_msg(strstr(error.text, sample_path(name[i])) != NULL, "%s", error.text);
         ck_assert_ptr_null(frames);
-        ck_assert_int_eq(rmdir(sample_path(&sample, name[i])), 0);
+        ck_assert_int_eq(rmdir(sample_path(name[i])), 0);
     }
 }
 
@@ -68,13 +56,13 @@ UNIT_TEST(mesh_of_the_user)
     struct output_frames *frames = NULL;
     char text[8];
     ck_assert_int_eq(mkdir(sample.frames, 0777), 0);
-    sample_write(sample_path(&sample, "cloth.obj"), "mine", 4);
+    sample_write(sample_path("cloth.obj"), "mine", 4);
     ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
     ck_assert_ptr_null(frames);
-    ck_assert_msg(strstr(error.text, sample_path(&sample, "cloth.obj")) != NULL, "%s", error.text);
-    sample_read(sample_path(&sample, "cloth.obj"), text, sizeof text);
+    ck_assert_msg(strstr(error.text, sample_path("cloth.obj")) != NULL, "%s", error.text);
+    sample_read(sample_path("cloth.obj"), text, sizeof text);
     ck_assert_str_eq(text, "mine");
-    ck_assert_int_ne(access(sample_path(&sample, "cloth.obj.part"), F_OK), 0);
+    ck_assert_int_ne(access(sample_path("cloth.obj.part"), F_OK), 0);
 }
 
 /* Of so many boxes; the caller frees their memory. */
@@ -102,7 +90,7 @@ static void check_untouched(const char *const *name, size_t n, uint64_t n_frames
     for (size_t i = 0; i < n; i++) {
         char part[40];
         snprintf(part, sizeof part, "%s.part", name[i]);
-        ck_assert_int_ne(access(sample_path(&sample, part), F_OK), 0);
+        ck_assert_int_ne(access(sample_path(part), F_OK), 0);
     }
     UNIT_FINE(output_cache_open(&cache, sample.frames, &error));
     ck_assert_uint_eq(cache.n_frames, n_frames);
@@ -122,7 +110,7 @@ UNIT_TEST(would_replace_an_input)
     const char *const inputs[] = {"nowhere", link};
     sample.setup.bodies = &two;
     sample.setup.n_obstacles = 2;
-    sample_run(&sample, 1, 3);
+    sample_run(1, 3);
     sample.setup.bodies = &one;
     sample.setup.n_obstacles = 1;
     snprintf(link, sizeof link, "%s/input", sample.folder);
@@ -134,17 +122,17 @@ UNIT_TEST(would_replace_an_input)
         char name[40];
         snprintf(name, sizeof name, "%s%s", FILES[i / 2], i % 2 ? ".part" : "");
         if (i % 2)
-            sample_write(sample_path(&sample, name), "mine", 4);
-        ck_assert_int_eq(symlink(sample_path(&sample, name), link), 0);
+            sample_write(sample_path(name), "mine", 4);
+        ck_assert_int_eq(symlink(sample_path(name), link), 0);
         snprintf(want, sizeof want, "%s would be replaced, but this run reads it, as %s; ",
-                 sample_path(&sample, name), link);
+                 sample_path(name), link);
         ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
         ck_assert_msg(strstr(error.text, want) == error.text, "%s", error.text);
         ck_assert_int_eq(unlink(link), 0);
-        ck_assert_int_eq(i % 2 ? unlink(sample_path(&sample, name)) : 0, 0);
+        ck_assert_int_eq(i % 2 ? unlink(sample_path(name)) : 0, 0);
         check_untouched(FILES, N_FILES, 3);
     }
-    sample_run(&sample, 2, 1);
+    sample_run(2, 1);
     free(one.memory);
     free(two.memory);
 }
@@ -156,12 +144,12 @@ UNIT_TEST(bodies_of_an_earlier_run)
     for (uint32_t n = 3; n-- > 0;) {
         sample.setup.bodies = n == 2 ? &two : n == 1 ? &one : NULL;
         sample.setup.n_obstacles = n;
-        sample_run(&sample, n, 1);
+        sample_run(n, 1);
         if (n == 2)
-            sample_write(sample_path(&sample, "body-2.obj"), "mine", 4);
-        ck_assert_int_eq(access(sample_path(&sample, "body-0.obj"), F_OK) == 0, n > 0);
-        ck_assert_int_eq(access(sample_path(&sample, "body-1.obj"), F_OK) == 0, n > 1);
-        ck_assert_int_eq(access(sample_path(&sample, "body-2.obj"), F_OK), 0);
+            sample_write(sample_path("body-2.obj"), "mine", 4);
+        ck_assert_int_eq(access(sample_path("body-0.obj"), F_OK) == 0, n > 0);
+        ck_assert_int_eq(access(sample_path("body-1.obj"), F_OK) == 0, n > 1);
+        ck_assert_int_eq(access(sample_path("body-2.obj"), F_OK), 0);
     }
     free(one.memory);
     free(two.memory);
@@ -172,18 +160,18 @@ UNIT_TEST(folder_where_a_file_goes)
 {
     struct contact_bodies one = boxes_make(1);
     sample.setup.n_obstacles = 0;
-    sample_run(&sample, 1, 3);
+    sample_run(1, 3);
     sample.setup.bodies = &one;
     sample.setup.n_obstacles = 1;
     for (int i = 0; i < 2; i++) {
         const char *name = i ? "body-0.obj" : "body-0.obj.part";
         struct cloth_error error = {0};
         struct output_frames *frames = NULL;
-        ck_assert_int_eq(mkdir(sample_path(&sample, name), 0777), 0);
+        ck_assert_int_eq(mkdir(sample_path(name), 0777), 0);
         ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-        ck_assert_msg(strstr(error.text, sample_path(&sample, name)), "%s", error.text);
+        ck_assert_msg(strstr(error.text, sample_path(name)), "%s", error.text);
         ck_assert_ptr_nonnull(strstr(error.text, "Is a directory"));
-        ck_assert_int_eq(rmdir(sample_path(&sample, name)), 0);
+        ck_assert_int_eq(rmdir(sample_path(name)), 0);
         check_untouched(FILES, N_FILES, 3);
     }
     free(one.memory);

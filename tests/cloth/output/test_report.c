@@ -8,7 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static struct sample sample;
 static struct output_report *report;
 static struct cloth_error error;
 static char path[96], text[4096];
@@ -16,20 +15,20 @@ static char path[96], text[4096];
 static void start(void)
 {
     memset(&error, 0, sizeof error);
-    sample_make(&sample);
+    sample_make();
     snprintf(path, sizeof path, "%s/report.json", sample.folder);
-    ck_assert_int_eq(output_report_new(&report, &error), 0);
+    UNIT_FINE(output_report_new(&report, &error));
 }
 
 static void end(void)
 {
     output_report_free(report);
-    sample_free(&sample);
+    sample_free();
 }
 
 static void check_written(const char *want)
 {
-    ck_assert_msg(output_report_write(report, path, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_report_write(report, path, &error));
     sample_read(path, text, sizeof text);
     ck_assert_str_eq(text, want);
 }
@@ -69,7 +68,7 @@ UNIT_TEST(numbers_come_back)
     static const double value[] = {0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, -0.0, 1e22};
     for (size_t i = 0; i < sizeof value / sizeof *value; i++)
         output_report_number(report, "x", value[i]);
-    ck_assert_int_eq(output_report_write(report, path, &error), 0);
+    UNIT_FINE(output_report_write(report, path, &error));
     sample_read(path, text, sizeof text);
     const char *next = text;
     for (size_t i = 0; i < sizeof value / sizeof *value; i++) {
@@ -85,7 +84,7 @@ UNIT_TEST(keeps_a_link)
     snprintf(link, sizeof link, "%s/link.json", sample.folder);
     sample_write(path, "old", 3);
     ck_assert_int_eq(symlink("report.json", link), 0);
-    ck_assert_int_eq(output_report_write(report, link, &error), 0);
+    UNIT_FINE(output_report_write(report, link, &error));
     struct stat status;
     ck_assert_int_eq(lstat(link, &status), 0);
     ck_assert(S_ISLNK(status.st_mode));
@@ -96,7 +95,7 @@ UNIT_TEST(keeps_a_link)
 UNIT_TEST(does_not_replace_a_device)
 {
     struct stat status;
-    ck_assert_int_eq(output_report_write(report, "/dev/null", &error), 0);
+    UNIT_FINE(output_report_write(report, "/dev/null", &error));
     ck_assert_int_eq(stat("/dev/null", &status), 0);
     ck_assert(S_ISCHR(status.st_mode));
     ck_assert_int_eq(output_report_write(report, "/dev/full", &error), CLOTH_E_IO);
@@ -130,8 +129,8 @@ UNIT_TEST(follows_links_to_nothing)
     error.code = 0;
     ck_assert_int_eq(mkdir(target, 0777), 0);
     ck_assert_int_eq(symlink("third.json", below), 0);
-    ck_assert_int_eq(output_report_check(link, NULL, &error), 0);
-    ck_assert_int_eq(output_report_write(report, link, &error), 0);
+    UNIT_FINE(output_report_check(link, NULL, &error));
+    UNIT_FINE(output_report_write(report, link, &error));
     ck_assert(lstat(link, &status) == 0 && S_ISLNK(status.st_mode));
     ck_assert(lstat(below, &status) == 0 && S_ISLNK(status.st_mode));
     snprintf(target, sizeof target, "%s/sub/third.json", sample.folder);
@@ -153,8 +152,8 @@ UNIT_TEST(links_in_a_ring)
 UNIT_TEST(checks_before)
 {
     char file[128], made[128];
-    ck_assert_int_eq(output_report_check("/dev/null", NULL, &error), 0);
-    ck_assert_int_eq(output_report_check(path, NULL, &error), 0);
+    UNIT_FINE(output_report_check("/dev/null", NULL, &error));
+    UNIT_FINE(output_report_check(path, NULL, &error));
     ck_assert_int_eq(output_report_check(sample.folder, NULL, &error), CLOTH_E_INPUT);
     ck_assert_str_eq(error.text, "this is a folder; the name of a file is expected");
     error.code = 0;

@@ -121,14 +121,7 @@ ok "a damaged one names its line" bad_file
 ok "a full disk" full
 ok "without gnuplot" without_plots
 ok "an unknown scheduler lists the known ones" refused 2 "known are steal, locality" tree --scheduler best
-starpu_graph() { refused_by "$bin/bench/rivals/starpu-graph" "known are .* lws.*" irregular --scheduler nope; }
-refused_by() { # PROGRAM SENTENCE OPTIONS...: before anything runs: with nothing on standard output
-    program=$1 sentence=$2 status=0
-    shift 2
-    limited "$program" "$@" > "$scratch/out" 2> "$scratch/said" || status=$?
-    cat "$scratch/said" "$scratch/out"
-    test $status = 2 && test ! -s "$scratch/out" && grep -q "$sentence" "$scratch/said"
-}
+starpu_graph() { refuses " lws" limited "$bin/bench/rivals/starpu-graph" irregular --scheduler nope; }
 starpu_runs() {
     STARPU_SCHED=nope refused 0 "1 rounds" irregular --scheduler starpu:eager --rounds 1 --output e &&
         test "$(grep -c '^0,irregular,.*,starpu:eager,.*,fine$' "$scratch/e/runs.csv")" = 1 && ! grep nope "$scratch/e/run.log"
@@ -141,9 +134,9 @@ if test -x "$bin/bench/rivals/starpu-graph"; then
     ok "one that it has runs, also if the environment names another" starpu_runs
 fi
 mkdir "$scratch/alone" && cp "$bin/duite-compare" "$scratch/alone" # no rivals beside it
-ok "StarPU's twin is not there" refused_by "$scratch/alone/duite-compare" "alone/bench/rivals/starpu-graph is not there" \
+ok "StarPU's twin is not there" refuses "alone/bench/rivals/starpu-graph is not there" limited "$scratch/alone/duite-compare" \
     irregular --scheduler starpu:lws --output "$scratch/n"
-ok "duite-graph has none of StarPU's schedulers" refused_by "$bin/duite-graph" "bench/rivals/starpu-graph --schedulers lists them" \
+ok "duite-graph has none of StarPU's schedulers" refuses "bench/rivals/starpu-graph --schedulers lists them" limited "$bin/duite-graph" \
     irregular --scheduler starpu:lws
 # A member that fails beside one that does not: the page names it and says why; no table and no file has a figure of it.
 failed() {

@@ -52,26 +52,18 @@ unsure() { # distances of two seams do not tell in which direction they are sewn
 }
 ok "directions that are not clear" unsure
 
-refused() { # SENTENCE ARGUMENT...: exit status 2, and one line that has the sentence
-    sentence=$1
-    shift
-    prints run "$@"
-    got=$?
-    cat complained
-    test $got = 2 && grep -qF -e "$sentence" complained
-}
-ok "no pattern" refused "say which pattern to mesh" -e 0.1 -o x.obj
-ok "no output" refused "say where the mesh goes" "$patterns/dart.json" -e 0.1
-ok "no fineness" refused "say how fine" "$patterns/dart.json" -o x.obj
-ok "two finenesses" refused "take one" "$patterns/dart.json" -o x.obj -e 0.1 -n 100
-ok "no length" refused "--edge takes a length above 0" "$patterns/dart.json" -o x.obj -e 0
-ok "no number" refused "--vertices takes a number from 3 on" "$patterns/dart.json" -o x.obj -n 2
-ok "edges that are too short" refused "edges of 1e-09 m" "$patterns/dart.json" -o x.obj -e 1e-9
-ok "no file" refused "none.json: cannot open the pattern file" none.json -e 0.1 -o x.obj
-ok "no folder" refused "cannot write" "$patterns/dart.json" -e 0.1 -o none/x.obj
+ok "no pattern" refuses "say which pattern to mesh" run -e 0.1 -o x.obj
+ok "no output" refuses "say where the mesh goes" run "$patterns/dart.json" -e 0.1
+ok "no fineness" refuses "say how fine" run "$patterns/dart.json" -o x.obj
+ok "two finenesses" refuses "take one" run "$patterns/dart.json" -o x.obj -e 0.1 -n 100
+ok "no length" refuses "--edge takes a length above 0" run "$patterns/dart.json" -o x.obj -e 0
+ok "no number" refuses "--vertices takes a number from 3 on" run "$patterns/dart.json" -o x.obj -n 2
+ok "edges that are too short" refuses "edges of 1e-09 m" run "$patterns/dart.json" -o x.obj -e 1e-9
+ok "no file" refuses "none.json: cannot open the pattern file" run none.json -e 0.1 -o x.obj
+ok "no folder" refuses "cannot write" run "$patterns/dart.json" -e 0.1 -o none/x.obj
 cp "$patterns/dart.json" mine.json
-ok "the pattern is not replaced" refused "would replace the pattern" mine.json -e 0.1 -o mine.json
-ok "one file for both" refused "cannot be the same file" mine.json -e 0.1 -o x.obj --seams x.obj
+ok "the pattern is not replaced" refuses "would replace the pattern" run mine.json -e 0.1 -o mine.json
+ok "one file for both" refuses "cannot be the same file" run mine.json -e 0.1 -o x.obj --seams x.obj
 
 # ---- Own garments
 
@@ -146,26 +138,26 @@ if test -x "$cloth"; then
 else
     skip "the default T-shirt is sewn" "no duite-cloth"
 fi
-ok "no such body" refused "none.obj: cannot be opened" --own skirt -e 0.05 -o x.obj --body none.obj
-ok "a body without a mesh" refused "--body needs --output" --own skirt --write-pattern x.json --body box.obj
-ok "no such garment" refused "there is no own garment \`kilt'; there are tshirt, trousers, skirt" --own kilt -e 0.1 -o x.obj
-ok "no such size" refused "--size takes one of XS, S, M, L, XL" --own skirt --size 42 -e 0.1 -o x.obj
-ok "no such measure" refused "a skirt has no such measure" --own skirt --measure sleeve=1 -e 0.1 -o x.obj
-ok "a measure without a value" refused "--measure takes NAME=VALUE" --own skirt --measure hem -e 0.1 -o x.obj
-ok "a measure that is no number" refused "the value is not a number" --own skirt --measure hem=1m -e 0.1 -o x.obj
-ok "a measure that is out of range" refused "skirt: the measure hem is 9; it has to be 0.5 to 4" --own skirt --measure hem=9 -e 0.1 -o x.obj
-ok "two patterns" refused "exclude each other" mine.json --own skirt -e 0.1 -o x.obj
-ok "a size of a file" refused "need --own" mine.json --size M -e 0.1 -o x.obj
-ok "pattern over the mesh" refused "mesh and pattern cannot be the same file" --own skirt -e 0.1 -o x.obj --write-pattern x.obj
-ok "pattern over the pattern" refused "would replace the pattern" mine.json --write-pattern mine.json
-ok "seams of nothing" refused "--seams needs --output" --own skirt --write-pattern y.json --seams x.obj
+ok "no such body" refuses "none.obj: cannot be opened" run --own skirt -e 0.05 -o x.obj --body none.obj
+ok "a body without a mesh" refuses "--body needs --output" run --own skirt --write-pattern x.json --body box.obj
+ok "no such garment" refuses "there is no own garment \`kilt'; there are tshirt, trousers, skirt" run --own kilt -e 0.1 -o x.obj
+ok "no such size" refuses "--size takes one of XS, S, M, L, XL" run --own skirt --size 42 -e 0.1 -o x.obj
+ok "no such measure" refuses "a skirt has no such measure" run --own skirt --measure sleeve=1 -e 0.1 -o x.obj
+ok "a measure without a value" refuses "--measure takes NAME=VALUE" run --own skirt --measure hem -e 0.1 -o x.obj
+ok "a measure that is no number" refuses "the value is not a number" run --own skirt --measure hem=1m -e 0.1 -o x.obj
+ok "a measure that is out of range" refuses "skirt: the measure hem is 9; it has to be 0.5 to 4" run --own skirt --measure hem=9 -e 0.1 -o x.obj
+ok "two patterns" refuses "exclude each other" run mine.json --own skirt -e 0.1 -o x.obj
+ok "a size of a file" refuses "need --own" run mine.json --size M -e 0.1 -o x.obj
+ok "pattern over the mesh" refuses "mesh and pattern cannot be the same file" run --own skirt -e 0.1 -o x.obj --write-pattern x.obj
+ok "pattern over the pattern" refuses "would replace the pattern" run mine.json --write-pattern mine.json
+ok "seams of nothing" refuses "--seams needs --output" run --own skirt --write-pattern y.json --seams x.obj
 
 # ---- Patterns that cannot be sewn: tests/cloth/scene/sentences.txt has them all
 
 sed 's/\[1, 2\]/[3, 2]/' "$patterns/dart.json" > bad.json
-ok "a pattern that cannot be sewn" refused "bad.json: panel 'back' is no closed loop: edge 0 ends at vertex 1, edge 1 begins at vertex 3" bad.json -e 0.05 -o x.obj
+ok "a pattern that cannot be sewn" refuses "bad.json: panel 'back' is no closed loop: edge 0 ends at vertex 1, edge 1 begins at vertex 3" run bad.json -e 0.05 -o x.obj
 
-ok "edges too short to be had" refused "edges of 1e-06 m give about 2e+11 vertices; up to 134217728 can be had" "$patterns/dart.json" --edge 1e-6 -o x.obj
+ok "edges too short to be had" refuses "edges of 1e-06 m give about 2e+11 vertices; up to 134217728 can be had" run "$patterns/dart.json" --edge 1e-6 -o x.obj
 short_edges() { # by the scene, whose key is named
     printf 'schema: 1\ncloths:\n  - mesh: {pattern: {garment: tshirt, edge: 1e-6}}\n    material: m\nmaterials: {m: {density: 0.2, stretch: 100}}\ntime: {h: 0.001, end: 0.001}\n' > short.yaml
     status=0

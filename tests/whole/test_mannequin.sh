@@ -54,32 +54,24 @@ walk_is_written() { # and begins as the mesh is
     grep '^v ' walk.obj | paste -d ' ' - begin | awk '{ for (i = 2; i <= 4; i++) if (($i - $(i + 3)) ^ 2 > 1e-12) bad = 1 } END { exit bad || NR < 5000 }'
 }
 ok "--walk, --fps" walk_is_written
-refused() { # SENTENCE ARGUMENT...: exit status 2, and one line that has the sentence
-    sentence=$1
-    shift
-    prints run "$@"
-    got=$?
-    cat complained
-    test $got = 2 && grep -qF -e "$sentence" complained
-}
-ok "no output" refused "say where the mesh goes"
-ok "an output without a name" refused "--output takes the name of a file" -o ''
-ok "no folder" refused "cannot write" -o none/x.obj
-ok "an argument" refused "nothing is read: \`x' is one too many" x
-ok "no height" refused "--height takes a length above 0" --height 0 -o x.obj
-ok "too high" refused "height is 9 m; figures have 1 to 2.3 m" --height 9 -o x.obj
-ok "no edge" refused "--edge takes a length above 0" -e much -o x.obj
-ok "edges that are too long" refused "edge is 0.1 m; a figure of 1.75 m has 0.008 to 0.025 m" -e 0.1 -o x.obj
-ok "a walk that takes no time" refused "--walk takes seconds above 0" --walk 0 -o x.obj
-ok "no rate" refused "--fps takes a rate above 0" --walk 1 --fps x -o x.obj
-ok "a rate of nothing" refused "--fps is of a walk" --fps 25 -o x.obj
-ok "a walk that is too long" refused "a walk has fewer than 100000 frames, not 1e+06" --walk 1e5 --fps 10 -o x.obj
-ok "a measure without a girth" refused "--measure takes a name and a girth, NAME=METRES" -m chest -o x.obj
-ok "no such measure" refused "there is no measure \`nose'" -m nose=0.1 -o x.obj
-ok "a measure twice" refused "the measure chest is given twice" -m chest=1 -m chest=1.1 -o x.obj
-ok "a measure that is none" refused "the measure chest takes a length above 0" -m chest=wide -o x.obj
-ok "a girth out of range" refused "chest is 3 m; a figure of 1.75 m has 0.82 to 1.28 m" -m chest=3 -o x.obj
-ok "girths that do not go together" refused "a hip of 0.85 m does not go with a thigh of 0.57 m" -m hip=0.85 -o x.obj
+ok "no output" refuses "say where the mesh goes" run
+ok "an output without a name" refuses "--output takes the name of a file" run -o ''
+ok "no folder" refuses "cannot write" run -o none/x.obj
+ok "an argument" refuses "nothing is read: \`x' is one too many" run x
+ok "no height" refuses "--height takes a length above 0" run --height 0 -o x.obj
+ok "too high" refuses "height is 9 m; figures have 1 to 2.3 m" run --height 9 -o x.obj
+ok "no edge" refuses "--edge takes a length above 0" run -e much -o x.obj
+ok "edges that are too long" refuses "edge is 0.1 m; a figure of 1.75 m has 0.008 to 0.025 m" run -e 0.1 -o x.obj
+ok "a walk that takes no time" refuses "--walk takes seconds above 0" run --walk 0 -o x.obj
+ok "no rate" refuses "--fps takes a rate above 0" run --walk 1 --fps x -o x.obj
+ok "a rate of nothing" refuses "--fps is of a walk" run --fps 25 -o x.obj
+ok "a walk that is too long" refuses "a walk has fewer than 100000 frames, not 1e+06" run --walk 1e5 --fps 10 -o x.obj
+ok "a measure without a girth" refuses "--measure takes a name and a girth, NAME=METRES" run -m chest -o x.obj
+ok "no such measure" refuses "there is no measure \`nose'" run -m nose=0.1 -o x.obj
+ok "a measure twice" refuses "the measure chest is given twice" run -m chest=1 -m chest=1.1 -o x.obj
+ok "a measure that is none" refuses "the measure chest takes a length above 0" run -m chest=wide -o x.obj
+ok "a girth out of range" refuses "chest is 3 m; a figure of 1.75 m has 0.82 to 1.28 m" run -m chest=3 -o x.obj
+ok "girths that do not go together" refuses "a hip of 0.85 m does not go with a thigh of 0.57 m" run -m hip=0.85 -o x.obj
 
 # ---- Bits, the same with any compiler and optimisation
 

@@ -2,7 +2,6 @@
  */
 #include "cloth/app/run/phases.h"
 
-#include "cloth/app/run/phases_check.h"
 #include "cloth/base/memory.h"
 #include "cloth/base/sets.h"
 

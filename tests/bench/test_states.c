@@ -67,23 +67,21 @@ UNIT_TEST(the_step_would_be_halved)
 UNIT_TEST(the_step_is_whole)
 {
     UNIT_OWNED(states_plan_free) struct states_plan plan;
-    struct solve_system system = {0};
+    UNIT_OWNED(solve_system_free) struct solve_system system = {0};
     plan_hard(&plan);
     ck_assert_msg(!cg_make_system(&plan, &request, &system), "%s", serve_failure());
     ck_assert_double_eq_tol(system.h, 0.02, 1e-12);
-    solve_system_free(&system);
 }
 
 /* What is no number cannot be a step. */
 UNIT_TEST(a_step_that_fails_is_told)
 {
     UNIT_OWNED(states_plan_free) struct states_plan plan;
-    struct solve_system system = {0};
+    UNIT_OWNED(solve_system_free) struct solve_system system = {0};
     plan_hard(&plan);
     plan.model.cloths->start[3] = 1e200;
     ck_assert_int_ne(cg_make_system(&plan, &request, &system), 0);
     ck_assert_str_ne(serve_failure(), "");
-    solve_system_free(&system);
 }
 
 UNIT_TEST(another_step_is_refused)
@@ -124,15 +122,12 @@ static bool start_alike(const struct state *a, const struct state *b)
 /* Where a motion ended is not forgotten when another one runs. */
 UNIT_TEST(states_of_a_motion_start_alike)
 {
-    struct state first, other, second;
+    UNIT_OWNED(state_free) struct state first, other, second;
     make(&first, "hanging_h1");
     make(&other, "crumpled_h1");
     make(&second, "hanging_h8_bend");
     ck_assert(start_alike(&first, &second));
     ck_assert(!start_alike(&first, &other));
-    state_free(&first);
-    state_free(&other);
-    state_free(&second);
 }
 
 /* ---- The search for a count ---- */

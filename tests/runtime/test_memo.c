@@ -14,9 +14,7 @@
 
 static uint64_t run_rounds(const duite_options *options)
 {
-    struct repeated program;
-
-    repeated_start(&program, options);
+    struct repeated program = repeated_start(options);
     for (int i = 0; i < ROUNDS; i++)
         repeated_round(&program);
     return repeated_stop(&program);
@@ -111,9 +109,7 @@ UNIT_TEST(anything_else_ends_it)
 
     for (int what = 0; what < 9; what++)
         for (options.window = 0; options.window < 3; options.window += 2) {
-            struct repeated program;
-
-            repeated_start(&program, &options);
+            struct repeated program = repeated_start(&options);
             for (int i = 0; i < 3 * ROUNDS; i++) {
                 for (int k = 0; k < OBJECTS; k++) {
                     if (i % ROUNDS == 40 && k == 5)
@@ -130,9 +126,8 @@ UNIT_TEST(anything_else_ends_it)
 static void ask_after_rounds(const duite_options *options)
 {
     const int half = OBJECTS / 2;
-    struct repeated program;
 
-    repeated_start(&program, options);
+    struct repeated program = repeated_start(options);
     for (int turn = 0; turn < 3; turn++) {
         repeated_round(&program);
         repeated_expect(&program, 0);
@@ -161,9 +156,8 @@ UNIT_TEST(tasks_that_wait_come_after_rounds)
 static void fail_at(int memo, int fails_at, char *message, size_t size)
 {
     const duite_options options = repeated_options(memo);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int i = 0; i < ROUNDS * OBJECTS; i++)
         repeated_fork(&program, &MIX, i % OBJECTS, (i + 3) % OBJECTS, i == fails_at ? 17 : 0);
     ck_assert_int_eq(duite_wait(program.rt), 17);
@@ -192,10 +186,9 @@ static void end_early(int forks, int fails_at)
 {
     const duite_options options = repeated_options(ALWAYS);
     int poisoned[OBJECTS] = {0};
-    struct repeated program;
     uint32_t value;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int i = 0; i < forks; i++) {
         const int to = i % OBJECTS, from = (i + 3) % OBJECTS;
         const struct repeated_argument args = {.number = program.forks++,
@@ -232,9 +225,7 @@ UNIT_TEST(short_rounds_are_recognised_at_once)
 
     options.threads = 1;
     for (int attempt = 0; attempt < 10 && most < 5 * OBJECTS; attempt++) {
-        struct repeated program;
-
-        repeated_start(&program, &options);
+        struct repeated program = repeated_start(&options);
         for (int i = 0; i < 5; i++) /* too few to be recognised */
             repeated_round(&program);
         ck_assert_int_eq(duite_wait(program.rt), DUITE_OK);
@@ -250,9 +241,8 @@ UNIT_TEST(short_rounds_are_recognised_at_once)
 UNIT_TEST(long_rounds_are_right)
 {
     const duite_options options = repeated_options(1);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int i = 0; i < 200; i++)
         for (int k = 0; k < 300; k++) {
             const int to = k * k / 3 % OBJECTS;
@@ -265,9 +255,8 @@ UNIT_TEST(long_rounds_are_right)
 UNIT_TEST(tasks_that_write_nothing_stay_forks)
 {
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int i = 0; i < ROUNDS * OBJECTS; i++)
         ck_assert_int_eq(DUITE_FORK(program.rt, &LOOK, NULL, program.object[0]), DUITE_OK);
     ck_assert_uint_eq(repeated_stop(&program), 0);
@@ -280,9 +269,8 @@ UNIT_TEST(rounds_begin_where_they_did)
     enum { LENGTH = 6 };
     static const int TO[LENGTH] = {0, 1, 0, 2, 1, 2};
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int begin = 0; begin < LENGTH; begin++) {
         for (int i = begin; i < begin + ROUNDS * LENGTH; i++)
             repeated_fork(&program, &MIX, TO[i % LENGTH], 3, 0);
@@ -296,10 +284,9 @@ UNIT_TEST(rounds_begin_where_they_did)
 UNIT_TEST(almost_a_round)
 {
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
     int kept = 0, n = 0;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     const struct plan_memo *memo = (const struct plan_memo *)program.rt->taker;
 
     for (; memo->state != MEMO_RECORD && n < ROUNDS * OBJECTS; n++)
@@ -319,9 +306,8 @@ UNIT_TEST(rounds_of_a_freed_object)
 {
     enum { FREED = 5 };
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int i = 0; i < ROUNDS; i++)
         repeated_round(&program);
     ck_assert_int_eq(duite_wait(program.rt), DUITE_OK); /* so that its plan is free */
@@ -354,9 +340,8 @@ UNIT_TEST(rounds_of_a_freed_object)
 UNIT_TEST(arguments_that_no_body_finds)
 {
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int i = 0; i < ROUNDS * OBJECTS; i++)
         ck_assert_int_eq(DUITE_FORK(program.rt, &HOLD, NULL, program.object[i % OBJECTS]),
                          DUITE_OK);

@@ -9,9 +9,7 @@ UNIT_TEST(rings_turn)
     duite_options options = repeated_options(ALWAYS);
 
     for (options.window = 0; options.window <= 1000; options.window += 1000) {
-        struct repeated program;
-
-        repeated_start(&program, &options);
+        struct repeated program = repeated_start(&options);
         for (int i = 0; i < (unit_quick() ? 4000 : 12000); i++)
             repeated_round(&program);
         ck_assert_uint_ge(repeated_stop(&program), 1000);
@@ -22,9 +20,8 @@ UNIT_TEST(rings_turn)
 UNIT_TEST(a_full_ring_is_left)
 {
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     atomic_store(&repeated_held_at, 300 * OBJECTS);
     for (int i = 0; i < 6000; i++)
         repeated_round(&program);
@@ -36,9 +33,8 @@ UNIT_TEST(a_full_ring_is_left)
 UNIT_TEST(forks_go_ahead)
 {
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int again = 0; again < 2; again++) {
         atomic_store(&repeated_held, 1);
         for (int i = 0; i < OBJECTS; i++)
@@ -56,9 +52,8 @@ UNIT_TEST(forks_go_ahead)
 UNIT_TEST(forks_are_not_held_back)
 {
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int i = 0; i < ROUNDS; i++)
         for (int k = 0; k < OBJECTS; k++) {
             repeated_fork(&program, &MIX, k, (k + 3) % OBJECTS, 0);
@@ -72,9 +67,8 @@ UNIT_TEST(forks_are_not_held_back)
 UNIT_TEST(rounds_take_turns)
 {
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int turn = 0; turn < 3; turn++)
         for (int kind = 1; kind < 13; kind++)
             for (int i = 0; i < ROUNDS; i++)

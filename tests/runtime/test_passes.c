@@ -9,12 +9,11 @@
 static void lowered(const char *objects, const char *forks, uint32_t flag, const char *expected)
 {
     struct rounds_made made;
-    struct plan_round round = {0};
+    UNIT_OWNED(plan_round_free) struct plan_round round = {0};
     rounds_make(&made, objects, forks);
     made.source.flag = flag;
     ck_assert(plan_lower(&round, &made.source));
     ck_assert_str_eq(rounds_nodes(&round), expected);
-    plan_round_free(&round);
 }
 
 UNIT_TEST(lower_forks)
@@ -47,12 +46,11 @@ UNIT_TEST(lower_trees)
 static void edged(const char *objects, const char *forks, uint32_t flag, const char *expected)
 {
     struct rounds_made made;
-    struct plan_round round = {0};
+    UNIT_OWNED(plan_round_free) struct plan_round round = {0};
     rounds_make(&made, objects, forks);
     made.source.flag = flag;
     ck_assert(plan_lower(&round, &made.source) && plan_edges(&round));
     ck_assert_str_eq(rounds_edges(&round), expected);
-    plan_round_free(&round);
 }
 
 UNIT_TEST(edges_within_and_between)
@@ -98,18 +96,16 @@ static void assigned_free(struct assigned *s)
 
 static void part_is(const struct assigned *s, int rank, const char *expected)
 {
-    struct plan_messages messages;
-    struct plan_round part = {0};
+    UNIT_OWNED(plan_messages_free) struct plan_messages messages;
+    UNIT_OWNED(plan_round_free) struct plan_round part = {0};
     ck_assert(plan_messages_find(&messages, &s->assignment, rank) && plan_part(&part, &messages));
     ck_assert_str_eq(rounds_nodes(&part), expected);
-    plan_round_free(&part);
-    plan_messages_free(&messages);
 }
 
 /* A halo: each rank reads what the other one wrote in the round before. Version 2 and 3 leave. */
 UNIT_TEST(exchange)
 {
-    struct assigned s;
+    UNIT_OWNED(assigned_free) struct assigned s;
     assign(&s, "8 8 8 8", "r0 r1 w2; r0 r1 w3; r2 w0; r3 w1;", (const int[]){0, 1, 0, 1}, 2);
     ck_assert_str_eq(rounds_ranks(&s.assignment), "0 1 0 1");
     ck_assert_str_eq(rounds_needs(&s.assignment), "0:01 1:01 4:0 5:1");
@@ -117,18 +113,16 @@ UNIT_TEST(exchange)
     ck_assert_str_eq(rounds_messages(&s.messages), "0>1 in 0: v0; 1>0 in 0: v1");
     part_is(&s, 0, "receive from 1 in 0(w4) send to 1 in 0(r0) task(r0 r4 w2) task(r2 w0)");
     part_is(&s, 1, "receive from 0 in 0(w4) send to 0 in 0(r1) task(r4 r1 w3) task(r3 w1)");
-    assigned_free(&s);
 }
 
 /* A replicated task and a set run where they are read; one that nobody reads at home, or, if it is
  * overwritten, nowhere. */
 UNIT_TEST(assign_where_read)
 {
-    struct assigned s;
+    UNIT_OWNED(assigned_free) struct assigned s;
     assign(&s, "8 8 8", "R w0; r0 w1; @2 r0; =2; =2;", (const int[]){0, 1, 1}, 3);
     ck_assert_str_eq(rounds_ranks(&s.assignment), "12 1 2 - 1");
     ck_assert_str_eq(rounds_messages(&s.messages), "");
-    assigned_free(&s);
 }
 
 /* A small sum is added by all who read it, a large one at the home. */
@@ -155,7 +149,7 @@ UNIT_TEST(assign_sums)
  */
 UNIT_TEST(sums_by_rounds)
 {
-    struct assigned s;
+    UNIT_OWNED(assigned_free) struct assigned s;
     assign(&s, "8 8 8 8 8 8",
            "r1 c0; r2 c0; r3 c0; r4 c0; r5 c0; r0 u1; r0 u2; r0 u3; r0 u4; r0 u5;",
            (const int[]){0, 0, 1, 2, 3, 4}, 5);
@@ -169,7 +163,6 @@ UNIT_TEST(sums_by_rounds)
             "receive from 1 in 0(w6) receive from 2 in 1(w7) receive from 4 in 2(w8) "
             "task(r1 w9) send to 4 in 0(r9) partial(u9 u6 | 0+1) send to 3 in 1(r9) "
             "partial(u9 u7 | 0+1) send to 1 in 2(r9) sum(u0 u9 u8 | 1+2) task(r0 u1)");
-    assigned_free(&s);
 }
 
 /* What one of five ranks makes and all read goes on from those that have it; the value of the round
@@ -212,7 +205,7 @@ UNIT_TEST(values_by_rounds_of_many)
 
 UNIT_TEST(part_of_pieces)
 {
-    struct assigned s;
+    UNIT_OWNED(assigned_free) struct assigned s;
     assign(&s, "4096 8 8", "r1 c0; r1 c0; r2 c0; r2 c0; r2 c0; r0 u1;", (const int[]){0, 0, 1}, 2);
     ck_assert_uint_eq(s.messages.n_pieces, 3);
     ck_assert_str_eq(rounds_messages(&s.messages), "1>0 in 0: p1 p2");
@@ -221,7 +214,6 @@ UNIT_TEST(part_of_pieces)
     part_is(&s, 0,
             "receive from 1 in 0(w3 w4) task(r1 w5) task(r1 w6) partial(u5 u6 | 0+1) "
             "sum(u0 u5 u3 u4 | 1+2 1+3) task(r0 u1)");
-    assigned_free(&s);
 }
 
 /* What is overwritten before its message can go is copied aside; what is written on from a message
@@ -242,9 +234,8 @@ UNIT_TEST(part_copies)
 /* What waits for a message goes in a later phase, so that no two messages wait for each other. */
 UNIT_TEST(phases)
 {
-    struct assigned s;
+    UNIT_OWNED(assigned_free) struct assigned s;
     assign(&s, "8 8 8", "w0; @1 r0 w1; @2 r1 w2; @0 r2;", (const int[]){0, 1, 2}, 3);
     ck_assert_str_eq(rounds_phases(&s.messages), "0 1 2 3");
     ck_assert_str_eq(rounds_messages(&s.messages), "0>1 in 0: v3; 1>2 in 1: v4; 2>0 in 2: v5");
-    assigned_free(&s);
 }

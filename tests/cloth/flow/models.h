@@ -70,4 +70,13 @@ void record_mpi(int *rank, int *ranks);
 double record_at(const struct record *record, size_t frame, size_t vertex, size_t c);
 void record_free(struct record *record);
 
+/* In a unit test: `setup`, which the call makes; with a `record` of its run to come. Both are freed
+ * at the end of the scope. */
+#define SETUP(CALL)                                                                                \
+    UNIT_OWNED(setup_free) struct setup setup;                                                     \
+    CALL
+#define TRIAL(CALL)                                                                                \
+    UNIT_OWNED(record_free) struct record record = {0};                                            \
+    SETUP(CALL)
+
 #endif

@@ -24,9 +24,7 @@ static void begins(const struct record *record, const char *text)
 
 UNIT_TEST(divergence_names_step_block_and_frame)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 10);
+    TRIAL(setup_sheet(&setup, 10));
     setup.model.integrator = MODEL_EXPLICIT_EULER;
     setup.model.h = 0.1;
     setup.model.end = 100;
@@ -49,9 +47,8 @@ UNIT_TEST(divergence_names_step_block_and_frame)
 UNIT_TEST(a_run_that_leaves_the_world)
 {
     for (int explicit = 0; explicit < 2; explicit ++) {
-        UNIT_OWNED(setup_free) struct setup setup;
         UNIT_OWNED(record_free) struct record record = {0};
-        setup_sheet(&setup, 4);
+        SETUP(setup_sheet(&setup, 4));
         setup.model.integrator = explicit ? MODEL_EXPLICIT_EULER : MODEL_IMPLICIT_EULER;
         setup.model.gravity[1] = 0;
         setup.model.h = 1;
@@ -67,9 +64,7 @@ UNIT_TEST(a_run_that_leaves_the_world)
 /* The square of the right-hand side is infinite: no residual may pass for small. */
 UNIT_TEST(a_load_beyond_all_measure)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 4);
+    TRIAL(setup_sheet(&setup, 4));
     setup_load(&setup, 3, 1e200, 0, 0);
     record_run(&record, &setup.model);
     says(&record, CLOTH_E_RUN, "matrix is not positive definite");
@@ -78,9 +73,7 @@ UNIT_TEST(a_load_beyond_all_measure)
 
 UNIT_TEST(a_solve_that_does_not_converge)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 10);
+    TRIAL(setup_sheet(&setup, 10));
     setup.model.max_iterations = 2;
     setup.model.tolerance = 0.01;
     setup_pin(&setup, 1, (const uint32_t[]){0});
@@ -92,10 +85,9 @@ UNIT_TEST(a_solve_that_does_not_converge)
 
 UNIT_TEST(a_frame_that_cannot_be_written)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
     int rank, ranks;
     UNIT_OWNED(record_free) struct record record = {.break_frame = 4};
-    setup_sheet(&setup, 6);
+    SETUP(setup_sheet(&setup, 6));
     setup.model.end = 1;
     record_run(&record, &setup.model);
     begins(&record, "the disk is full: ");
@@ -109,9 +101,7 @@ UNIT_TEST(a_frame_that_cannot_be_written)
 
 UNIT_TEST(pins_and_loads_outside)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 3);
+    TRIAL(setup_sheet(&setup, 3));
     setup_pin(&setup, 1, (const uint32_t[]){9});
     setup.pin.pick.place = (char[]){"a.yaml:12:5"};
     record_run(&record, &setup.model);
@@ -141,9 +131,8 @@ UNIT_TEST(pins_and_loads_outside)
 
 UNIT_TEST(pins_by_place)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
     struct record record = {0};
-    setup_sheet(&setup, 3);
+    SETUP(setup_sheet(&setup, 3));
     setup.cloth.n_pins = 2;
     struct model_pin pins[2] = {
         {.pick = {.kind = MODEL_PICK_NEAREST, .point = {-0.4, 2, 0.4}}},
@@ -167,9 +156,7 @@ UNIT_TEST(pins_by_place)
 /* It lifts the cloth there in one step. */
 UNIT_TEST(a_plane_beyond_the_world)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 3);
+    TRIAL(setup_sheet(&setup, 3));
     setup.plane = PLANE(0, 1e200, 0, 0, 1, 0);
     setup.model.n_obstacles = 1;
     record_run(&record, &setup.model);
@@ -179,9 +166,7 @@ UNIT_TEST(a_plane_beyond_the_world)
 /* Scenes never ask for it. */
 UNIT_TEST(bending_that_does_not_suit)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 3);
+    TRIAL(setup_sheet(&setup, 3));
     setup.material.bending = MODEL_QUADRATIC;
     record_run(&record, &setup.model);
     says(&record, CLOTH_E_INPUT, "a matrix of springs cannot hold hinges; ");
@@ -190,9 +175,7 @@ UNIT_TEST(bending_that_does_not_suit)
 /* Of a mesh that no file has. */
 UNIT_TEST(a_vertex_that_is_nowhere)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 3);
+    TRIAL(setup_sheet(&setup, 3));
     setup.cloth.mesh.position[3 * 7 + 1] = NAN;
     record_run(&record, &setup.model);
     says(&record, CLOTH_E_INPUT, "vertex 8 of cloth 'test' starts at (0, ");
@@ -200,10 +183,9 @@ UNIT_TEST(a_vertex_that_is_nowhere)
 
 UNIT_TEST(more_ranks_than_blocks)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
     struct cloth_error error = {0};
     struct flow *flow = NULL;
-    setup_sheet(&setup, 8);
+    SETUP(setup_sheet(&setup, 8));
     setup.model.grain = 30; /* 64 vertices, 3 blocks */
     ck_assert_int_eq(flow_prepare(&flow, &setup.model, 3, &error), 0);
     flow_free(flow);

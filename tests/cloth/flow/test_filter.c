@@ -51,9 +51,7 @@ UNIT_LOOP(a_program_filters, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 
 UNIT_TEST(a_filter_is_given_on_every_rank)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 8);
+    TRIAL(setup_sheet(&setup, 8));
     setup.model.own_filter = true;
     record_run(&record, &setup.model);
     ck_assert_int_eq(record.code, CLOTH_E_RUN);

@@ -28,9 +28,8 @@ static void setup_jerk(struct setup *setup)
  * step that was accepted last. */
 UNIT_LOOP(steps_that_are_fine, 0, MODEL_INTEGRATORS)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    struct record plain = {0}, halving = {0};
-    setup_sheet(&setup, 8);
+    UNIT_OWNED(record_free) struct record plain = {0}, halving = {0};
+    SETUP(setup_sheet(&setup, 8));
     setup_pin(&setup, 1, (const uint32_t[]){0});
     setup.model.integrator = (enum model_integrator)_i;
     setup.model.fps = 300;
@@ -47,8 +46,6 @@ UNIT_LOOP(steps_that_are_fine, 0, MODEL_INTEGRATORS)
     ck_assert_mem_eq(halving.time, plain.time, plain.frames * sizeof(double));
     ck_assert_mem_eq(halving.position, plain.position,
                      3 * plain.vertices * plain.frames * sizeof(double));
-    record_free(&plain);
-    record_free(&halving);
 }
 
 /* All steps are of the same length h / 2^k in the end, and the result is bit for bit that of a run
@@ -56,9 +53,8 @@ UNIT_LOOP(steps_that_are_fine, 0, MODEL_INTEGRATORS)
 UNIT_TEST(a_halved_run_is_one_with_a_smaller_h)
 {
     for (int i = 0; i <= MODEL_INTEGRATORS; i++) { /* the last: Newton steps */
-        UNIT_OWNED(setup_free) struct setup setup;
-        struct record halved = {0}, small = {0};
-        setup_sheet(&setup, 8);
+        UNIT_OWNED(record_free) struct record halved = {0}, small = {0};
+        SETUP(setup_sheet(&setup, 8));
         setup.cloth.velocity[0] = 0.5;
         setup_pin(&setup, 1, (const uint32_t[]){0});
         const bool newton = i == MODEL_INTEGRATORS;
@@ -82,8 +78,6 @@ UNIT_TEST(a_halved_run_is_one_with_a_smaller_h)
         ck_assert(halved.report.state_hash == small.report.state_hash);
         for (size_t c = 0; c < 3; c++)
             ck_assert_double_eq_tol(record_at(&halved, 1, 9, c), record_at(&small, 1, 9, c), 1e-5);
-        record_free(&halved);
-        record_free(&small);
     }
 }
 
@@ -97,9 +91,8 @@ static double distance(const struct record *a, const struct record *b)
  * run is nearer to one of short steps than one of long steps is. */
 UNIT_TEST(an_edge_that_is_jerked)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    struct record plain = {0}, halved = {0}, small = {0};
-    setup_jerk(&setup);
+    UNIT_OWNED(record_free) struct record plain = {0}, halved = {0}, small = {0};
+    SETUP(setup_jerk(&setup));
     setup.model.halving = false;
     runs(&plain, &setup.model);
     setup.model.halving = true;
@@ -114,17 +107,12 @@ UNIT_TEST(an_edge_that_is_jerked)
     ck_assert_uint_eq(plain.frames, small.frames);
     ck_assert_uint_eq(halved.frames, small.frames);
     ck_assert_double_lt(3 * distance(&halved, &small), distance(&plain, &small));
-    record_free(&plain);
-    record_free(&halved);
-    record_free(&small);
 }
 
 /* Frame k is shown after the step whose end is nearest to k / fps, whatever the steps are. */
 UNIT_TEST(frames_between_shorter_steps)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_jerk(&setup);
+    TRIAL(setup_jerk(&setup));
     setup.model.stretch_growth = 0.02;
     setup.model.fps = 23;
     runs(&record, &setup.model);
@@ -145,9 +133,7 @@ UNIT_TEST(frames_between_shorter_steps)
 /* The solve needs fewer iterations in a shorter step. */
 UNIT_TEST(a_solve_that_converges_in_a_shorter_step)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 10);
+    TRIAL(setup_sheet(&setup, 10));
     setup.model.h = 0.02;
     setup.model.end = 0.1;
     setup.model.fps = 50;
@@ -186,9 +172,7 @@ static void fails(struct record *record, const struct model *model, const char *
 /* At h / 1024 it stops, and says why. */
 UNIT_TEST(no_step_is_short_enough)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 4);
+    TRIAL(setup_sheet(&setup, 4));
     setup.model.halving = true;
     setup_load(&setup, 3, 1e200, 0, 0);
     fails(&record, &setup.model, "step 1: conjugate gradients broke down", "not positive definite");
@@ -218,9 +202,7 @@ UNIT_TEST(no_step_is_short_enough)
 /* Explicit Euler is unstable at this h; it goes on with shorter steps, however small. */
 UNIT_TEST(an_explicit_run_that_is_unstable)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 6);
+    TRIAL(setup_sheet(&setup, 6));
     setup.model.integrator = MODEL_EXPLICIT_EULER;
     setup.model.h = 0.05;
     setup.model.end = 0.5;
@@ -242,9 +224,8 @@ UNIT_TEST(bdf2_begins_anew_after_another_length)
     static const uint32_t edges[] = {0, 1, 2, 3};
     const double h = 0.01;
     double start[24] = {0};
-    UNIT_OWNED(setup_free) struct setup setup;
     UNIT_OWNED(record_free) struct record r = {0};
-    setup_weight(&setup);
+    SETUP(setup_weight(&setup));
     mesh_free(&setup.cloth.mesh);
     UNIT_FINE(mesh_inline(&setup.cloth.mesh, 4, vertices, 2, edges, 0, NULL, &error));
     for (int i = 0; i < 12; i++)
@@ -275,9 +256,8 @@ UNIT_TEST(bdf2_begins_anew_after_another_length)
 UNIT_TEST(the_largest_stretch_of_a_run)
 {
     for (int judged = 0; judged < 2; judged++) {
-        UNIT_OWNED(setup_free) struct setup setup;
         UNIT_OWNED(record_free) struct record record = {0};
-        setup_weight(&setup);
+        SETUP(setup_weight(&setup));
         setup.material.damping_stiffness = 0;
         setup.model.integrator = MODEL_VERLET;
         setup.model.stretch_limit = judged ? 1.1 : 0;

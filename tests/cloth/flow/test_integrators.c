@@ -41,9 +41,7 @@ static void run(struct record *record, struct setup *setup, const struct scheme 
 UNIT_LOOP(free_fall, 0, N_SCHEMES)
 {
     const struct scheme *scheme = SCHEMES + _i;
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 8);
+    TRIAL(setup_sheet(&setup, 8));
     setup.model.end = 0.48;
     setup.model.fps = 25;
     run(&record, &setup, scheme);
@@ -194,9 +192,8 @@ UNIT_LOOP(order, 0, unit_alone() ? N_SCHEMES : 0)
 UNIT_LOOP(blocks_make_no_difference, 0, unit_alone() ? N_SCHEMES : 0)
 {
     const struct scheme *scheme = SCHEMES + _i;
-    UNIT_OWNED(setup_free) struct setup setup;
-    struct record one = {0}, many = {0};
-    setup_sheet(&setup, 14);
+    UNIT_OWNED(record_free) struct record one = {0}, many = {0};
+    SETUP(setup_sheet(&setup, 14));
     setup.material.damping_stiffness = 0.001;
     setup.material.damping_mass = 0.5;
     setup.model.end = 0.1;
@@ -213,8 +210,6 @@ UNIT_LOOP(blocks_make_no_difference, 0, unit_alone() ? N_SCHEMES : 0)
             ck_assert_double_eq_tol(record_at(&many, 1, v, c), record_at(&one, 1, v, c), 1e-11);
     ck_assert_double_eq_tol(many.report.max_stretch, one.report.max_stretch, 1e-10);
     ck_assert_double_gt(one.report.max_stretch, 1.001);
-    record_free(&one);
-    record_free(&many);
 }
 
 /* The weight of setup_weight above a floor that its spring would go through: forces from before
@@ -222,9 +217,7 @@ UNIT_LOOP(blocks_make_no_difference, 0, unit_alone() ? N_SCHEMES : 0)
 UNIT_TEST(verlet_after_contact)
 {
     const double h = 0.01, floor = -1.02;
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_weight(&setup);
+    TRIAL(setup_weight(&setup));
     setup.material.damping_stiffness = 0;
     setup.material.damping_mass = 0.3;
     setup.model.n_obstacles = 1;
@@ -256,9 +249,7 @@ UNIT_TEST(verlet_after_contact)
 UNIT_LOOP(energies, 0, N_SCHEMES)
 {
     const double h = 1e-4, load = 0.3;
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_weight(&setup);
+    TRIAL(setup_weight(&setup));
     setup_load(&setup, 1, 0, load, 0);
     setup.cloth.velocity[1] = 0.7;
     setup.model.h = h;

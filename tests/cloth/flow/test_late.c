@@ -32,8 +32,7 @@ static uint64_t hash_of(const struct model *model, const char *balance)
 UNIT_LOOP(late_ranks_run_what_they_are_sent, 0, 2)
 {
     static const enum model_preconditioner KINDS[] = {MODEL_PLAIN, MODEL_COARSE};
-    UNIT_OWNED(setup_free) struct setup setup;
-    setup_sheet(&setup, 30);
+    SETUP(setup_sheet(&setup, 30));
     setup_pin(&setup, 2, (const uint32_t[]){0, 29});
     setup.model.preconditioner = KINDS[_i];
     const uint64_t hash = hash_of(&setup.model, "none");

@@ -83,8 +83,7 @@ UNIT_TEST(bound_of_a_chain)
  * below what the chain can do, here by its two-body vibrations. */
 UNIT_TEST(bound_of_a_sheet)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    setup_sheet(&setup, 12);
+    SETUP(setup_sheet(&setup, 12));
     const struct flow_limit limit = limit_of(&setup);
     const double inner = 0.2 / (11 * 11); /* kg; a vertex on a border has half of it */
     /* Along x: 2 springs of 50, 4 diagonals of 25 by half. */
@@ -142,10 +141,9 @@ UNIT_TEST(a_doubled_layer_has_a_scale_of_energy)
     struct model_weld weld = {.pairs = {.end = {{.cloth = 0, .n = 2, .vertices = names},
                                                 {.cloth = 1, .n = 2, .vertices = names}}},
                               .tolerance = 1e-6};
-    UNIT_OWNED(setup_free) struct setup setup;
     struct flow_source source;
     double release[2];
-    setup_sheet(&setup, 3);
+    SETUP(setup_sheet(&setup, 3));
     struct model_cloth cloths[2] = {setup.cloth, setup.cloth};
     UNIT_FINE(mesh_inline(&cloths[1].mesh, 2, cloths[0].mesh.position, 1, edge, 0, NULL, &error));
     cloths[1].mass_per_vertex = 1e-15;

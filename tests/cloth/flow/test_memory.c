@@ -67,8 +67,7 @@ static long prepare_all(const struct model *model)
 
 UNIT_TEST(each_fails_once_in_prepare)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    setup_sheet(&setup, 3);
+    SETUP(setup_sheet(&setup, 3));
     setup_pin(&setup, 1, (const uint32_t[]){0});
     ck_assert_int_gt(prepare_all(&setup.model), 20);
 }
@@ -152,8 +151,7 @@ static void runs(const struct setup *setup)
 UNIT_TEST(each_fails_once_in_a_run)
 {
     int rank, ranks;
-    UNIT_OWNED(setup_free) struct setup setup;
-    setup_sheet(&setup, 6);
+    SETUP(setup_sheet(&setup, 6));
     record_mpi(&rank, &ranks);
     for (int where = 0; where < ranks && where < 2; where++) {
         for (int i = 0; i < (where ? OF_A_RANK : OF_RANK_0); i++) {
@@ -168,8 +166,7 @@ UNIT_TEST(each_fails_once_in_a_run)
 /* Rank 0 has no room to gather what tables are made of. */
 UNIT_TEST(each_fails_once_in_distributing)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    setup_sheet(&setup, 6);
+    SETUP(setup_sheet(&setup, 6));
     for (next_sides = 0; next_sides < 2; next_sides++)
         ends_everywhere(&setup, 0);
     next_sides = -1;

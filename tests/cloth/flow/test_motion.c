@@ -21,10 +21,8 @@ static void momentum(const struct record *r, size_t step, const double *mass, do
 UNIT_TEST(momentum_changes_by_forces_alone)
 {
     const double h = 0.01;
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
     double mass[100] = {0}, before[3] = {0}, max = 0;
-    setup_sheet(&setup, 10);
+    TRIAL(setup_sheet(&setup, 10));
     setup.model.h = h;
     setup.model.end = 20 * h;
     setup.model.fps = 1 / h;
@@ -51,9 +49,7 @@ UNIT_TEST(momentum_changes_by_forces_alone)
 
 UNIT_TEST(no_momentum_is_lost_by_an_exact_solve)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 10);
+    TRIAL(setup_sheet(&setup, 10));
     setup.model.tolerance = 1e-13;
     setup_load(&setup, 33, 0.02, -0.05, 0.03);
     record_fine(&record, &setup.model);
@@ -64,9 +60,8 @@ UNIT_TEST(no_momentum_is_lost_by_an_exact_solve)
  * to pins. */
 UNIT_LOOP(blocks_lose_the_same_momentum, 0, unit_alone())
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    struct record one = {0}, many = {0};
-    setup_sheet(&setup, 14);
+    UNIT_OWNED(record_free) struct record one = {0}, many = {0};
+    SETUP(setup_sheet(&setup, 14));
     setup.model.tolerance = 0.3;
     setup_pin(&setup, 4, (const uint32_t[]){0, 13, 75, 100});
     setup.model.grain = 1000;
@@ -76,16 +71,12 @@ UNIT_LOOP(blocks_lose_the_same_momentum, 0, unit_alone())
     ck_assert_msg(one.code == 0 && many.code == 0, "%s%s", one.error.text, many.error.text);
     ck_assert_double_gt(one.report.momentum_lost, 1e-7);
     ck_assert_double_eq_tol(many.report.momentum_lost, one.report.momentum_lost, 1e-14);
-    record_free(&one);
-    record_free(&many);
 }
 
 UNIT_TEST(a_sheet_lands_on_the_floor)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
     double lowest = 1;
-    setup_sheet(&setup, 8);
+    TRIAL(setup_sheet(&setup, 8));
     setup.model.n_obstacles = 1;
     setup.plane = PLANE(0, -0.05, 0, 0, 1, 0);
     setup.model.end = 0.2;

@@ -62,9 +62,8 @@ static double missing_euler(const struct record *r, double h)
 UNIT_TEST(euler_solves_its_equations)
 {
     const double h = 0.02;
-    UNIT_OWNED(setup_free) struct setup setup;
-    struct record one = {0}, many = {0};
-    chain(&setup, h, 50);
+    UNIT_OWNED(record_free) struct record one = {0}, many = {0};
+    SETUP(chain(&setup, h, 50));
     record_fine(&one, &setup.model);
     setup.model.newton_steps = 20;
     record_fine(&many, &setup.model);
@@ -78,18 +77,15 @@ UNIT_TEST(euler_solves_its_equations)
     ck_assert_uint_eq(many.report.newton_unconverged, 0);
     ck_assert_uint_gt(many.report.newton_steps, 100);
     ck_assert_double_lt(many.report.momentum_lost, 1e-9);
-    record_free(&one);
-    record_free(&many);
 }
 
 /* BDF2 of positions, where v by them is (3 x2 - 4 x1 + x0) / 2 h: from its second step on. */
 UNIT_TEST(bdf2_solves_its_equations)
 {
     const double h = 0.02;
-    UNIT_OWNED(setup_free) struct setup setup;
     UNIT_OWNED(record_free) struct record r = {0};
     double max = 0;
-    chain(&setup, h, 50);
+    SETUP(chain(&setup, h, 50));
     setup.model.integrator = MODEL_BDF2;
     setup.model.newton_steps = 20;
     record_fine(&r, &setup.model);
@@ -112,8 +108,7 @@ UNIT_TEST(bdf2_solves_its_equations)
 static void end_of(struct record *r, enum model_integrator integrator, uint32_t newton, double h,
                    double x[2])
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    chain(&setup, h, (size_t)(0.24 / h + 0.5));
+    SETUP(chain(&setup, h, (size_t)(0.24 / h + 0.5)));
     setup.model.integrator = integrator;
     setup.model.energy_growth = 0.005; /* of no effect in steps so short */
     setup.model.newton_steps = newton;
@@ -155,9 +150,8 @@ UNIT_TEST(line_search)
     const double h = 0.2, half = 0.5, k = 3e5, m = 0.02;
     static const double vertices[] = {-0.5, 0, 0, 0, 0, 0, 0.5, 0, 0};
     static const uint32_t edges[] = {0, 1, 1, 2};
-    UNIT_OWNED(setup_free) struct setup setup;
     UNIT_OWNED(record_free) struct record r = {0};
-    chain(&setup, h, 1);
+    SETUP(chain(&setup, h, 1));
     mesh_free(&setup.cloth.mesh);
     UNIT_FINE(mesh_inline(&setup.cloth.mesh, 3, vertices, 2, edges, 0, NULL, &error));
     setup_pin(&setup, 2, (const uint32_t[]){0, 2});
@@ -186,10 +180,9 @@ UNIT_TEST(line_search)
 UNIT_TEST(bdf2_after_contact)
 {
     const double h = 0.01, floor = -0.1;
-    UNIT_OWNED(setup_free) struct setup setup;
     UNIT_OWNED(record_free) struct record r = {0};
     double y = 0, v = 0, last_y = 0, last_v = 0;
-    setup_weight(&setup);
+    SETUP(setup_weight(&setup));
     setup.cloth.n_pins = 0;
     setup.material.ea = 0;
     setup.material.damping_stiffness = 0;
@@ -255,9 +248,8 @@ UNIT_LOOP(energy_is_not_gained, 0, 8)
                 {"BDF2, converged", MODEL_BDF2, 50, 0.001, 0.01, 0},
                 {"BDF2, one Newton step", MODEL_BDF2, 1, 0.02, 0.01, 2},
                 {"BDF2, converged", MODEL_BDF2, 50, 0.02, 0.01, 1}};
-    UNIT_OWNED(setup_free) struct setup setup;
     UNIT_OWNED(record_free) struct record r = {0};
-    chain(&setup, rows[_i].h, (size_t)(1 / rows[_i].h + 0.5));
+    SETUP(chain(&setup, rows[_i].h, (size_t)(1 / rows[_i].h + 0.5)));
     setup.model.integrator = rows[_i].integrator;
     setup.model.newton_steps = rows[_i].newton;
     setup.model.energy_steps = true;
@@ -304,9 +296,8 @@ UNIT_LOOP(energy_wavers_in_a_band, 0, 2)
 
 UNIT_TEST(energies_are_reported_when_asked)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
     UNIT_OWNED(record_free) struct record r = {0};
-    chain(&setup, 0.01, 3);
+    SETUP(chain(&setup, 0.01, 3));
     record_fine(&r, &setup.model);
     ck_assert_double_nan(r.report.energy_lowest);
     ck_assert_double_nan(r.report.energy_highest);

@@ -11,9 +11,7 @@
 /* Frame k after the step nearest to k / fps; h and fps that do not divide each other. */
 UNIT_TEST(frames_at_their_steps)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 5);
+    TRIAL(setup_sheet(&setup, 5));
     setup.model.integrator = MODEL_EXPLICIT_EULER;
     setup.model.h = 0.003;
     setup.model.end = 0.1; /* 33.3 steps: 33 are made */
@@ -41,9 +39,7 @@ UNIT_TEST(hash_of_positions_then_velocities)
 {
     static const double vertices[5][3] = {{0, 0, 0.5}, {9, 8, 7}, {1, 0, 0}, {0, 0, 1}, {1, 2, 1}};
     static const uint32_t triangles[] = {0, 2, 3, 2, 4, 3};
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 2);
+    TRIAL(setup_sheet(&setup, 2));
     setup_free(&setup);
     UNIT_FINE(mesh_inline(&setup.cloth.mesh, 5, vertices[0], 0, NULL, 2, triangles, &error));
     setup.model.grain = 2;
@@ -65,9 +61,7 @@ UNIT_TEST(hash_of_positions_then_velocities)
 
 UNIT_LOOP(count_makes_exactly_so_many_iterations, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 10);
+    TRIAL(setup_sheet(&setup, 10));
     setup.model.preconditioner = (enum model_preconditioner)_i;
     setup.model.stop = MODEL_STOP_COUNT;
     setup.model.max_iterations = 7;
@@ -81,9 +75,8 @@ UNIT_LOOP(count_makes_exactly_so_many_iterations, MODEL_PLAIN, MODEL_IC0_COARSE 
 UNIT_TEST(nothing_to_do)
 {
     for (int count = 0; count < 2; count++) {
-        UNIT_OWNED(setup_free) struct setup setup;
         UNIT_OWNED(record_free) struct record record = {0};
-        setup_sheet(&setup, 6);
+        SETUP(setup_sheet(&setup, 6));
         setup.model.gravity[1] = 0;
         if (count) {
             setup.model.stop = MODEL_STOP_COUNT;
@@ -99,10 +92,9 @@ UNIT_TEST(nothing_to_do)
 /* From rest b = h (m g + load): an absolute tolerance of 0.01 |b| is a relative one of 0.01. */
 UNIT_TEST(absolute_tolerance)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
     struct record record[2] = {{0}};
     double mass[36] = {0}, square = 0;
-    setup_sheet(&setup, 6);
+    SETUP(setup_sheet(&setup, 6));
     setup.model.end = setup.model.h;
     setup_masses(&setup, mass);
     setup_load(&setup, 8, 0.04, 0, 0);
@@ -125,9 +117,8 @@ UNIT_TEST(absolute_tolerance)
  * begun by then. Frames are 1000 steps apart: the last one shows where the run stops. */
 UNIT_TEST(stop_finishes_the_step)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
     UNIT_OWNED(record_free) struct record record = {.stop_after = 1};
-    setup_sheet(&setup, 6);
+    SETUP(setup_sheet(&setup, 6));
     setup.model.fps = 1;
     setup.model.end = 1;
     record_fine(&record, &setup.model);
@@ -143,9 +134,7 @@ UNIT_TEST(unused_vertices_stay)
 {
     static const double vertices[] = {0, 0, 0, 9, 8, 7, 1, 0, 0, 0, 0, 1};
     static const uint32_t triangle[] = {0, 2, 3};
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 2);
+    TRIAL(setup_sheet(&setup, 2));
     setup_free(&setup);
     setup.model.grain = 2;
     UNIT_FINE(mesh_inline(&setup.cloth.mesh, 4, vertices, 0, NULL, 1, triangle, &error));
@@ -161,7 +150,7 @@ UNIT_TEST(unused_vertices_stay)
  * other. */
 UNIT_TEST(two_cloths)
 {
-    struct setup setup, other;
+    UNIT_OWNED(setup_free) struct setup setup, other;
     UNIT_OWNED(record_free) struct record record = {0};
     setup_sheet(&setup, 5);
     setup_sheet(&other, 4);
@@ -179,17 +168,14 @@ UNIT_TEST(two_cloths)
                                 v < 25 ? 0 : 0.02, 1e-12);
         ck_assert_double_eq_tol(record_at(&record, 10, v, 1), -drop, 1e-12);
     }
-    setup_free(&setup);
-    setup_free(&other);
 }
 
 /* The same bits for any threads and schedulers; other bits where something else is computed. */
 UNIT_TEST(threads_and_schedulers_change_no_bit)
 {
     static const char *const schedulers[] = {"steal", "fifo", "shuffle"};
-    UNIT_OWNED(setup_free) struct setup setup;
     uint64_t hash = 0;
-    setup_sheet(&setup, 12);
+    SETUP(setup_sheet(&setup, 12));
     setup_pin(&setup, 1, (const uint32_t[]){0});
     for (unsigned i = 0; i < 9; i++) {
         UNIT_OWNED(record_free)

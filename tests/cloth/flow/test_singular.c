@@ -24,9 +24,8 @@ UNIT_LOOP(held_blocks, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     const uint32_t held[] = {64, 24, 1}, grain[] = {8, 8, 1000};
     for (int i = 0; i < 3; i++) {
-        UNIT_OWNED(setup_free) struct setup setup;
         UNIT_OWNED(record_free) struct record record = {0};
-        setup_sheet(&setup, 8);
+        SETUP(setup_sheet(&setup, 8));
         setup.model.preconditioner = (enum model_preconditioner)_i;
         setup.model.grain = grain[i];
         pin_rows(&setup, held[i]);
@@ -44,9 +43,7 @@ UNIT_LOOP(pieces_that_fall, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     static const double vertices[] = {0, 0, 0, 1, 0, 0, 0, 0, 1, 5, 0, 0, 6, 0, 0, 5, 0, 1};
     static const uint32_t triangles[] = {0, 1, 2, 3, 4, 5};
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 2);
+    TRIAL(setup_sheet(&setup, 2));
     mesh_free(&setup.cloth.mesh);
     UNIT_FINE(mesh_inline(&setup.cloth.mesh, 6, vertices, 0, NULL, 2, triangles, &error));
     setup.model.preconditioner = (enum model_preconditioner)_i;
@@ -59,9 +56,7 @@ UNIT_LOOP(pieces_that_fall, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 /* Moduli of 1e12 beside 1e-3. */
 UNIT_LOOP(stiff_beside_soft, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_sheet(&setup, 8);
+    TRIAL(setup_sheet(&setup, 8));
     setup.material.stretch = 1e12;
     setup.material.shear = setup.material.bend = 1e-3;
     setup.model.stop = MODEL_STOP_MASS_NORM; /* residuals mislead */
@@ -79,9 +74,8 @@ UNIT_LOOP(rounding_is_noticed, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     static const double tolerance[] = {3e-6, 1e-9};
     for (int i = 0; i < 2; i++) {
-        UNIT_OWNED(setup_free) struct setup setup;
         UNIT_OWNED(record_free) struct record record = {.threads = 2};
-        setup_sheet(&setup, 8);
+        SETUP(setup_sheet(&setup, 8));
         setup.material.stretch = 1e12;
         setup.material.shear = 2500;
         setup.material.bend = 0;
@@ -110,9 +104,8 @@ UNIT_LOOP(rounding_is_noticed, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 UNIT_LOOP(compressed_and_not_clamped, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     for (int halving = 0; halving < 2; halving++) {
-        UNIT_OWNED(setup_free) struct setup setup;
         struct record record = {0};
-        setup_sheet(&setup, 6);
+        SETUP(setup_sheet(&setup, 6));
         double *start = calloc(36, 6 * sizeof *start);
         ck_assert(start != NULL);
         for (size_t v = 0; v < 36; v++)

@@ -75,9 +75,8 @@ UNIT_TEST(a_sheet_moves_alike)
 UNIT_LOOP(patches_move_alike, 0, 2)
 {
     UNIT_OWNED(record_free) struct record none = {0};
-    UNIT_OWNED(setup_free) struct setup setup;
     uint64_t before = UINT64_MAX;
-    setup_stiff(&setup, 20);
+    SETUP(setup_stiff(&setup, 20));
     setup.model.tolerance = 1e-10;
     setup.model.grain = _i ? 3 : 90;
     setup.model.preconditioner = MODEL_PLAIN;
@@ -99,8 +98,7 @@ UNIT_LOOP(patches_move_alike, 0, 2)
 UNIT_TEST(formats_move_alike)
 {
     UNIT_OWNED(record_free) struct record springs = {0};
-    UNIT_OWNED(setup_free) struct setup setup;
-    setup_stiff(&setup, 14);
+    SETUP(setup_stiff(&setup, 14));
     setup.material.bend = 50;
     setup.model.grain = 30;
     setup.model.tolerance = 1e-10;
@@ -130,9 +128,8 @@ static uint64_t iterations_of(struct setup *setup, enum model_guess guess, doubl
  * rows included; where steps are long it begins from nothing. */
 UNIT_LOOP(starts_move_alike, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
     struct record zero, previous, automatic;
-    setup_stiff(&setup, 14);
+    SETUP(setup_stiff(&setup, 14));
     setup.model.preconditioner = (enum model_preconditioner)_i;
     setup.model.tolerance = 1e-8;
     const uint64_t many = iterations_of(&setup, MODEL_GUESS_ZERO, 0.001, &zero);
@@ -158,9 +155,8 @@ UNIT_TEST(normalised_by_hand)
 {
     const double first = 0.001 * 0.001 * 9.81 / 0.25;
     for (int i = 0; i < 4; i++) {
-        UNIT_OWNED(setup_free) struct setup setup;
         UNIT_OWNED(record_free) struct record record = {0};
-        setup_sheet(&setup, 5);
+        SETUP(setup_sheet(&setup, 5));
         setup.model.end = setup.model.h;
         setup.model.stop = MODEL_STOP_NORMALISED;
         setup.model.tolerance = first * (i % 2 ? 1 + 1e-12 : 1 - 1e-12);
@@ -177,9 +173,8 @@ UNIT_TEST(normalised_by_hand)
 static void run_in_units(double mass, double time, double length, double tolerance,
                          struct record *record)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
     struct cloth_error error = {0};
-    setup_stiff(&setup, 12);
+    SETUP(setup_stiff(&setup, 12));
     mesh_free(&setup.cloth.mesh);
     ck_assert_int_eq(mesh_grid(&setup.cloth.mesh, length, length, 12, 12, MESH_SAME, &error), 0);
     const double force = mass * length / (time * time);
@@ -205,7 +200,7 @@ static void run_in_units(double mass, double time, double length, double toleran
 UNIT_TEST(normalised_in_any_units)
 {
     static const double units[][3] = {{16, 1, 1}, {1, 4, 1}, {1, 1, 2}, {0.25, 8, 0.5}};
-    struct record record = {0}, closer = {0};
+    UNIT_OWNED(record_free) struct record record = {0}, closer = {0};
     run_in_units(1, 1, 1, 1e-6, &record);
     run_in_units(1, 1, 1, 1e-7, &closer);
     ck_assert_uint_gt(closer.report.cg_iterations_total, record.report.cg_iterations_total);
@@ -216,8 +211,6 @@ UNIT_TEST(normalised_in_any_units)
         for (size_t k = 0; k < 3 * record.frames * record.vertices; k++)
             ck_assert_double_eq(other.position[k], units[i][2] * record.position[k]);
     }
-    record_free(&record);
-    record_free(&closer);
 }
 
 UNIT_TEST(a_chain)
@@ -245,7 +238,7 @@ UNIT_TEST(stop_in_the_mass_norm)
 {
     struct setup setup;
     for (int i = -1; i < KINDS; i++) {
-        struct record loose = {0}, tight = {0};
+        UNIT_OWNED(record_free) struct record loose = {0}, tight = {0};
         setup_stiff(&setup, 20);
         setup.model.preconditioner = i < 0 ? MODEL_PLAIN : kinds[i];
         setup.model.stop = MODEL_STOP_MASS_NORM;
@@ -259,17 +252,13 @@ UNIT_TEST(stop_in_the_mass_norm)
         ck_assert_double_gt(loose.report.mass_norm_error, 1e-9);
         ck_assert_double_le(tight.report.mass_norm_error, 1e-9);
         ck_assert_uint_lt(loose.report.cg_iterations_total, tight.report.cg_iterations_total);
-        record_free(&loose);
-        record_free(&tight);
         setup_free(&setup);
     }
 }
 
 UNIT_TEST(too_few_iterations)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_stiff(&setup, 20);
+    TRIAL(setup_stiff(&setup, 20));
     setup.model.preconditioner = MODEL_IC0_COARSE;
     setup.model.stop = MODEL_STOP_MASS_NORM;
     setup.model.tolerance = 1e-9;

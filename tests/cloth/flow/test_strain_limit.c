@@ -33,11 +33,9 @@ static double elongation(double tension)
 /* _i: linear steps, Newton steps, Newton steps of BDF2. */
 UNIT_LOOP(a_chain_hangs_as_far_as_both_springs_let_it, 0, 3)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
     double worst = 0;
     int beyond = 0;
-    chain(&setup);
+    TRIAL(chain(&setup));
     setup.material.damping_mass = 40;
     setup.model.h = 0.01;
     setup.model.end = 4;
@@ -62,9 +60,8 @@ UNIT_LOOP(a_chain_hangs_as_far_as_both_springs_let_it, 0, 3)
 /* What is not reached changes no bit. */
 UNIT_TEST(below_its_limit_an_edge_is_free)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
     struct record record[2] = {{0}};
-    setup_weight(&setup);
+    SETUP(setup_weight(&setup));
     setup.model.format = SOLVE_HALF;
     setup.model.end = 0.05;
     for (int i = 0; i < 2; i++) {
@@ -80,10 +77,8 @@ UNIT_TEST(below_its_limit_an_edge_is_free)
 
 UNIT_TEST(a_free_chain_keeps_its_momentum)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
     double before = 0, after = 0, longest = 0;
-    chain(&setup);
+    TRIAL(chain(&setup));
     setup.cloth.n_pins = 0;
     setup.model.gravity[1] = 0;
     setup.model.end = 0.2;
@@ -111,26 +106,22 @@ UNIT_TEST(a_free_chain_keeps_its_momentum)
  * which is held. */
 UNIT_TEST(the_longest_step_counts_limits)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    struct flow_source source;
+    UNIT_OWNED(flow_source_free) struct flow_source source;
     struct flow_limit limit;
-    setup_weight(&setup);
+    SETUP(setup_weight(&setup));
     setup.model.format = SOLVE_HALF;
     setup.material.limit_strain = 0.1;
     setup.material.limit_stiffness = LIMIT;
     UNIT_FINE(flow_source_make(&source, &setup.model, 1, &error));
     UNIT_FINE(flow_limit_find(&source, &limit, &error));
     ck_assert_double_eq_tol(limit.omega, sqrt((40 + LIMIT) / 0.1), 1e-9);
-    flow_source_free(&source);
 }
 
 /* Thrown down at 5 m/s, the weight comes in one step of 20 ms far over a limit that the matrix of
  * this step has not: 100 times its energy. The step is made again until the matrix has it. */
 UNIT_TEST(steps_far_over_a_limit_are_halved)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
-    UNIT_OWNED(record_free) struct record record = {0};
-    setup_weight(&setup);
+    TRIAL(setup_weight(&setup));
     setup.model.format = SOLVE_HALF;
     setup.model.h = 0.02;
     setup.model.end = 0.2;
@@ -163,16 +154,14 @@ static void count(void *to, const struct element *element)
 UNIT_TEST(edges_of_a_grid)
 {
     for (int triangles = 0; triangles < 2; triangles++) {
-        UNIT_OWNED(setup_free) struct setup setup;
-        struct element_cloths cloths;
+        UNIT_OWNED(element_cloths_free) struct element_cloths cloths;
         uint32_t n = 0;
-        setup_sheet(&setup, 5);
+        SETUP(setup_sheet(&setup, 5));
         setup.model.format = SOLVE_HALF;
         setup.material.model = triangles ? MODEL_TRIANGLES : MODEL_SPRINGS;
         setup.material.limit_stiffness = 1;
         UNIT_FINE(element_cloths_make(&cloths, &setup.model, &error));
         element_each(&cloths, count, &n);
         ck_assert_uint_eq(n, 2 * 5 * 4 + (triangles ? 4 * 4 : 0));
-        element_cloths_free(&cloths);
     }
 }

@@ -134,9 +134,8 @@ UNIT_LOOP(corners_in_four_blocks, 0, sizeof preconditioners / sizeof *preconditi
 /* Momentum of cloth that touches nothing is exact to rounding, however the solve stops. */
 UNIT_TEST(free_until_it_touches)
 {
-    UNIT_OWNED(setup_free) struct setup setup;
     UNIT_OWNED(record_free) struct record made = {0};
-    setup_sheet(&setup, SIDE);
+    SETUP(setup_sheet(&setup, SIDE));
     setup_load(&setup, 3, 0.1, 0.2, -0.3);
     setup.model.contact.mode = MODEL_CONTACT_CERTIFIED;
     setup.model.contact.self = true;

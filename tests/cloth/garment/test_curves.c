@@ -19,8 +19,7 @@ static double parabola(double chord, double height)
 
 UNIT_TEST(straight_edges)
 {
-    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
-    read_pattern(&pattern, "straight");
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("straight");
     expect(garment_panel_area(&pattern.panel[0]), 0.12, 1e-14);
     expect(garment_edge_length(&pattern.panel[0], 0), 0.4, 1e-14);
     expect(garment_edge_length(&pattern.panel[0], 3), 0.3, 1e-14);
@@ -29,8 +28,7 @@ UNIT_TEST(straight_edges)
 /* Under a parabola are two thirds of its height, which is half that of the control point. */
 UNIT_TEST(quadratic_edges)
 {
-    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
-    read_pattern(&pattern, "quadratic");
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("quadratic");
     expect(garment_panel_area(&pattern.panel[0]), 0.24 + 0.36 * (0.2 - 0.1) / 3, 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 0), parabola(0.6, 0.2), 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 2), parabola(0.6, 0.1), 1e-13);
@@ -40,8 +38,7 @@ UNIT_TEST(quadratic_edges)
  * the controls are at 8 cm and 4 cm, those of the parabolas at 12 and 6. */
 UNIT_TEST(cubic_edges)
 {
-    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
-    read_pattern(&pattern, "cubic");
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("cubic");
     expect(garment_panel_area(&pattern.panel[0]), 0.24 + 0.36 * (0.2 - 0.1) / 3, 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 0), parabola(0.6, 0.2), 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 2), parabola(0.6, 0.1), 1e-13);
@@ -51,8 +48,7 @@ UNIT_TEST(cubic_edges)
  * too. */
 UNIT_TEST(circular_edges)
 {
-    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
-    read_pattern(&pattern, "circle");
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("circle");
     expect(garment_panel_area(&pattern.panel[0]), PI * 0.04, 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 0), PI * 0.2, 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 1), PI * 0.2, 1e-13);
@@ -67,10 +63,9 @@ UNIT_TEST(circular_edges)
  * far from the centre; of a parabola the length up to each is its part of the whole. */
 UNIT_TEST(equal_parts)
 {
-    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("circle");
     struct curve curve;
     double last[2] = {-0.2, 0}, now[2];
-    read_pattern(&pattern, "circle");
     curve_make(&curve, &pattern.panel[0], 0);
     for (int k = 1; k <= 7; k++) {
         curve_at_length(&curve, k / 7.0, now);
@@ -79,7 +74,7 @@ UNIT_TEST(equal_parts)
         memcpy(last, now, sizeof last);
     }
     garment_pattern_free(&pattern);
-    read_pattern(&pattern, "quadratic");
+    pattern = read_pattern("quadratic");
     curve_make(&curve, &pattern.panel[0], 0);
     for (int k = 1; k < 10; k++) { /* x = 0.6 t; the length from the middle on is odd in 1 - 2 t */
         curve_at_length(&curve, k / 10.0, now);

@@ -115,9 +115,9 @@ static void check_piece(const struct garment *garment, const struct garment_patt
  * good. */
 UNIT_LOOP(panels_are_whole, 0, N_PATTERNS *N_EDGES)
 {
-    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free)
+    struct garment_pattern pattern = read_pattern(PATTERNS[_i / N_EDGES]);
     UNIT_OWNED(garment_free) struct garment garment;
-    read_pattern(&pattern, PATTERNS[_i / N_EDGES]);
     make_garment(&garment, &pattern, EDGES[_i % N_EDGES], 0);
     uint32_t n = 0, below;
     for (uint32_t p = 0; p < garment.n_pieces; p++) {
@@ -137,10 +137,10 @@ UNIT_LOOP(as_many_as_wanted, 0, N_PATTERNS * 3)
 {
     static const uint32_t wanted[] = {500, 3000, 20000};
     static const double off[] = {0.05, 0.01, 0.01}; /* boundaries have whole divisions */
-    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free)
+    struct garment_pattern pattern = read_pattern(PATTERNS[_i / 3]);
     UNIT_OWNED(garment_free) struct garment garment;
     const uint32_t n = wanted[_i % 3];
-    read_pattern(&pattern, PATTERNS[_i / 3]);
     make_garment(&garment, &pattern, 0, n);
     ck_assert_msg(fabs((double)garment.n_vertices - n) <= off[_i % 3] * n, "%s: %u, not %u",
                   PATTERNS[_i / 3], garment.n_vertices, n);
@@ -166,9 +166,8 @@ static void check_seam(const struct garment *garment, const struct garment_patte
 UNIT_LOOP(seams_have_equal_sides, 0, 3)
 {
     static const char *const sewn[3] = {"dart", "gather", "fold"};
-    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern(sewn[_i]);
     UNIT_OWNED(garment_free) struct garment garment;
-    read_pattern(&pattern, sewn[_i]);
     make_garment(&garment, &pattern, 0.007, 0);
     ck_assert_uint_eq(garment.n_seams, 1);
     check_seam(&garment, &pattern, 0);
@@ -177,9 +176,8 @@ UNIT_LOOP(seams_have_equal_sides, 0, 3)
 /* A dart closes at the vertex that its edges share: edge 3 ends there, edge 4 begins there. */
 UNIT_TEST(darts_close_at_their_tip)
 {
-    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("dart");
     UNIT_OWNED(garment_free) struct garment garment;
-    read_pattern(&pattern, "dart");
     make_garment(&garment, &pattern, 0.01, 0);
     const struct garment_seam *seam = &garment.seam[0];
     const uint32_t *tip = seam->pair[seam->n_pairs - 1];
@@ -193,9 +191,8 @@ UNIT_TEST(darts_close_at_their_tip)
  * its u is -x. */
 UNIT_TEST(folds_meet)
 {
-    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("fold");
     UNIT_OWNED(garment_free) struct garment garment;
-    read_pattern(&pattern, "fold");
     make_garment(&garment, &pattern, 0.01, 0);
     const struct garment_seam *seam = &garment.seam[0];
     ck_assert(!seam->reversed);
@@ -247,9 +244,8 @@ static void place_hood(struct garment_pattern *pattern, const struct hood *hood)
 UNIT_LOOP(fronts_are_on_one_side, 0, sizeof HOODS / sizeof *HOODS)
 {
     const struct hood *hood = HOODS + _i;
-    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("hood");
     UNIT_OWNED(garment_free) struct garment garment;
-    read_pattern(&pattern, "hood");
     place_hood(&pattern, hood);
     make_garment(&garment, &pattern, 0.02, 0);
     const struct garment_seam *seam = garment.seam;
@@ -265,9 +261,8 @@ UNIT_LOOP(fronts_are_on_one_side, 0, sizeof HOODS / sizeof *HOODS)
 /* About x first, then y: 90 and 90 degrees take (x, y) to (y, 0, -x). */
 UNIT_TEST(rotations_are_in_order)
 {
-    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("straight");
     UNIT_OWNED(garment_free) struct garment garment;
-    read_pattern(&pattern, "straight");
     make_garment(&garment, &pattern, 0.05, 0);
     for (uint32_t v = 0; v < garment.n_vertices; v++) {
         const double *uv = garment.uv[v], *x = garment.position[v];
@@ -279,15 +274,12 @@ UNIT_TEST(rotations_are_in_order)
 /* Twice the same bits, whatever lay in memory before. */
 UNIT_TEST(the_same_again)
 {
-    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
-    struct garment one, two;
-    read_pattern(&pattern, "circle");
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("circle");
+    UNIT_OWNED(garment_free) struct garment one, two;
     make_garment(&one, &pattern, 0.011, 0);
     make_garment(&two, &pattern, 0.011, 0);
     ck_assert_uint_eq(one.n_vertices, two.n_vertices);
     ck_assert_uint_eq(one.n_triangles, two.n_triangles);
     ck_assert(memcmp(one.position, two.position, one.n_vertices * sizeof *one.position) == 0);
     ck_assert(memcmp(one.triangle, two.triangle, one.n_triangles * sizeof *one.triangle) == 0);
-    garment_free(&one);
-    garment_free(&two);
 }

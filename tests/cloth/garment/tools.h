@@ -11,12 +11,14 @@
 #include <string.h>
 
 /* Reads patterns/NAME.json, or ends the case. */
-static inline void read_pattern(struct garment_pattern *pattern, const char *name)
+static inline struct garment_pattern read_pattern(const char *name)
 {
+    struct garment_pattern pattern;
     const char *top = getenv("srcdir");
     char path[4096];
     snprintf(path, sizeof path, "%s/tests/cloth/garment/patterns/%s.json", top ? top : ".", name);
-    UNIT_FINE(scene_read_pattern(pattern, path, &error));
+    UNIT_FINE(scene_read_pattern(&pattern, path, &error));
+    return pattern;
 }
 
 static inline void make_garment(struct garment *garment, const struct garment_pattern *pattern,

@@ -302,7 +302,7 @@ UNIT_TEST(random_measures)
     for (int made = 0; made < wanted;) {
         struct mannequin mannequin = {.height = 1.5 + 0.5 * random_part(&state), .edge = 0.021};
         struct cloth_error error = {0};
-        struct mesh mesh;
+        UNIT_OWNED(mesh_free) struct mesh mesh;
         for (uint32_t i = 0; i < MANNEQUIN_GIRTHS; i++) {
             const struct mannequin_measure *m = &mannequin_measures[i];
             mannequin.girth[i] = (m->least + (m->most - m->least) * random_part(&state)) *
@@ -315,7 +315,6 @@ UNIT_TEST(random_measures)
         made++;
         check_surface(&mesh);
         check_girths(&mesh, &mannequin);
-        mesh_free(&mesh);
     }
 }
 

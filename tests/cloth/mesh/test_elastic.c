@@ -18,7 +18,7 @@ static struct mesh elastic_grid(double a, double b)
 static void stiffness(const struct mesh *mesh, const struct mesh_moduli *moduli, uint32_t middle,
                       double area, double c[3][3])
 {
-    struct mesh_lattice lattice;
+    UNIT_OWNED(mesh_lattice_free) struct mesh_lattice lattice;
     UNIT_FINE(mesh_lattice_build(&lattice, mesh, moduli, &error));
     struct mesh_spring *spring = springs_of(&lattice);
     memset(c, 0, 9 * sizeof(double));
@@ -35,7 +35,6 @@ static void stiffness(const struct mesh *mesh, const struct mesh_moduli *moduli,
                            strain[i] * strain[j] / area;
     }
     free(spring);
-    mesh_lattice_free(&lattice);
 }
 
 static double minor(double c[3][3], int i, int j)

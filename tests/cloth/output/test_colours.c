@@ -173,7 +173,7 @@ UNIT_TEST(the_size_is_known_before)
 
 UNIT_TEST(shapes_are_read_again)
 {
-    struct output_rest rest, read;
+    UNIT_OWNED(output_rest_free) struct output_rest rest, read;
     begins(NULL);
     write_rest(0);
     write_rest(3);
@@ -191,8 +191,6 @@ UNIT_TEST(shapes_are_read_again)
     ck_assert_double_eq(read.length[0], rest.length[0]);
     ck_assert_mem_eq(read.modulus, rest.modulus, 2 * sizeof *rest.modulus);
     ck_assert(!read.has_stress[0] && read.has_stress[1]);
-    output_rest_free(&rest);
-    output_rest_free(&read);
 }
 
 static void put(long at, unsigned char byte)

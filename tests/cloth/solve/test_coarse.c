@@ -260,9 +260,8 @@ UNIT_TEST(sparse_factor_of_every_graph)
 /* The middle of a star goes last, so it has no fill. */
 UNIT_TEST(least_degree_first)
 {
-    struct solve_pattern pattern;
+    UNIT_OWNED(solve_pattern_free) struct solve_pattern pattern;
     uint32_t star_first[] = {0, 4, 5, 6, 7, 8}, star[] = {1, 2, 3, 4, 0, 0, 0, 0};
     UNIT_FINE(solve_pattern_make(&pattern, 5, star_first, star, &error));
     ck_assert_uint_eq(pattern.first[5], 4);
-    solve_pattern_free(&pattern);
 }

@@ -14,10 +14,11 @@
  *     + TO             a case: TO in place of FROM, which stays for the next cases
  *     set SET          further settings of the case, as of --set
  *     = SENTENCE       ends a case: reading it fails with this, scene.yaml in front of the place
- * left out ~ SENTENCE       ends a case: it is read, with this warning, or several with | between
+ *     ~ SENTENCE       ends a case: it is read, with this warning, or several with | between
  *     ok               ends a case: it is read, and draws no warning
  *
  * In texts \n is a line's end, \t a tab, \xHH a byte, and \\ one of these. */
+#include "cloth/app/run/phases.h"
 #include "cloth/flow/run.h"
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
@@ -117,11 +118,12 @@ static void append(char *list, size_t size, const char *warning)
 }
 
 /* Warnings of the scene and of its run, one behind the other. Returns whether there are any. */
-static bool join_warnings(const struct model *model, const struct flow *flow, char *to, size_t size)
+static bool join_warnings(const struct model *models, uint32_t n, const struct flow *flow, char *to,
+                          size_t size)
 {
     to[0] = 0;
-    for (uint32_t i = 0; i < model->n_warnings; i++)
-        append(to, size, model->warnings[i]);
+    for (uint32_t i = 0; i < (n ? models->n_warnings : 0); i++)
+        append(to, size, models->warnings[i]);
     const char *warning = flow ? flow_warning(flow, 0) : NULL;
     for (size_t i = 1; warning; warning = flow_warning(flow, i++))
         append(to, size, warning);
@@ -134,7 +136,8 @@ static const char *read_case(struct section *section)
 {
     struct scene_set sets[MAX_SETS];
     struct cloth_error error = {0};
-    struct model model;
+    struct model *models;
+    uint32_t n;
     struct flow *flow = NULL;
     static char warnings[MAX_LINE];
     for (uint32_t i = 0; i < section->n_sets; i++)
@@ -144,14 +147,19 @@ static const char *read_case(struct section *section)
         write_file(section, section->changed ? section->changed : section->file);
     else if (section->changed)
         text = section->changed;
-    int code = scene_read_text(&model, text, section->n_sets, sets, &error);
+    scene_write_file("scene.yaml", text, strlen(text));
+    int code = scene_read_phases(&models, &n, scene_path(), section->n_sets, sets, &error);
+    for (uint32_t i = 1; i < n && !code; i++)
+        code = phases_check(models, models + i, i, &error);
     if (!code && section->prepares)
-        code = flow_prepare(&flow, &model, 1, &error);
+        code = flow_prepare(&flow, models, 1, &error);
     ck_assert(code == CLOTH_OK || code == CLOTH_E_INPUT);
-    const bool warned = join_warnings(&model, flow, warnings, sizeof warnings);
+    const bool warned = join_warnings(models, n, flow, warnings, sizeof warnings);
     keep_sentence(section, code ? error.text : warnings);
     flow_free(flow);
-    model_free(&model);
+    for (uint32_t i = 0; i < n; i++)
+        model_free(models + i);
+    free(models);
     replace(&section->changed, NULL);
     section->n_sets = 0;
     return code ? "= " : warned ? "~ " : "ok";

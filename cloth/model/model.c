@@ -3,6 +3,7 @@
 
 #include "cloth/base/memory.h"
 #include "cloth/base/sets.h"
+#include "cloth/physics/limit.h"
 #include "cloth/solve/patches.h"
 
 #include <math.h>
@@ -137,71 +138,21 @@ void model_free(struct model *model)
     *model = (struct model){0};
 }
 
-const struct model_word model_integrators[] = {{"implicit_euler", MODEL_IMPLICIT_EULER},
-                                               {"explicit_euler", MODEL_EXPLICIT_EULER},
-                                               {"symplectic_euler", MODEL_SYMPLECTIC_EULER},
-                                               {"verlet", MODEL_VERLET},
-                                               {"midpoint", MODEL_MIDPOINT},
-                                               {"rk4", MODEL_RK4},
-                                               {"bdf2", MODEL_BDF2},
-                                               {0}};
+/* In the order of sentences that list them. */
+#define INTEGRATORS(X)                                                                             \
+    X(MODEL_IMPLICIT_EULER, "implicit_euler", .linear = true)                                      \
+    X(MODEL_EXPLICIT_EULER, "explicit_euler", .limit = phys_limit_euler)                           \
+    X(MODEL_SYMPLECTIC_EULER, "symplectic_euler", .limit = phys_limit_symplectic,                  \
+      .staggered = true)                                                                           \
+    X(MODEL_VERLET, "verlet", .limit = phys_limit_verlet, .drag_free = true)                       \
+    X(MODEL_RK4, "rk4", .limit = phys_limit_rk4)                                                   \
+    X(MODEL_BDF2, "bdf2", .falls_back = true)
+#define WORD_OF(number, word, ...) {word, number},
+#define ROW_OF(number, word, ...)  [number] = {.name = word, __VA_ARGS__},
+const struct model_word model_integrators[] = {INTEGRATORS(WORD_OF){0}};
+const struct model_scheme model_schemes[] = {INTEGRATORS(ROW_OF)};
 
-const struct model_word model_contact_modes[] = {{"certified", MODEL_CONTACT_CERTIFIED},
-                                                 {"repulsion", MODEL_CONTACT_REPULSION},
-                                                 {"project", MODEL_CONTACT_PROJECT},
-                                                 {0}};
-
-static const char *word_of(const struct model_word *word, int value)
-{
-    while (word->word && word->value != value)
-        word++;
-    return word->word;
-}
-
-const char *model_integrator_name(enum model_integrator integrator)
-{
-    return word_of(model_integrators, (int)integrator);
-}
-
-bool model_feels_contact(const struct model *model)
-{
-    bool feels = false;
-    for (uint32_t i = 0; i < model->n_probes; i++) {
-        const struct model_probe *probe = model->probes + i;
-        feels = feels || probe->contact || probe->contact_total || probe->by_obstacle;
-    }
-    return feels && model_certifies(model);
-}
-
-const char *model_contact_name(const struct model *model)
-{
-    return word_of(model_contact_modes, (int)model->contact.mode);
-}
-
-bool model_meets(const struct model *model, uint32_t cloth, uint32_t other)
-{
-    return !contact_are_apart(&model->contact.apart, cloth, other) &&
-           (cloth != other || model->contact.self);
-}
-
-double model_friction(const struct model *model, uint32_t cloth, uint32_t other)
-{
-    const bool is_cloth = other < model->n_cloths;
-    const uint32_t a = model->cloths[cloth].material;
-    const uint32_t b =
-        is_cloth ? model->cloths[other].material : model->n_materials + (other - model->n_cloths);
-    double friction = sqrt(model->materials[a].friction *
-                           (is_cloth ? model->materials[b].friction
-                                     : model->obstacles[other - model->n_cloths].friction));
-    for (uint32_t i = 0; i < model->contact.n_pairs; i++) {
-        const struct model_rub *pair = model->contact.pairs + i;
-        if ((pair->of[0] == a && pair->of[1] == b) || (pair->of[0] == b && pair->of[1] == a))
-            friction = pair->friction;
-    }
-    return friction;
-}
-
-static bool has_material(const struct model_cloth *cloth, uint32_t material)
+bool model_has_material(const struct model_cloth *cloth, uint32_t material)
 {
     bool found = cloth->material == material;
     for (uint32_t i = 0; i < cloth->n_regions; i++)
@@ -214,7 +165,7 @@ void model_parts(const struct model *model, uint32_t material, bool *triangles, 
     *triangles = *edges = false;
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct model_cloth *cloth = model->cloths + c;
-        const bool has = has_material(cloth, material);
+        const bool has = model_has_material(cloth, material);
         *triangles = *triangles || (has && cloth->mesh.n_triangles);
         *edges = *edges || (has && cloth->mesh.n_bare_edges);
     }
@@ -234,7 +185,7 @@ struct mesh_elastic model_elastic(const struct model *model, uint32_t material)
     if (m->model == MODEL_TRIANGLES)
         return (struct mesh_elastic){m->stretch, model_weft(m), m->shear, m->poisson};
     for (uint32_t c = 0; c < model->n_cloths; c++) {
-        if (!has_material(model->cloths + c, material) || !model->cloths[c].mesh.n_triangles)
+        if (!model_has_material(model->cloths + c, material) || !model->cloths[c].mesh.n_triangles)
             continue;
         const struct mesh_moduli moduli = model_moduli(m);
         const struct mesh_elastic one = mesh_elastic_of(model_rest(model->cloths + c), &moduli);
@@ -244,14 +195,6 @@ struct mesh_elastic model_elastic(const struct model *model, uint32_t material)
                                     common(all.shear, one.shear), common(all.poisson, one.poisson)};
     }
     return all;
-}
-
-const char *model_start_cure(const struct model *model)
-{
-    for (uint32_t c = 0; c < model->n_cloths; c++)
-        if (model->cloths[c].n_unjoined)
-            return "join what lies on another's place, by mesh: {weld: 1e-5}";
-    return "move them apart, or write contact: {untangle: on}";
 }
 
 void model_name_seam(const struct model_cloth *cloth, uint32_t seam, char text[MODEL_SEAM_NAME])
@@ -321,7 +264,7 @@ bool model_is_guarded(const struct model *model)
     const double *wind = model->air.wind;
     const bool blown = model_has_air(model) && (wind[0] != 0 || wind[1] != 0 || wind[2] != 0);
     return model_is_implicit(model) && model->energy_growth > 0 && !blown && !model->n_motions &&
-           !model->n_curves && !model->own_filter && !model_obstacles_move(model);
+           !model->n_curves && !model_obstacles_move(model);
 }
 
 bool model_is_coarse(const struct model *model)

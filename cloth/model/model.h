@@ -2,11 +2,11 @@
 #define CLOTH_MODEL_MODEL_H
 
 #include "cloth/base/error.h"
-#include "cloth/contact/apart.h"
 #include "cloth/contact/shape.h"
 #include "cloth/contact/soup.h"
 #include "cloth/mesh/elastic.h"
 #include "cloth/model/cloth.h"
+#include "cloth/model/contact.h"
 #include "cloth/model/hdf5.h"
 #include "cloth/physics/air.h"
 #include "cloth/physics/curve.h"
@@ -32,43 +32,29 @@ struct model_phase {
     char *name, *place;
 };
 
-/* Explicit ones come first. docs/physics.md has their formulas. */
+/* docs/physics.md has their formulas. */
 enum model_integrator {
     MODEL_EXPLICIT_EULER,   /* x by the velocity before the step */
     MODEL_SYMPLECTIC_EULER, /* x by the velocity after it */
     MODEL_VERLET,           /* velocity Verlet, drag solved for in the first half step */
-    MODEL_MIDPOINT,         /* the explicit midpoint method */
     MODEL_RK4,              /* the classical Runge-Kutta method */
     MODEL_IMPLICIT_EULER,
     MODEL_BDF2 /* begins with implicit Euler, also after contact or a change of h */
 };
 enum { MODEL_INTEGRATORS = MODEL_BDF2 + 1 };
-enum model_contact_mode {
-    MODEL_CONTACT_PROJECT,   /* vertices in an obstacle are put onto it after the step */
-    MODEL_CONTACT_REPULSION, /* springs push apart near features when a step begins */
-    MODEL_CONTACT_CERTIFIED  /* the solve knows of contacts; a step ends where all are certified */
-};
-/* The coefficient of two sides, in place of theirs. of: numbers of materials; those of obstacles
- * follow. */
-struct model_rub {
-    uint32_t of[2];
-    double friction;
-};
-struct model_contact {
-    enum model_contact_mode mode;
-    bool assumed;     /* it is the default of the scene */
-    bool idle;        /* there is nothing to touch: steps need not look */
-    bool self;        /* a cloth touches itself, too */
-    bool untangle;    /* a start that is not free is made so */
-    bool force;       /* frames have the force of contact on each vertex */
-    double thickness; /* m, > 0: of cloth that touches something, half of it on each side */
-    double friction;  /* coefficient, >= 0, of materials and obstacles that have none of their own;
-                         sides a and b rub on each other by sqrt(a b), */
-    uint32_t n_pairs; /* unless one of these is of them: the last counts */
-    struct model_rub *pairs;
-    struct contact_apart apart; /* sides that do not meet */
-    double stiffness;           /* repulsion: N/m, > 0; 0: as flow_repulsion_of finds */
-    double damping; /* repulsion: >= 0; part of the critical damping of a vertex of mean mass */
+
+/* What the rest asks of an integrator: a row of model_schemes (model.c). Its part of a step is a
+ * row of flow_integrators. */
+struct model_scheme {
+    const char *name; /* in scenes */
+    /* The longest step, s, that lets no vibration of omega, rad/s, with damping, 1/s, grow
+     * (cloth/physics/limit.h). NULL: it is implicit, as no step is too long for it. */
+    double (*limit)(double omega, double damping);
+    bool drag_free;  /* the drag is solved for: it does not shorten the limit */
+    bool staggered;  /* x moves by the new v: v is that of half a step before x */
+    bool linear;     /* its step has one system, of the state that it begins with, if it takes one
+                      * Newton step: dv of the step before is a guess of its dv */
+    bool falls_back; /* a step that gained energy is made again by implicit Euler */
 };
 enum model_stop {
     MODEL_STOP_RELATIVE,
@@ -156,7 +142,6 @@ struct model {
     uint32_t patches;  /* of a block, for the coarse space, at most 4; 0: as model_patches finds */
     bool exact_coarse; /* one factor of it, however many patches there are: not in scenes */
     enum solve_format format; /* of the matrix; springs alone can be SOLVE_SPRINGS */
-    int own_filter;           /* solves are filtered by the program's flow_filter, too */
     int full_slope; /* enum phys_slope, of the matrix; only springs know PHYS_ABSOLUTE, which is
                        PHYS_DEFINITE to all else */
 
@@ -172,30 +157,21 @@ struct model {
     char *settings;  /* a line `key: value` of each that the state depends on, sorted */
 };
 
-static inline int model_is_implicit(const struct model *model)
+extern const struct model_scheme model_schemes[MODEL_INTEGRATORS];
+static inline const struct model_scheme *model_scheme(const struct model *model)
 {
-    return model->integrator >= MODEL_IMPLICIT_EULER;
+    return model_schemes + model->integrator;
+}
+static inline bool model_is_implicit(const struct model *model)
+{
+    return !model_scheme(model)->limit;
 }
 
-/* True if its steps end where all contacts are certified. False if nothing can touch. */
-static inline bool model_certifies(const struct model *model)
+/* True if each step solves one system, of the state that it begins with. */
+static inline bool model_is_linear(const struct model *model)
 {
-    return model_is_implicit(model) && model->contact.mode == MODEL_CONTACT_CERTIFIED &&
-           !model->contact.idle;
+    return model_scheme(model)->linear && model->newton_steps <= 1;
 }
-
-/* The end of a sentence that refuses something with certified contact: how to do without it; empty
- * if the scene chose it. */
-static inline const char *model_contact_cure(const struct model *model)
-{
-    return model->contact.assumed
-               ? "; contact is certified by default in this scene, contact: {mode: project} is "
-                 "the way without"
-               : "";
-}
-
-/* Likewise for a start that certified contact cannot take: the remedy. */
-const char *model_start_cure(const struct model *model);
 
 /* The area of a cloth at rest, m^2; while it has its mesh. */
 static inline double model_area(const struct model_cloth *cloth)
@@ -208,24 +184,16 @@ static inline double model_disc(const struct model_drape *drape)
     return 3.14159265358979323846 * drape->radius * drape->radius;
 }
 
-/* True if a probe reports the force of contact. On the rank that has the probes. */
-bool model_feels_contact(const struct model *model);
-
-static inline bool model_repels(const struct model *model)
-{
-    return model->contact.mode == MODEL_CONTACT_REPULSION;
-}
-
 /* True if the run finds features of cloth that are near each other or near an obstacle. */
 static inline bool model_seeks(const struct model *model)
 {
-    return model_certifies(model) || model_repels(model);
+    return model_promise(model).near;
 }
 
-/* True if its solves are filtered by more than points: by sliders or the program. */
+/* True if its solves are filtered by more than points: by sliders. */
 static inline int model_is_filtered(const struct model *model)
 {
-    return model_is_implicit(model) && (model->n_sliders || model->own_filter);
+    return model_is_implicit(model) && model->n_sliders;
 }
 
 static inline bool model_follows(const struct model *model)
@@ -235,11 +203,6 @@ static inline bool model_follows(const struct model *model)
         follows = follows || model->motions[i].follow;
     return follows;
 }
-
-/* True if a cloth meets another side of contact.apart: an obstacle, another cloth, or itself. The
- * coefficient by which the two rub on each other. On the rank that has the cloths. */
-bool model_meets(const struct model *model, uint32_t cloth, uint32_t other);
-double model_friction(const struct model *model, uint32_t cloth, uint32_t other);
 
 /* True if an obstacle moves: two of its key frames differ. */
 bool model_obstacles_move(const struct model *model);
@@ -260,8 +223,8 @@ bool model_is_guarded(const struct model *model);
  * corrected. */
 static inline bool model_keeps(const struct model *model)
 {
-    return model->halving || model->correction_rounds || model_certifies(model) ||
-           (model->integrator == MODEL_BDF2 && model_is_guarded(model));
+    return model->halving || model->correction_rounds || model_promise(model).apart ||
+           (model_scheme(model)->falls_back && model_is_guarded(model));
 }
 
 /* True if x and v stay as an explicit integrator ended a step: no contact, pin or correction
@@ -287,9 +250,6 @@ uint32_t model_patches(const struct model *model, uint32_t n_blocks);
 
 /* Their names in scenes. */
 extern const struct model_word model_integrators[];
-const char *model_integrator_name(enum model_integrator integrator);
-extern const struct model_word model_contact_modes[];
-const char *model_contact_name(const struct model *model);
 
 /* The shape at rest of a cloth; the modulus along the weft. */
 static inline const struct mesh *model_rest(const struct model_cloth *cloth)
@@ -360,6 +320,9 @@ model_material(const struct model *model, const struct model_cloth *cloth, uint3
  * material, its mesh is no grid, or cloths whose cells make different ones. Before the meshes are
  * freed. */
 struct mesh_elastic model_elastic(const struct model *model, uint32_t material);
+
+/* True if the cloth or a region of it is of the material, by number. */
+bool model_has_material(const struct model_cloth *cloth, uint32_t material);
 
 /* Finds whether cloths that have the material, by number, have triangles, and edges without
  * triangles. */

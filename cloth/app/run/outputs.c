@@ -40,7 +40,7 @@ static int open_system(struct outputs *to, const struct model *model, struct clo
     if (!model_is_implicit(model))
         return cloth_fail(error, CLOTH_E_INPUT,
                           "--save-system: an explicit integrator solves no system");
-    if (model->integrator != MODEL_IMPLICIT_EULER || model->newton_steps > 1)
+    if (!model_is_linear(model))
         return cloth_fail(error, CLOTH_E_INPUT,
                           "--save-system: a step has one system of its own by implicit_euler with "
                           "newton.steps 1 only");
@@ -78,7 +78,7 @@ static int open_forces(struct outputs *to, const struct model *model, const stru
                        const uint64_t *n_frames, struct cloth_error *error)
 {
     const char *folder = to->options->output;
-    return model->contact.force && model_certifies(model)
+    return model_shows_contact(model)
                ? output_forces_open(&to->forces, folder, (uint32_t)flow_vertices(flow), n_frames,
                                     to->settler, error)
                : output_forces_forget(folder, error);

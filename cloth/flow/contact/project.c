@@ -1,38 +1,17 @@
-/* The filter that holds rows in the solve, and the projection out of obstacles after it. Sliders
- * filter their rows; the program's own filter follows. */
+/* The filter by which sliders hold rows in the solve, and the projection out of obstacles after it.
+ */
 #include "cloth/contact/meet.h"
-#include "cloth/flow/contact/maps.h"
+#include "cloth/flow/contact/image.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/pins/sliders.h"
 #include "cloth/flow/run/step.h"
 
 /* ---- The filter of the solve ---- */
 
-FLOW_KERNEL(filter, FLOW_COLLIDE, struct flow_step_args, (R(table), R(x), R(v), W(filter)))
-
-/* The program's part. */
-static int own_rows(const duite_call *call, const struct flow_table *t,
-                    const struct filter_fields *on)
-{
-    const struct flow_filter *own = &flow_of(call)->filter;
-    const struct flow_rows rows = {.n = t->n,
-                                   .vertex = t->vertex,
-                                   .x = on->x,
-                                   .v = on->v,
-                                   .time = on->args->time,
-                                   .h = on->args->h,
-                                   .filter = on->filter};
-    if (!own->rows)
-        return duite_fail(call, FLOW_NO_FILTER,
-                          "the model has a filter of the program's own, but this rank was given no "
-                          "function; call flow_filter_by on every rank");
-    own->rows(own->context, &rows);
-    return 0;
-}
-
+FLOW_KERNEL(filter, FLOW_COLLIDE, struct flow_step_args, (R(table), W(filter)))
 static int filter_body(const duite_call *call, const struct filter_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
-    const struct model *model = flow_of(call)->model;
     phys_vec *filter = on->filter;
     struct flow_pins pins;
     struct flow_slider slider;
@@ -43,7 +22,7 @@ static int filter_body(const duite_call *call, const struct filter_fields *on)
         flow_pins_slider(&pins, i, &slider);
         filter[t->sliding[i][0]] = slider.filter;
     }
-    return model->own_filter ? own_rows(call, t, on) : 0;
+    return 0;
 }
 
 int flow_contact_filter(struct flow_state *state, struct flow_step_args args)
@@ -160,13 +139,31 @@ static int collide_body(const duite_call *call, const struct collide_fields *on)
     return flow_check(call, t, on->args, on->x, "position", on->status);
 }
 
-/* Bodies with frames move here: tasks of the step before are done, since it has been settled. */
-int flow_contact_project(struct flow_state *state)
+double flow_project_move(struct flow_state *state)
 {
-    struct flow_step_args args = flow_attempt_args(state);
     const struct model *model = state->flow->model;
+    const struct flow_step_args args = flow_attempt_args(state);
     const double from = args.begin * model->h / FLOW_TICKS;
     contact_bodies_move(&model->bodies, from, args.time);
-    const int code = flow_maps_draw(state, from);
-    return code ? code : flow_fork_each(state, &flow_kernel_collide, &args);
+    return from;
 }
+
+int flow_project(struct flow_state *state)
+{
+    struct flow_step_args args = flow_attempt_args(state);
+    return flow_fork_each(state, &flow_kernel_collide, &args);
+}
+
+static int settle_project(struct flow_state *state)
+{
+    flow_project_move(state);
+    return flow_project(state);
+}
+
+static bool has_obstacles(const struct model *model)
+{
+    return model->n_obstacles > 0;
+}
+
+const struct flow_contact_mode flow_contact_project = {.is = has_obstacles,
+                                                       .settle = settle_project};

@@ -2,6 +2,7 @@
  * between two blocks gives half of its own to each. Sums are contributions, so that they are the
  * same for any ranks and threads. */
 #include "cloth/flow/pins/sliders.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/run/step.h"
 
 #include "cloth/physics/energy.h"
@@ -49,8 +50,8 @@ static int level_body(const duite_call *call, const struct level_fields *on)
     return 0;
 }
 
-/* Symplectic Euler moved x with v: v is the velocity half a step before x. With v at the time of x
- * the energy is off only by the square of h. */
+/* v of a staggered scheme is the velocity half a step before x. With v at the time of x the energy
+ * is off only by the square of h. */
 static int fork_level(struct flow_state *state, struct flow_step_args args)
 {
     const int code = flow_fork_each(state, &flow_kernel_force, &args);
@@ -59,7 +60,7 @@ static int fork_level(struct flow_state *state, struct flow_step_args args)
 
 int flow_energies(struct flow_state *state, struct flow_step_args args, enum flow_field_id sums)
 {
-    const bool apart = state->flow->model->integrator == MODEL_SYMPLECTIC_EULER;
+    const bool apart = model_scheme(state->flow->model)->staggered;
     const struct flow_as as[] = {{FLOW_FIELD_v, apart ? FLOW_FIELD_f : FLOW_FIELD_v},
                                  {FLOW_FIELD_energies, sums},
                                  {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}};
@@ -86,7 +87,7 @@ int flow_energy_fork(struct flow_state *state)
 static int get_contact(struct flow_state *state, double *energy)
 {
     double held[FLOW_HELD] = {0};
-    const int code = model_certifies(state->flow->model)
+    const int code = flow_contact_mode(state->flow->model)->carries
                          ? duite_get(state->rt, state->run.contact_energy, held)
                          : DUITE_OK;
     *energy = held[FLOW_HELD_ALL];

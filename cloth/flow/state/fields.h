@@ -37,7 +37,7 @@ enum {
     /* the state, and its rows for neighbours */                                                   \
     X(x,            ONE,     phys_vec,      4, rows,          always,       is_state)              \
     X(v,            ONE,     phys_vec,      4, rows,          always,       is_state)              \
-    X(f,            ONE,     phys_vec,      4, rows,          always,       is_state_of_verlet)    \
+    X(f,            ONE,     phys_vec,      4, rows,          always,       is_state_of_ends)      \
     X(halo_x,       ONE,     phys_vec,      4, halo,          always,       is_derived)            \
     X(halo_v,       ONE,     phys_vec,      4, halo,          always,       is_derived)            \
     X(table,        ONE,     unsigned char, 1, table_bytes,   always,       is_derived)            \
@@ -50,15 +50,15 @@ enum {
     /* before a step that may be given up */                                                       \
     X(kept_x,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
     X(kept_v,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
-    /* contact: skins (skin.h); before a certified step, and x of skins before and after            \
+    /* contact: skins (skin.h); before a step, and x of skins before and after            \
      * it, and their boxes */                                                                      \
     X(skin,         ONE,     unsigned char, 1, skin_bytes,    meets,        is_derived)            \
-    X(kept_halo_x,  ONE,     phys_vec,      4, halo,          certified,    is_work)               \
+    X(kept_halo_x,  ONE,     phys_vec,      4, halo,          sweeps,       is_work)               \
     X(skin_x,       ONE,     phys_vec,      4, skin_points,   meets,        is_work)               \
     X(skin_boxes,   ONE,     unsigned char, 1, skin_boxes,    meets,        is_work)               \
     /* of each row: struct flow_cut_run (contact/cut.c) */                                         \
-    X(cut_runs,     ONE,     uint32_t,      4, rows,          certified,    is_state)              \
-    /* its strip of the maps of bodies (contact/maps.h) */                                         \
+    X(cut_runs,     ONE,     uint32_t,      4, rows,          sweeps,       is_state)              \
+    /* its strip of the maps of bodies (contact/image.h) */                                         \
     X(maps,         ONE,     unsigned char, 1, map_bytes,     mapped,       is_derived)            \
     /* velocity correction (springs/correct.c). X with 1 / m in the fourth lane; moves of x since the \
      * solve of the step. Rows that others need: X and 1 / m, x at the step's begin, S; x as it is. \
@@ -68,18 +68,18 @@ enum {
     X(edge_ends,    ONE,     phys_vec,      12, halo,         corrected,    is_work)               \
     X(edge_x,       BY_PASS, phys_vec,      4, halo,          corrected,    is_work)               \
     X(edge_calm,    ONE,     double,        2, one,           corrected,    is_work)               \
-    /* explicit integrators (explicit.h); x0, v0: where a step began, or Verlet's half step */     \
+    /* explicit integrators (explicit.c); x0, v0: where a step began, or Verlet's half step */     \
     X(spare_halo_x, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
     X(spare_halo_v, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
     X(v0,           ONE,     phys_vec,      4, rows,          staged,       is_work)               \
-    X(x0,           ONE,     phys_vec,      4, rows,          multistage,   is_work)               \
-    X(sum_x,        ONE,     phys_vec,      4, rows,          runge,        is_work)               \
-    X(sum_v,        ONE,     phys_vec,      4, rows,          runge,        is_work)               \
+    X(x0,           ONE,     phys_vec,      4, rows,          in_stages,    is_work)               \
+    X(sum_x,        ONE,     phys_vec,      4, rows,          in_stages,    is_work)               \
+    X(sum_v,        ONE,     phys_vec,      4, rows,          in_stages,    is_work)               \
     /* implicit integrators: struct phys_states */                                                 \
     X(base_x,       ONE,     phys_vec,      4, rows,          based,        is_work)               \
     X(base_v,       ONE,     phys_vec,      4, rows,          based,        is_work)               \
-    X(last_x,       ONE,     phys_vec,      4, rows,          bdf2,         is_state)              \
-    X(last_v,       ONE,     phys_vec,      4, rows,          bdf2,         is_state)              \
+    X(last_x,       ONE,     phys_vec,      4, rows,          two_steps,    is_state)              \
+    X(last_v,       ONE,     phys_vec,      4, rows,          two_steps,    is_state)              \
     /* contact: the box around the skin of the block over the step (pairs.c); the record of its    \
      * ties; its contacts in the step under way: struct contact_row (rows.c) */                    \
     X(root,         ONE,     double,        FLOW_ROOT, one,       meets,        is_work)               \
@@ -133,11 +133,11 @@ enum {
     X(slope,        ONE,     double,        1, one,           implicit_run, is_work)               \
     X(roots,        ONE,     double,        FLOW_ROOT, sides,     meets,        is_work)               \
     X(tie_said,     SIZED,   unsigned char, 1, records_bytes, meets,        is_work)               \
-    X(cut_counts,   ONE,     double,        FLOW_CUT_COUNTS, one, certified,    is_work)               \
-    X(cut_longest,  ONE,     double,        1, one,           certified,    is_work)               \
+    X(cut_counts,   ONE,     double,        FLOW_CUT_COUNTS, one, sweeps,       is_work)               \
+    X(cut_longest,  ONE,     double,        1, one,           sweeps,       is_work)               \
     X(obstacle_force, ONE,   phys_vec,      4, obstacles,     feels,        is_work)               \
     X(contact_energy, ONE,   double,        FLOW_HELD, one, meets,        is_work)                   \
-    /* bodies that certified contact is with (contact/body.h) */                                   \
+    /* bodies by their skins (contact/body.h) */                                   \
     X(body_skins,   ONE,     unsigned char, 1, body_skins,   meets_bodies, is_derived)             \
     X(body_fans,    ONE,     uint32_t,      1, body_fans,    meets_bodies, is_derived)             \
     X(body_points,  ONE,     phys_vec,      4, body_points,  meets_bodies, is_derived_of_bodies)   \

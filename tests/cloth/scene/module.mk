@@ -6,6 +6,7 @@ ASAN_TESTS += $(SCENE_TESTS)
 SCENE_FILE = tests/cloth/scene/scene_file.c tests/cloth/scene/scene_file.h
 tests_cloth_scene_test_sentences_SOURCES = tests/cloth/scene/test_sentences.c cloth/app/run/phases_check.c $(SCENE_FILE)
 tests_cloth_scene_test_errors_SOURCES = tests/cloth/scene/test_errors.c $(SCENE_FILE)
+tests_cloth_scene_test_rules_SOURCES = tests/cloth/scene/test_rules.c $(SCENE_FILE)
 tests_cloth_scene_test_values_SOURCES = tests/cloth/scene/test_values.c $(SCENE_FILE)
 tests_cloth_scene_test_contact_values_SOURCES = tests/cloth/scene/test_contact_values.c $(SCENE_FILE)
 tests_cloth_scene_test_sets_SOURCES = tests/cloth/scene/test_sets.c $(SCENE_FILE)

@@ -63,10 +63,10 @@ check-threads:
 check-threads-long:
 	$(MAKE) $(AM_MAKEFLAGS) check DUITE_QUICK=0 TESTS=tests/runtime/test_threads_long.sh TEST_SUITE_LOG=test-suite-long.log
 check-programs: $(check_PROGRAMS)
-.PHONY: check-long check-threads check-threads-long check-programs
+.PHONY: check-long check-threads check-threads-long check-programs golden-sentences
 
 EXTRA_DIST += tests/arrows.txt tests/support/policies.h tests/support/tap.sh tests/support/predicted.sh tests/support/commands.sh \
-	tests/support/bodies.sh tests/support/probes.sh tests/support/table.sh tests/support/dress.awk tests/support/mpi.sh tests/support/rank.h tests/support/run.sh tests/support/screen.sh \
+	tests/support/bodies.sh tests/support/hangs.c tests/support/probes.sh tests/support/table.sh tests/support/dress.awk tests/support/mpi.sh tests/support/rank.h tests/support/run.sh tests/support/screen.sh \
 	tests/support/count.sh \
     tests/support/lsan.supp tests/support/tsan.supp tests/support/valgrind.supp
 ASAN_SH += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/completion.sh tests/bootstrap.sh
@@ -75,7 +75,7 @@ LONG_SH += tests/pages.sh tests/bare_long.sh
 
 if HAVE_CHECK
 check_LIBRARIES += tests/support/libunit.a
-tests_support_libunit_a_SOURCES = tests/support/unit.c tests/support/unit.h
+tests_support_libunit_a_SOURCES = tests/support/unit.c tests/support/unit_main.c tests/support/unit.h
 TSAN_TESTS += tests/support/test_unit
 tests_support_test_unit_LDADD = $(DUITE_TEST_LIBS)
 endif

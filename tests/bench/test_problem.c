@@ -15,7 +15,7 @@ static void swept(struct problem_cell *field[2], problem_point *body)
     problem_sweep(field, POINTS, STEPS, &pointer);
 }
 
-START_TEST(test_stencil)
+UNIT_TEST(test_stencil)
 {
     struct problem_cell *field[2];
     swept(field, problem_combine);
@@ -28,7 +28,6 @@ START_TEST(test_stencil)
     }
     free(field[0]);
 }
-END_TEST
 
 static void mirrored(const uint64_t *left, const uint64_t *middle, const uint64_t *right,
                      uint64_t *out)
@@ -36,29 +35,27 @@ static void mirrored(const uint64_t *left, const uint64_t *middle, const uint64_
     problem_combine(right, middle, left, out);
 }
 
-START_TEST(test_stencil_sides)
+UNIT_TEST(test_stencil_sides)
 {
     struct problem_cell *field[2];
     swept(field, mirrored);
     ck_assert_int_ne(problem_stencil_wrong(field[STEPS % 2], POINTS, STEPS), 0);
     free(field[0]);
 }
-END_TEST
 
 static void backwards(uint64_t *value, uint64_t i)
 {
     problem_next(value, 9 - i);
 }
 
-START_TEST(test_chain)
+UNIT_TEST(test_chain)
 {
     problem_link *const volatile right = problem_next, *const volatile wrong = backwards;
     ck_assert(problem_chain(10, &right) != problem_chain(10, &wrong));
     ck_assert(problem_chain(10, &right) != problem_chain(11, &right));
 }
-END_TEST
 
-START_TEST(test_marks)
+UNIT_TEST(test_marks)
 {
     uint64_t mark[5] = {0};
     for (uint64_t i = 0; i < 5; i++)
@@ -70,9 +67,8 @@ START_TEST(test_marks)
     problem_mark(mark, 3);
     ck_assert_int_ne(problem_marks_wrong(mark, 5), 0);
 }
-END_TEST
 
-START_TEST(test_line)
+UNIT_TEST(test_line)
 {
     struct problem_message now = {3, 1}, before = {2, 1}, out = {0};
     ck_assert_int_eq(problem_line_point(&now, &now, NULL, 1, &out), 0);
@@ -81,9 +77,8 @@ START_TEST(test_line)
     ck_assert_int_ne(problem_line_point(NULL, &before, &now, 1, &out), 0);
     ck_assert_int_ne(problem_line_point(NULL, &now, &before, 1, &out), 0);
 }
-END_TEST
 
-START_TEST(test_fib)
+UNIT_TEST(test_fib)
 {
     static const int64_t numbers[] = {0, 1, 1, 2, 3, 5, 8, 13};
     static const uint64_t calls[] = {1, 1, 3, 5, 9, 15, 25, 41};
@@ -92,19 +87,17 @@ START_TEST(test_fib)
         ck_assert_uint_eq(problem_fib_calls(n), calls[n]);
     }
 }
-END_TEST
 
 /* The published size of T1, with all 10 levels. */
-START_TEST(test_tree)
+UNIT_TEST(test_tree)
 {
     const struct problem_node root = problem_tree_root();
     ck_assert_uint_eq(problem_tree_nodes(&root, 0), 1);
     ck_assert_uint_eq(problem_tree_nodes(&root, 10), 4130071);
 }
-END_TEST
 
 /* The factors come out, and a tile with another number is told, where the factors have one. */
-START_TEST(test_tiles)
+UNIT_LOOP(test_tiles, 0, 2)
 {
     const struct tiles tiles = {_i ? TILES_LU : TILES_CHOLESKY, 3, 8};
     const size_t last = 3 * 3 - 1, numbers = 8 * 8;
@@ -121,7 +114,6 @@ START_TEST(test_tiles)
     }
     free(a);
 }
-END_TEST
 
 struct skip {
     double *a;
@@ -137,7 +129,7 @@ static void visit_others(const struct tiles_task *task, void *context)
                                      skip->a + task->z * 64, 8);
 }
 
-START_TEST(test_tiles_without_a_task)
+UNIT_LOOP(test_tiles_without_a_task, 0, 2)
 {
     const struct tiles tiles = {_i ? TILES_LU : TILES_CHOLESKY, 4, 8};
     struct skip skip = {.visited = 1};
@@ -150,22 +142,4 @@ START_TEST(test_tiles_without_a_task)
         free(skip.a);
     }
     ck_assert_uint_eq(skip.visited, (size_t)tiles_tasks(tiles));
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("bench/problem");
-    TCase *one = tcase_create("answers");
-    tcase_add_test(one, test_stencil);
-    tcase_add_test(one, test_stencil_sides);
-    tcase_add_test(one, test_chain);
-    tcase_add_test(one, test_marks);
-    tcase_add_test(one, test_line);
-    tcase_add_test(one, test_fib);
-    tcase_add_test(one, test_tree);
-    tcase_add_loop_test(one, test_tiles, 0, 2);
-    tcase_add_loop_test(one, test_tiles_without_a_task, 0, 2);
-    suite_add_tcase(suite, one);
-    return unit_run(suite);
 }

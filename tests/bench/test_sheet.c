@@ -30,7 +30,7 @@ static int run_each(size_t i)
     return code;
 }
 
-START_TEST(answers_are_compared)
+UNIT_TEST(answers_are_compared)
 {
     for (size_t i = 0; i < 3; i++)
         ck_assert_int_eq(run_each(i), 0);
@@ -47,10 +47,9 @@ START_TEST(answers_are_compared)
     session.sheet.answered = 0;
     ck_assert_int_eq(run_each(2), 0);
 }
-END_TEST
 
 /* b - A dv of all rows, with dv as the direction of a pass that multiplies. */
-START_TEST(the_residual_is_what_is_left)
+UNIT_TEST(the_residual_is_what_is_left)
 {
     struct sheet *s = &session.sheet;
     double square = 0, start = 0;
@@ -82,15 +81,4 @@ START_TEST(the_residual_is_what_is_left)
     ck_assert_double_eq_tol(square, s->square, 1e-9 * start);
     ck_assert_double_lt(square, 0.3 * start);
     ck_assert_double_gt(square, 1e-9 * start);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("bench/sheet");
-    TCase *one = tcase_create("answers");
-    tcase_add_test(one, answers_are_compared);
-    tcase_add_test(one, the_residual_is_what_is_left);
-    suite_add_tcase(suite, one);
-    return unit_run(suite);
 }

@@ -49,45 +49,42 @@ static void teardown(void)
     ck_assert_int_eq(rmdir(getenv(STATE_FOLDER)), 0);
 }
 
-/* The cloth's own step, which nobody keeps whole, is halved: the case is one. */
-START_TEST(the_step_would_be_halved)
+UNIT_CASES(states, cases)
 {
-    struct states_plan plan;
+    tcase_add_unchecked_fixture(cases, setup, teardown);
+}
+
+/* The cloth's own step, which nobody keeps whole, is halved: the case is one. */
+UNIT_TEST(the_step_would_be_halved)
+{
+    UNIT_OWNED(states_plan_free) struct states_plan plan;
     struct flow_report report = {0};
     plan_hard(&plan);
     ck_assert_msg(!cg_run(&plan.model, &request, NULL, NULL, &report), "%s", serve_failure());
     ck_assert_uint_gt(report.steps_halved, 0);
-    states_plan_free(&plan);
 }
-END_TEST
 
-START_TEST(the_step_is_whole)
+UNIT_TEST(the_step_is_whole)
 {
-    struct states_plan plan;
-    struct solve_system system = {0};
+    UNIT_OWNED(states_plan_free) struct states_plan plan;
+    UNIT_OWNED(solve_system_free) struct solve_system system = {0};
     plan_hard(&plan);
     ck_assert_msg(!cg_make_system(&plan, &request, &system), "%s", serve_failure());
     ck_assert_double_eq_tol(system.h, 0.02, 1e-12);
-    solve_system_free(&system);
-    states_plan_free(&plan);
 }
-END_TEST
 
 /* What is no number cannot be a step. */
-START_TEST(a_step_that_fails_is_told)
+UNIT_TEST(a_step_that_fails_is_told)
 {
-    struct states_plan plan;
-    struct solve_system system = {0};
+    UNIT_OWNED(states_plan_free) struct states_plan plan;
+    UNIT_OWNED(solve_system_free) struct solve_system system = {0};
     plan_hard(&plan);
     plan.model.cloths->start[3] = 1e200;
     ck_assert_int_ne(cg_make_system(&plan, &request, &system), 0);
     ck_assert_str_ne(serve_failure(), "");
-    solve_system_free(&system);
-    states_plan_free(&plan);
 }
-END_TEST
 
-START_TEST(another_step_is_refused)
+UNIT_TEST(another_step_is_refused)
 {
     struct state state = {.name = "hanging_h20"}, back;
     ck_assert_int_eq(solve_system_make(&state.system, 2, 1, SOLVE_PAIRS_OF_SPRINGS, NULL), 0);
@@ -104,7 +101,6 @@ START_TEST(another_step_is_refused)
                                                   "ms, not of one of 20 ms"));
     state_free(&state);
 }
-END_TEST
 
 static void make(struct state *state, const char *name)
 {
@@ -124,19 +120,15 @@ static bool start_alike(const struct state *a, const struct state *b)
 }
 
 /* Where a motion ended is not forgotten when another one runs. */
-START_TEST(states_of_a_motion_start_alike)
+UNIT_TEST(states_of_a_motion_start_alike)
 {
-    struct state first, other, second;
+    UNIT_OWNED(state_free) struct state first, other, second;
     make(&first, "hanging_h1");
     make(&other, "crumpled_h1");
     make(&second, "hanging_h8_bend");
     ck_assert(start_alike(&first, &second));
     ck_assert(!start_alike(&first, &other));
-    state_free(&first);
-    state_free(&other);
-    state_free(&second);
 }
-END_TEST
 
 /* ---- The search for a count ---- */
 
@@ -165,7 +157,7 @@ static uint32_t search(struct curve *curve, uint32_t guess)
 }
 
 /* Exact up to a hundred, and to a hundredth beyond; whatever was guessed, however errors fall. */
-START_TEST(the_least_count_is_found)
+UNIT_TEST(the_least_count_is_found)
 {
     static const uint32_t least[] = {1, 2, 3, 21, 100, 137, 2000}, guess[] = {0, 1, 32, 110, 3000};
     static const double bends[] = {0.5, 1, 3};
@@ -177,10 +169,9 @@ START_TEST(the_least_count_is_found)
         ck_assert_uint_le(curve.tried, 60);
     }
 }
-END_TEST
 
 /* A guess saves most solves. */
-START_TEST(a_good_guess_saves_solves)
+UNIT_TEST(a_good_guess_saves_solves)
 {
     struct curve curve = {.least = 90, .bends = 1.3};
     search(&curve, 0);
@@ -188,21 +179,4 @@ START_TEST(a_good_guess_saves_solves)
     search(&curve, 112);
     ck_assert_uint_le(curve.tried, 6);
     ck_assert_uint_lt(2 * curve.iterations, without);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("states");
-    TCase *all = tcase_create("states");
-    tcase_add_unchecked_fixture(all, setup, teardown);
-    tcase_add_test(all, the_step_would_be_halved);
-    tcase_add_test(all, the_step_is_whole);
-    tcase_add_test(all, a_step_that_fails_is_told);
-    tcase_add_test(all, another_step_is_refused);
-    tcase_add_test(all, states_of_a_motion_start_alike);
-    tcase_add_test(all, the_least_count_is_found);
-    tcase_add_test(all, a_good_guess_saves_solves);
-    suite_add_tcase(suite, all);
-    return unit_run(suite);
 }

@@ -14,25 +14,23 @@ static size_t write_line(size_t columns, const char *phase, const struct progres
     return progress_line(line, sizeof line, columns, phase, 120, 480, 75.4, counts);
 }
 
-START_TEST(says_all)
+UNIT_TEST(says_all)
 {
     write_line(SIZE_MAX, "sew", &ALL);
     ck_assert_str_eq(line,
                      "sew: step 120 of 480, 75 s left, 13 frames, 45 iterations, 120 contacts, "
                      "3 seams open by 0.0021 m");
 }
-END_TEST
 
-START_TEST(leaves_out_what_is_not_there)
+UNIT_TEST(leaves_out_what_is_not_there)
 {
     write_line(SIZE_MAX, NULL, &(struct progress_counts){.cg_iterations = 7});
     ck_assert_str_eq(line, "step 120 of 480, 75 s left, 7 iterations");
     write_line(SIZE_MAX, NULL, &(struct progress_counts){.frames = 1, .contacts = 1});
     ck_assert_str_eq(line, "step 120 of 480, 75 s left, 1 frame, 0 iterations, 1 contact");
 }
-END_TEST
 
-START_TEST(has_units_of_time)
+UNIT_TEST(has_units_of_time)
 {
     const struct progress_counts none = {0};
     progress_line(line, sizeof line, SIZE_MAX, NULL, 1, 2, 119.4, &none);
@@ -42,9 +40,8 @@ START_TEST(has_units_of_time)
     progress_line(line, sizeof line, SIZE_MAX, NULL, 1, 2, 9000, &none);
     ck_assert_ptr_nonnull(strstr(line, ", 2.5 h left"));
 }
-END_TEST
 
-START_TEST(fits_the_terminal)
+UNIT_TEST(fits_the_terminal)
 {
     ck_assert_uint_eq(write_line(79, "sew", &ALL), 79);
     ck_assert_uint_eq(strlen(line), 79);
@@ -52,10 +49,9 @@ START_TEST(fits_the_terminal)
     ck_assert_uint_eq(write_line(1, NULL, &ALL), 1);
     ck_assert_str_eq(line, "s");
 }
-END_TEST
 
 /* A column has a character, of one byte or of several. */
-START_TEST(cuts_between_characters)
+UNIT_TEST(cuts_between_characters)
 {
     write_line(6, "d\xc3\xa9j\xc3\xa0", &ALL);
     ck_assert_str_eq(line, "d\xc3\xa9j\xc3\xa0: ");
@@ -64,28 +60,12 @@ START_TEST(cuts_between_characters)
     write_line(1, "\xf0\x9f\x98\x80", &ALL);
     ck_assert_str_eq(line, "\xf0\x9f\x98\x80");
 }
-END_TEST
 
-START_TEST(shortens_long_phases)
+UNIT_TEST(shortens_long_phases)
 {
     char phase[1000];
     memset(phase, 'p', sizeof phase - 1);
     phase[sizeof phase - 1] = '\0';
     write_line(SIZE_MAX, phase, &ALL);
     ck_assert_int_eq(strncmp(line + 39, "p: step 120 of 480", 18), 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("progress");
-    TCase *lines = tcase_create("line");
-    tcase_add_test(lines, says_all);
-    tcase_add_test(lines, leaves_out_what_is_not_there);
-    tcase_add_test(lines, has_units_of_time);
-    tcase_add_test(lines, fits_the_terminal);
-    tcase_add_test(lines, cuts_between_characters);
-    tcase_add_test(lines, shortens_long_phases);
-    suite_add_tcase(suite, lines);
-    return unit_run(suite);
 }

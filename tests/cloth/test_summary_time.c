@@ -57,7 +57,9 @@ static void check_says(const char *want)
     free(text);
 }
 
-START_TEST(work)
+UNIT_FIXTURE(start, NULL)
+
+UNIT_TEST(work)
 {
     takes(18.6, 1, 0);
     check_says(
@@ -69,18 +71,16 @@ START_TEST(work)
     check_says(
         "Limited by work: the workers were busy for 93 % of the time, 64 % of that in output.\n");
 }
-END_TEST
 
-START_TEST(messages)
+UNIT_TEST(messages)
 {
     takes(8, 11, 9);
     check_says("Limited by messages: the workers had no task and awaited messages for 45 % of the "
                "time.\n");
 }
-END_TEST
 
 /* Messages that are awaited while workers have tasks are no limit. */
-START_TEST(hidden_messages)
+UNIT_TEST(hidden_messages)
 {
     takes(8, 3, 50);
     report.counters.awaited = 60;
@@ -88,9 +88,8 @@ START_TEST(hidden_messages)
         "Limited by the runtime and main program: the workers were between tasks for 45 % of "
         "the time, with 5000 tasks.\n");
 }
-END_TEST
 
-START_TEST(starved)
+UNIT_TEST(starved)
 {
     takes(8, 11, 1);
     check_says("Limited by too few ready tasks: the workers had no task for 50 % of the time, with "
@@ -99,10 +98,9 @@ START_TEST(starved)
     check_says("Limited by too few ready tasks: the workers had no task for 50 % of the time, with "
                "8 workers on 2 cores.\n");
 }
-END_TEST
 
 /* The critical path counts where the whole run was traced. */
-START_TEST(path)
+UNIT_TEST(path)
 {
     const char *busy =
         "Limited by work: the workers were busy for 60 % of the time, 71 % of that in CG.\n";
@@ -124,9 +122,8 @@ START_TEST(path)
     summary.critical_path = NAN;
     check_says(busy);
 }
-END_TEST
 
-START_TEST(repeats)
+UNIT_TEST(repeats)
 {
     takes(18.6, 1, 0);
     report.contact_solves = 33;
@@ -140,30 +137,12 @@ START_TEST(repeats)
     check_says("Limited by work: the workers were busy for 93 % of the time, 71 % of that in CG; "
                "67 % of the steps were given up and made again.\n");
 }
-END_TEST
 
-START_TEST(nothing_to_say)
+UNIT_TEST(nothing_to_say)
 {
     report.steps = 0;
     check_says("");
     report.steps = 1;
     report.wall_seconds = 0;
     check_says("");
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("summary_time");
-    TCase *limits = tcase_create("limit");
-    tcase_add_checked_fixture(limits, start, NULL);
-    tcase_add_test(limits, work);
-    tcase_add_test(limits, messages);
-    tcase_add_test(limits, hidden_messages);
-    tcase_add_test(limits, starved);
-    tcase_add_test(limits, path);
-    tcase_add_test(limits, repeats);
-    tcase_add_test(limits, nothing_to_say);
-    suite_add_tcase(suite, limits);
-    return unit_run(suite);
 }

@@ -1,36 +1,12 @@
 /* Forks whose objects do not fit their kernel, and objects that are not there. */
 
-#include "tests/negative/misuse.h"
-#include "tests/support/unit.h"
+#include "tests/negative/refused.h"
 
 #include <stdint.h>
 
-static duite *rt;
-static duite_object a, b;
+UNIT_FIXTURE(refused_begin, refused_end)
 
-static void begin(void)
-{
-    rt = misuse_start(MPI_COMM_WORLD, 2);
-    ck_assert_ptr_nonnull(rt);
-    a = misuse_new(rt, 4);
-    b = misuse_new(rt, 4);
-}
-
-static void end(void)
-{
-    duite_free(rt, a);
-    duite_free(rt, b);
-    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
-}
-
-static void refused(int code, int expected)
-{
-    ck_assert_int_eq(code, expected);
-    ck_assert_int_eq(duite_wait(rt), expected);
-    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
-}
-
-START_TEST(number_of_objects)
+UNIT_TEST(number_of_objects)
 {
     refused(duite_fork(rt, &COPY, NULL, 1, &a), DUITE_E_ACCESS);
     refused(DUITE_FORK(rt, &COPY, NULL, a, b, a), DUITE_E_ACCESS);
@@ -38,17 +14,15 @@ START_TEST(number_of_objects)
     refused(duite_fork(rt, &EMPTY, NULL, 1, &a), DUITE_E_ACCESS);
     ck_assert_int_eq(duite_fork(rt, &MANY, NULL, 1, &a), DUITE_OK);
 }
-END_TEST
 
-START_TEST(one_object_twice)
+UNIT_TEST(one_object_twice)
 {
     refused(DUITE_FORK(rt, &COPY, NULL, a, a), DUITE_E_ACCESS);
     refused(DUITE_FORK(rt, &MANY, NULL, a, b, a), DUITE_E_ACCESS);
 }
-END_TEST
 
 /* Any number of further parameters is any number. */
-START_TEST(many_objects)
+UNIT_TEST(many_objects)
 {
     enum { MANY_OBJECTS = 200 };
     duite_object objects[MANY_OBJECTS];
@@ -65,16 +39,14 @@ START_TEST(many_objects)
     for (int i = 0; i < MANY_OBJECTS; i++)
         ck_assert_int_eq(duite_free(rt, objects[i]), DUITE_OK);
 }
-END_TEST
 
-START_TEST(kernel_not_listed)
+UNIT_TEST(kernel_not_listed)
 {
     const duite_kernel copy_of_add = ADD;
 
     refused(duite_fork(rt, &UNLISTED, NULL, 1, &a), DUITE_E_KERNEL);
     refused(duite_fork(rt, &copy_of_add, NULL, 1, &a), DUITE_E_KERNEL);
 }
-END_TEST
 
 static void all_refuse(duite_object gone)
 {
@@ -91,17 +63,16 @@ static void all_refuse(duite_object gone)
     ck_assert_int_eq(duite_home(rt, gone), -1);
 }
 
-START_TEST(no_such_object)
+UNIT_TEST(no_such_object)
 {
     all_refuse(DUITE_NO_OBJECT);
     all_refuse((duite_object){1000000, 1});
     all_refuse((duite_object){0xffffffffu, 0xffffffffu});
     all_refuse((duite_object){a.slot, a.generation + 1});
 }
-END_TEST
 
 /* A freed name stays dead when its place is taken by others. */
-START_TEST(use_after_free)
+UNIT_TEST(use_after_free)
 {
     duite_object gone = misuse_new(rt, 4), next[8];
 
@@ -119,20 +90,20 @@ START_TEST(use_after_free)
         ck_assert_int_eq(duite_free(rt, next[i]), DUITE_OK);
     }
 }
-END_TEST
 
 /* Nor does it come to life by forks that were recognised as repeated. */
-START_TEST(repeated_forks_after_free)
+UNIT_TEST(repeated_forks_after_free)
 {
     enum { FORKS = 1000 };
     duite_options options = misuse_options(MPI_COMM_WORLD);
 
-    misuse_mpi();
+    refused_end(); /* what began without recognition */
     options.threads = 1;
     options.memo = 2;
     ck_assert_int_eq(duite_start(&rt, &options), DUITE_OK);
     a = misuse_new(rt, 4);
     b = misuse_new(rt, 4);
+    c = misuse_new(rt, 4);
     for (int i = 0; i < FORKS; i++)
         ck_assert_int_eq(DUITE_FORK(rt, &COPY, NULL, a, b), DUITE_OK);
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
@@ -142,12 +113,10 @@ START_TEST(repeated_forks_after_free)
         ck_assert_int_eq(DUITE_FORK(rt, &COPY, NULL, a, b), DUITE_E_OBJECT);
     ck_assert_int_eq(duite_wait(rt), DUITE_E_OBJECT);
     b = next;
-    end();
 }
-END_TEST
 
 /* What was refused has left no trace. */
-START_TEST(refused_forks_do_nothing)
+UNIT_TEST(refused_forks_do_nothing)
 {
     int32_t value[4];
 
@@ -161,25 +130,4 @@ START_TEST(refused_forks_do_nothing)
     ck_assert_int_eq(value[0], 3);
     ck_assert_int_eq(duite_get(rt, b, value), DUITE_OK);
     ck_assert_int_eq(value[0], 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("accesses");
-    TCase *cases = tcase_create("accesses");
-
-    tcase_add_checked_fixture(cases, begin, end);
-    tcase_add_test(cases, number_of_objects);
-    tcase_add_test(cases, one_object_twice);
-    tcase_add_test(cases, many_objects);
-    tcase_add_test(cases, kernel_not_listed);
-    tcase_add_test(cases, no_such_object);
-    tcase_add_test(cases, use_after_free);
-    tcase_add_test(cases, refused_forks_do_nothing);
-    suite_add_tcase(suite, cases);
-    cases = tcase_create("repeated");
-    tcase_add_test(cases, repeated_forks_after_free);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

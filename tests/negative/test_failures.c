@@ -1,63 +1,43 @@
 /* Bodies that fail, on one rank: what is poisoned, what does not run, what get and wait return. */
 
-#include "tests/negative/misuse.h"
-#include "tests/support/unit.h"
+#include "tests/negative/refused.h"
 
 #include <stdint.h>
-#include <string.h>
 
-static duite *rt;
-static duite_object a, b, c;
-static const int32_t SEVEN = 7, EIGHT = 8;
-
-static void begin(void)
-{
-    rt = misuse_start(MPI_COMM_WORLD, 2);
-    ck_assert_ptr_nonnull(rt);
-    a = misuse_new(rt, 1);
-    b = misuse_new(rt, 1);
-    c = misuse_new(rt, 1);
-}
-
-static void end(void)
-{
-    duite_free(rt, a);
-    duite_free(rt, b);
-    duite_free(rt, c);
-    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
-}
+static const int32_t SEVEN = 7, EIGHT = 8, EIGHTS[4] = {8, 8, 8, 8};
 
 static int32_t value_of(duite_object object)
 {
-    int32_t value = -99;
+    int32_t value[4] = {-99};
 
-    ck_assert_int_eq(duite_get(rt, object, &value), DUITE_OK);
-    return value;
+    ck_assert_int_eq(duite_get(rt, object, value), DUITE_OK);
+    return value[0];
 }
 
 static int get(duite_object object)
 {
-    int32_t value = -99;
-    const int code = duite_get(rt, object, &value);
+    int32_t value[4] = {-99};
+    const int code = duite_get(rt, object, value);
 
-    ck_assert(!code || value == -99);
+    ck_assert(!code || value[0] == -99);
     return code;
 }
 
-START_TEST(the_code_and_the_sentence)
+UNIT_FIXTURE(refused_begin, refused_end)
+
+UNIT_TEST(the_code_and_the_sentence)
 {
     DUITE_FORK(rt, &FAIL, &SEVEN, a);
     ck_assert_int_eq(duite_wait(rt), 7);
-    ck_assert_msg(strstr(duite_message(), "sentence 7 of a body") != NULL, "%s", duite_message());
+    says("sentence 7 of a body");
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
     ck_assert_int_eq(get(a), 7);
-    ck_assert_msg(strstr(duite_message(), "sentence 7 of a body") != NULL, "%s", duite_message());
+    says("sentence 7 of a body");
     ck_assert_int_eq(get(a), 7);
-    ck_assert_int_eq(duite_get_at(rt, a, 0, &(int32_t){0}), 7);
+    ck_assert_int_eq(duite_get_at(rt, a, 0, (int32_t[4]){0}), 7);
 }
-END_TEST
 
-START_TEST(first_in_fork_order)
+UNIT_TEST(first_in_fork_order)
 {
     const duite_object objects[] = {a, b, c};
 
@@ -69,11 +49,10 @@ START_TEST(first_in_fork_order)
     ck_assert_int_eq(get(b), 19);
     ck_assert_int_eq(get(a), 20);
 }
-END_TEST
 
 /* A reader of poison does not run: what it would write is poisoned with the same failure, and
  * nothing else. */
-START_TEST(poison_travels)
+UNIT_TEST(poison_travels)
 {
     duite_counters counters;
 
@@ -89,9 +68,8 @@ START_TEST(poison_travels)
     ck_assert_int_eq(duite_count_all(rt, &counters), DUITE_OK);
     ck_assert_uint_eq(counters.tasks, 1);
 }
-END_TEST
 
-START_TEST(writing_cures)
+UNIT_TEST(writing_cures)
 {
     DUITE_FORK(rt, &FAIL, &SEVEN, a);
     DUITE_FORK(rt, &COPY, NULL, a, b);
@@ -99,14 +77,13 @@ START_TEST(writing_cures)
     DUITE_FORK(rt, &COPY, NULL, a, c);
     ck_assert_int_eq(value_of(c), 9);
     ck_assert_int_eq(get(b), 7);
-    ck_assert_int_eq(duite_set(rt, b, &EIGHT), DUITE_OK);
+    ck_assert_int_eq(duite_set(rt, b, EIGHTS), DUITE_OK);
     ck_assert_int_eq(value_of(b), 8);
     ck_assert_int_eq(duite_wait(rt), 7);
 }
-END_TEST
 
 /* Contributions do not read: they run, but the sum stays poisoned by the old value. */
-START_TEST(adding_does_not_cure)
+UNIT_TEST(adding_does_not_cure)
 {
     duite_counters counters;
 
@@ -118,11 +95,10 @@ START_TEST(adding_does_not_cure)
     ck_assert_int_eq(duite_count_all(rt, &counters), DUITE_OK);
     ck_assert_uint_eq(counters.tasks, 3);
 }
-END_TEST
 
 /* The runtime's own errors and those of bodies: the refused fork first, the failure with the next
  * wait. */
-START_TEST(refused_and_failed)
+UNIT_TEST(refused_and_failed)
 {
     DUITE_FORK(rt, &FAIL, &SEVEN, a);
     ck_assert_int_eq(DUITE_FORK(rt, &ADD, NULL, a, b), DUITE_E_ACCESS);
@@ -130,44 +106,25 @@ START_TEST(refused_and_failed)
     ck_assert_int_eq(duite_wait(rt), 7);
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
 }
-END_TEST
 
-START_TEST(stop_tells)
+UNIT_TEST(stop_tells)
 {
     DUITE_FORK(rt, &FAIL, &SEVEN, a);
+    duite_free(rt, b);
+    duite_free(rt, c);
     ck_assert_int_eq(duite_free(rt, a), DUITE_OK);
     ck_assert_int_eq(duite_stop(&rt), 7);
     ck_assert_ptr_null(rt);
-    begin();
+    refused_begin();
 }
-END_TEST
 
-START_TEST(each_its_sentence)
+UNIT_TEST(each_its_sentence)
 {
     DUITE_FORK(rt, &FAIL, &EIGHT, a);
     DUITE_FORK(rt, &FAIL, &SEVEN, b);
     ck_assert_int_eq(get(b), 7);
-    ck_assert_msg(strstr(duite_message(), "sentence 7 of a body") != NULL, "%s", duite_message());
+    says("sentence 7 of a body");
     ck_assert_int_eq(get(a), 8);
-    ck_assert_msg(strstr(duite_message(), "sentence 8 of a body") != NULL, "%s", duite_message());
+    says("sentence 8 of a body");
     ck_assert_int_eq(duite_wait(rt), 8);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("failures");
-    TCase *cases = tcase_create("failures");
-
-    tcase_add_checked_fixture(cases, begin, end);
-    tcase_add_test(cases, the_code_and_the_sentence);
-    tcase_add_test(cases, first_in_fork_order);
-    tcase_add_test(cases, poison_travels);
-    tcase_add_test(cases, writing_cures);
-    tcase_add_test(cases, adding_does_not_cure);
-    tcase_add_test(cases, refused_and_failed);
-    tcase_add_test(cases, stop_tells);
-    tcase_add_test(cases, each_its_sentence);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

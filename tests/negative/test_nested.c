@@ -226,8 +226,10 @@ static void asks(duite_mode mode, struct args args, int code, const char *what)
     duite_set(rt, object, NULL);
 }
 
+UNIT_FIXTURE(begin, end)
+
 /* The table of duite_mode, as the contract has it. */
-START_TEST(rights)
+UNIT_TEST(rights)
 {
     static const char *const GIVES[] = {
         "", "r rp", "", "", "", "r rp", "w wp", "r w rw cw rp wp rwp cwp", "cw cwp"};
@@ -247,9 +249,8 @@ START_TEST(rights)
             says(may ? what : sentence, what);
         }
 }
-END_TEST
 
-START_TEST(other_objects)
+UNIT_TEST(other_objects)
 {
     const struct args args = {.child = DUITE_RW};
     struct args with = args;
@@ -279,9 +280,8 @@ START_TEST(other_objects)
     asks(DUITE_RWP, with, DUITE_E_RIGHT, "duite_free: the object is the caller's");
     asks(DUITE_WP, with, DUITE_E_RIGHT, "duite_free, parameter 0: the task holds wp");
 }
-END_TEST
 
-START_TEST(other_law)
+UNIT_TEST(other_law)
 {
     asks(DUITE_CWP, (struct args){.deed = FORK_OTHER_LAW, .child = DUITE_CW}, DUITE_E_RIGHT,
          "the task holds cwp by law sum on object");
@@ -289,9 +289,8 @@ START_TEST(other_law)
          "and law min is wanted");
     asks(DUITE_RWP, (struct args){.deed = FORK_OTHER_LAW, .child = DUITE_CW}, DUITE_OK, "");
 }
-END_TEST
 
-START_TEST(reading_and_setting)
+UNIT_TEST(reading_and_setting)
 {
     static const int READS[] = {0, 1, 0, 0, 0, 1, 0, 1, 0}, SETS[] = {0, 0, 0, 0, 0, 0, 1, 1, 0};
 
@@ -308,9 +307,8 @@ START_TEST(reading_and_setting)
     asks(DUITE_RWP, (struct args){.deed = SET_SIZED}, DUITE_E_SIZE, "3 elements, and object");
     asks(DUITE_RWP, (struct args){.deed = RESIZE}, DUITE_E_SIZE, "has a fixed size");
 }
-END_TEST
 
-START_TEST(resizing_what_is_postponed)
+UNIT_TEST(resizing_what_is_postponed)
 {
     const struct args args = {.deed = RESIZE};
     duite_object sized;
@@ -321,10 +319,9 @@ START_TEST(resizing_what_is_postponed)
     says(sentence, "parameter 0 is its children's alone");
     duite_free(rt, sized);
 }
-END_TEST
 
 /* Who goes on as if it had been given something fails, too. */
-START_TEST(contributing)
+UNIT_TEST(contributing)
 {
     char what[120];
 
@@ -339,9 +336,8 @@ START_TEST(contributing)
          "duite_contribute: there is no parameter 1, only 1");
     asks(DUITE_NONE, (struct args){.deed = CONTRIBUTE}, DUITE_E_RIGHT, "no parameter 0, only 0");
 }
-END_TEST
 
-START_TEST(making)
+UNIT_TEST(making)
 {
     asks(DUITE_NONE, (struct args){.deed = NEW_NOWHERE}, DUITE_E_ARGUMENT,
          "duite_new: nowhere to put");
@@ -349,11 +345,10 @@ START_TEST(making)
     asks(DUITE_NONE, (struct args){.deed = NEW_SIZED}, DUITE_E_ARGUMENT,
          "3 elements are more than 2 at most");
 }
-END_TEST
 
 /* An error that the body could look at is told by its wait, and then not held against it; its own
  * code goes before. */
-START_TEST(looked_at)
+UNIT_TEST(looked_at)
 {
     struct args args = {.deed = FORK_FOREIGN, .child = DUITE_R, .then = 1};
 
@@ -368,23 +363,4 @@ START_TEST(looked_at)
     DUITE_FORK(rt, &parents[DUITE_RWP], &args, object);
     ck_assert_int_eq(duite_wait(rt), DUITE_E_RIGHT);
     says(duite_message(), "holds no right");
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("rights of tasks that fork");
-    TCase *cases = tcase_create("rights of tasks that fork");
-
-    tcase_add_checked_fixture(cases, begin, end);
-    tcase_add_test(cases, rights);
-    tcase_add_test(cases, other_objects);
-    tcase_add_test(cases, other_law);
-    tcase_add_test(cases, reading_and_setting);
-    tcase_add_test(cases, resizing_what_is_postponed);
-    tcase_add_test(cases, contributing);
-    tcase_add_test(cases, making);
-    tcase_add_test(cases, looked_at);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -1,8 +1,7 @@
 /* Starting and stopping: malformed kernels and options, objects left over, many runtimes after one
  * another. */
 
-#include "tests/negative/misuse.h"
-#include "tests/support/unit.h"
+#include "tests/negative/refused.h"
 
 #include <duite_policy.h>
 
@@ -14,119 +13,92 @@ static void refuses(duite_kernel kernel, const char *word)
 {
     const duite_kernel *list[] = {&SET, &kernel, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
-    duite *rt = (duite *)&options;
 
     misuse_mpi();
     options.kernels = list;
+    rt = (duite *)&options;
     ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_KERNEL);
     ck_assert_ptr_null(rt);
-    ck_assert_msg(strstr(duite_message(), word) != NULL, "'%s' does not say '%s'", duite_message(),
-                  word);
+    says(word);
 }
 
-START_TEST(malformed_kernels)
+/* The same of a good one that the test changes by the name `kernel`. */
+#define KERNEL_REFUSED(GOOD, CHANGE, WORD)                                                         \
+    do {                                                                                           \
+        duite_kernel kernel = GOOD;                                                                \
+        CHANGE;                                                                                    \
+        refuses(kernel, WORD);                                                                     \
+    } while (0)
+
+UNIT_TEST(malformed_kernels)
 {
-    duite_kernel kernel = ADD;
-
-    kernel.body = NULL;
-    refuses(kernel, "add");
-    kernel = ADD;
-    kernel.name = NULL;
-    refuses(kernel, "name");
-    kernel = COPY;
-    kernel.access[5] = DUITE_R;
-    refuses(kernel, "copy");
-    kernel = COPY;
-    kernel.access[1] = (duite_mode)17;
-    refuses(kernel, "copy");
-    kernel = MANY;
-    kernel.variadic = (duite_mode)-1;
-    refuses(kernel, "many");
+    KERNEL_REFUSED(ADD, kernel.body = NULL, "add");
+    KERNEL_REFUSED(ADD, kernel.name = NULL, "name");
+    KERNEL_REFUSED(COPY, kernel.access[5] = DUITE_R, "copy");
+    KERNEL_REFUSED(COPY, kernel.access[1] = (duite_mode)17, "copy");
+    KERNEL_REFUSED(MANY, kernel.variadic = (duite_mode)-1, "many");
 }
-END_TEST
 
 /* What runs on several ranks must leave the same everywhere. */
-START_TEST(replicated_kernels)
+UNIT_TEST(replicated_kernels)
 {
-    duite_kernel kernel = EVERYWHERE;
-
-    kernel.name = "alike";
-    kernel.side_effects = 1;
-    refuses(kernel, "side effects");
-    kernel = ADD;
-    kernel.replicated = 1;
-    refuses(kernel, "add");
-    kernel = MANY;
-    kernel.replicated = 1;
-    kernel.variadic = DUITE_CW;
-    refuses(kernel, "accumulates");
-    kernel.variadic = DUITE_RP;
-    refuses(kernel, "postponed");
-    kernel = COPY;
-    kernel.replicated = 1;
-    kernel.access[1] = DUITE_RWP;
-    refuses(kernel, "postponed");
+    KERNEL_REFUSED(EVERYWHERE, (kernel.name = "alike", kernel.side_effects = 1), "side effects");
+    KERNEL_REFUSED(ADD, kernel.replicated = 1, "add");
+    KERNEL_REFUSED(MANY, (kernel.replicated = 1, kernel.variadic = DUITE_CW), "accumulates");
+    KERNEL_REFUSED(MANY, (kernel.replicated = 1, kernel.variadic = DUITE_RP), "postponed");
+    KERNEL_REFUSED(COPY, (kernel.replicated = 1, kernel.access[1] = DUITE_RWP), "postponed");
 }
-END_TEST
 
-START_TEST(kernel_twice)
+UNIT_TEST(kernel_twice)
 {
     const duite_kernel *list[] = {&SET, &ADD, &SET, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
-    duite *rt;
 
     misuse_mpi();
     options.kernels = list;
+    rt = (duite *)&options;
     ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_KERNEL);
     ck_assert_ptr_null(rt);
     refuses((duite_kernel){.name = "set", .body = ADD.body}, "set");
 }
-END_TEST
-
-START_TEST(malformed_options)
-{
-    duite_options options = misuse_options(MPI_COMM_WORLD);
-    duite *rt = (duite *)&options;
-
-    misuse_mpi();
-    ck_assert_int_eq(duite_start(&rt, NULL), DUITE_E_ARGUMENT);
-    ck_assert_ptr_null(rt);
-    options.kernels = NULL;
-    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
-    options = misuse_options(MPI_COMM_NULL);
-    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
-    options = misuse_options(MPI_COMM_WORLD);
-    options.spin_seconds = -1;
-    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
-    options.spin_seconds = __builtin_nan("");
-    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
-    options = misuse_options(MPI_COMM_WORLD);
-    options.lost_seconds = -1;
-    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
-    options.lost_seconds = 8;
-    options.stuck_seconds = -1;
-    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
-    options.stuck_seconds = __builtin_nan("");
-    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
-    options = misuse_options(MPI_COMM_WORLD);
-    options.threads = 1000000;
-    ck_assert_int_ne(duite_start(&rt, &options), DUITE_OK);
-    ck_assert_ptr_null(rt);
-}
-END_TEST
 
 static void refuses_options(const duite_options *options, const char *sentence)
 {
-    duite *rt = (duite *)&rt;
-
+    rt = (duite *)&rt;
     ck_assert_int_eq(duite_start(&rt, options), DUITE_E_ARGUMENT);
     ck_assert_ptr_null(rt);
-    ck_assert_msg(strstr(duite_message(), sentence) != NULL, "'%s' does not say '%s'",
-                  duite_message(), sentence);
+    says(sentence);
+}
+
+/* The same of good ones that the test changes by the name `options`. */
+#define OPTIONS_REFUSED(CHANGE, SENTENCE)                                                          \
+    do {                                                                                           \
+        duite_options options = misuse_options(MPI_COMM_WORLD);                                    \
+        CHANGE;                                                                                    \
+        refuses_options(&options, SENTENCE);                                                       \
+    } while (0)
+
+UNIT_TEST(malformed_options)
+{
+    duite_options many = misuse_options(MPI_COMM_WORLD);
+
+    misuse_mpi();
+    refuses_options(NULL, "");
+    OPTIONS_REFUSED(options.kernels = NULL, "");
+    OPTIONS_REFUSED(options.comm = MPI_COMM_NULL, "");
+    OPTIONS_REFUSED(options.spin_seconds = -1, "");
+    OPTIONS_REFUSED(options.spin_seconds = __builtin_nan(""), "");
+    OPTIONS_REFUSED(options.lost_seconds = -1, "");
+    OPTIONS_REFUSED((options.lost_seconds = 8, options.stuck_seconds = -1), "");
+    OPTIONS_REFUSED((options.lost_seconds = 8, options.stuck_seconds = __builtin_nan("")), "");
+    many.threads = 1000000;
+    rt = (duite *)&rt;
+    ck_assert_int_ne(duite_start(&rt, &many), DUITE_OK);
+    ck_assert_ptr_null(rt);
 }
 
 /* Filled by hand and in part: each is refused by its name, or means what duite.h says of 0. */
-START_TEST(options_left_at_zero)
+UNIT_TEST(options_left_at_zero)
 {
     const duite_options whole = misuse_options(MPI_COMM_WORLD);
     duite_options options = {0};
@@ -144,8 +116,6 @@ START_TEST(options_left_at_zero)
     refuses_options(&options, "no balancer");
     options.balance = whole.balance;
     for (options.bind = 0; options.bind < 2; options.bind++) { /* all the rest may be 0 */
-        duite *rt = NULL;
-
         ck_assert_msg(!duite_start(&rt, &options), "%s", duite_message());
         ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
     }
@@ -153,64 +123,48 @@ START_TEST(options_left_at_zero)
     memset(&options.comm, 0, sizeof options.comm);
     refuses_options(&options, "no communicator (comm)");
 }
-END_TEST
 
-START_TEST(malformed_policies)
+UNIT_TEST(malformed_policies)
 {
-    duite_options options = misuse_options(MPI_COMM_WORLD);
-    duite_scheduler scheduler = *options.scheduler;
-    duite_mapping mapping = *options.mapping;
+    duite_scheduler scheduler = *duite_scheduler_find("fifo");
+    duite_mapping mapping = *misuse_options(MPI_COMM_WORLD).mapping;
+    duite_balancer balance = *duite_balancer_find("delegate");
 
     misuse_mpi();
-    options.scheduler = NULL;
-    refuses_options(&options, "scheduler");
-    options.scheduler = &scheduler;
-    scheduler.victim = NULL;
-    refuses_options(&options, "scheduler");
+    OPTIONS_REFUSED(options.scheduler = NULL, "scheduler");
+    OPTIONS_REFUSED((options.scheduler = &scheduler, scheduler.victim = NULL), "scheduler");
     scheduler = *duite_scheduler_find("fifo");
-    scheduler.name = NULL;
-    refuses_options(&options, "scheduler");
-    scheduler = *duite_scheduler_find("fifo");
+    OPTIONS_REFUSED((options.scheduler = &scheduler, scheduler.name = NULL), "scheduler");
     scheduler.name = "large";
     for (scheduler.state_size = SIZE_MAX; scheduler.state_size > SIZE_MAX - 200;
          scheduler.state_size -= 8)
-        refuses_options(&options, "the scheduler large wants a state of 184467440737095");
-    options = misuse_options(MPI_COMM_WORLD);
-    options.mapping = NULL;
-    refuses_options(&options, "mapping");
-    options.mapping = &mapping;
-    mapping.map = NULL;
-    refuses_options(&options, "mapping");
-    options = misuse_options(MPI_COMM_WORLD);
-    duite_balancer balance = *duite_balancer_find("delegate");
-    options.balance = NULL;
-    refuses_options(&options, "balancer");
-    options.balance = &balance;
-    balance.grant = NULL;
-    refuses_options(&options, "balancer");
+        OPTIONS_REFUSED(options.scheduler = &scheduler,
+                        "the scheduler large wants a state of 184467440737095");
+    OPTIONS_REFUSED(options.mapping = NULL, "mapping");
+    OPTIONS_REFUSED((options.mapping = &mapping, mapping.map = NULL), "mapping");
+    OPTIONS_REFUSED(options.balance = NULL, "balancer");
+    OPTIONS_REFUSED((options.balance = &balance, balance.grant = NULL), "balancer");
     balance = *duite_balancer_find("delegate");
-    balance.state_size = SIZE_MAX;
-    refuses_options(&options, "the balancer delegate wants a state of 18446744073709551615 bytes");
+    OPTIONS_REFUSED((options.balance = &balance, balance.state_size = SIZE_MAX),
+                    "the balancer delegate wants a state of 18446744073709551615 bytes");
     balance = *duite_balancer_find("none");
-    balance.name = NULL;
-    refuses_options(&options, "balancer");
+    OPTIONS_REFUSED((options.balance = &balance, balance.name = NULL), "balancer");
 }
-END_TEST
 
 /* After refusals a start works. */
 static void one_life(MPI_Comm comm, unsigned threads)
 {
-    duite *rt = misuse_start(comm, threads);
     int32_t value = 5;
 
+    rt = misuse_start(comm, threads);
     ck_assert_ptr_nonnull(rt);
     ck_assert_uint_ge(duite_threads(rt), 1);
     if (threads)
         ck_assert_uint_eq(duite_threads(rt), threads);
     ck_assert_int_eq(duite_rank(rt), 0);
     ck_assert_int_eq(duite_ranks(rt), 1);
-    const duite_object a = misuse_new(rt, 1), b = misuse_new(rt, 1);
-
+    a = misuse_new(rt, 1);
+    b = misuse_new(rt, 1);
     ck_assert_int_eq(duite_fork(rt, &SET, &value, 1, &a), DUITE_OK);
     for (int i = 0; i < 20; i++)
         ck_assert_int_eq(duite_fork(rt, &ADD, NULL, 1, &a), DUITE_OK);
@@ -223,7 +177,7 @@ static void one_life(MPI_Comm comm, unsigned threads)
     ck_assert_ptr_null(rt);
 }
 
-START_TEST(fifty_lives)
+UNIT_TEST(fifty_lives)
 {
     for (unsigned i = 0; i < 50; i++) {
         one_life(MPI_COMM_WORLD, 1 + i % 4);
@@ -231,22 +185,18 @@ START_TEST(fifty_lives)
             refuses((duite_kernel){.name = "nothing"}, "nothing");
     }
 }
-END_TEST
 
-START_TEST(threads_by_default)
+UNIT_TEST(threads_by_default)
 {
     one_life(MPI_COMM_WORLD, 0);
     one_life(MPI_COMM_SELF, 0);
 }
-END_TEST
 
-START_TEST(every_policy)
+UNIT_TEST(every_policy)
 {
     for (const char *const *scheduler = duite_scheduler_names(); *scheduler; scheduler++)
         for (const char *const *mapping = duite_mapping_names(); *mapping; mapping++) {
             duite_options options = misuse_options(MPI_COMM_WORLD);
-            duite *rt = NULL;
-
             misuse_mpi();
             options.scheduler = duite_scheduler_find(*scheduler);
             options.mapping = duite_mapping_find(*mapping);
@@ -256,14 +206,12 @@ START_TEST(every_policy)
             ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
         }
 }
-END_TEST
 
 /* MPI is initialised by start if nobody else has, and lasts for further starts. */
-START_TEST(mpi_of_our_own)
+UNIT_TEST(mpi_of_our_own)
 {
     duite_options options = misuse_options(MPI_COMM_WORLD);
     int is = 0;
-    duite *rt;
 
     for (int i = 0; i < 3; i++) {
         ck_assert_int_eq(duite_start(&rt, &options), DUITE_OK);
@@ -274,39 +222,36 @@ START_TEST(mpi_of_our_own)
         ck_assert(!is);
     }
 }
-END_TEST
 
-START_TEST(mpi_is_over)
+UNIT_TEST(mpi_is_over)
 {
     duite_options options = misuse_options(MPI_COMM_WORLD);
-    duite *rt = (duite *)&options;
 
     MPI_Init(NULL, NULL);
     MPI_Finalize();
+    rt = (duite *)&options;
     ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_MPI);
     ck_assert_ptr_null(rt);
 }
-END_TEST
 
 /* Workers call MPI, whichever thread they are. */
-START_TEST(mpi_for_one_thread)
+UNIT_TEST(mpi_for_one_thread)
 {
     duite_options options = misuse_options(MPI_COMM_WORLD);
-    duite *rt = (duite *)&options;
     int level;
 
     MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &level);
     if (level < MPI_THREAD_SERIALIZED) {
+        rt = (duite *)&options;
         ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_MPI);
         ck_assert_ptr_null(rt);
-        ck_assert_ptr_nonnull(strstr(duite_message(), "MPI_Init_thread"));
+        says("MPI_Init_thread");
     }
     MPI_Finalize();
 }
-END_TEST
 
 /* The workers of both would call MPI at the same time. */
-START_TEST(two_at_a_time)
+UNIT_LOOP(two_at_a_time, 0, 2)
 {
     const int levels[] = {MPI_THREAD_SERIALIZED, MPI_THREAD_MULTIPLE};
     duite *first, *second = (duite *)&first;
@@ -320,8 +265,7 @@ START_TEST(two_at_a_time)
     if (levels[_i] == MPI_THREAD_SERIALIZED) {
         ck_assert_int_eq(code, DUITE_E_STATE);
         ck_assert_ptr_null(second);
-        ck_assert_msg(strstr(duite_message(), "MPI_THREAD_MULTIPLE") != NULL, "%s",
-                      duite_message());
+        says("MPI_THREAD_MULTIPLE");
     } else {
         ck_assert_int_eq(code, DUITE_OK);
         ck_assert_int_eq(duite_stop(&second), DUITE_OK);
@@ -329,42 +273,15 @@ START_TEST(two_at_a_time)
     ck_assert_int_eq(duite_stop(&first), DUITE_OK);
     one_life(MPI_COMM_SELF, 2);
 }
-END_TEST
 
-START_TEST(not_freed)
+UNIT_TEST(not_freed)
 {
-    duite *rt = misuse_start(MPI_COMM_WORLD, 2);
-    const duite_object a = misuse_new(rt, 1);
-
+    rt = misuse_start(MPI_COMM_WORLD, 2);
+    a = misuse_new(rt, 1);
     misuse_new(rt, 1);
     misuse_new(rt, 1);
     ck_assert_int_eq(duite_free(rt, a), DUITE_OK);
     ck_assert_int_eq(duite_stop(&rt), DUITE_E_NOT_FREED);
     ck_assert_ptr_null(rt);
-    ck_assert_msg(strstr(duite_message(), "2") != NULL, "'%s' does not say how many",
-                  duite_message());
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("start and stop");
-    TCase *cases = tcase_create("start and stop");
-
-    tcase_add_test(cases, malformed_kernels);
-    tcase_add_test(cases, replicated_kernels);
-    tcase_add_test(cases, kernel_twice);
-    tcase_add_test(cases, malformed_options);
-    tcase_add_test(cases, options_left_at_zero);
-    tcase_add_test(cases, malformed_policies);
-    tcase_add_test(cases, fifty_lives);
-    tcase_add_test(cases, threads_by_default);
-    tcase_add_test(cases, every_policy);
-    tcase_add_test(cases, mpi_of_our_own);
-    tcase_add_test(cases, mpi_is_over);
-    tcase_add_test(cases, mpi_for_one_thread);
-    tcase_add_loop_test(cases, two_at_a_time, 0, 2);
-    tcase_add_test(cases, not_freed);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
+    says("2");
 }

@@ -89,7 +89,7 @@ static void finish(struct attempt *attempt, const int *codes, int32_t expected)
     ck_assert_int_eq(duite_stop(&attempt->rt), DUITE_OK);
 }
 
-START_TEST(from_a_body)
+UNIT_LOOP(from_a_body, 0, 3)
 {
     struct attempt attempt;
 
@@ -98,9 +98,8 @@ START_TEST(from_a_body)
     ck_assert_int_eq(duite_wait(attempt.rt), DUITE_OK);
     finish(&attempt, IN_A_BODY, 1);
 }
-END_TEST
 
-START_TEST(from_another_thread)
+UNIT_TEST(from_another_thread)
 {
     struct attempt attempt;
     pthread_t thread;
@@ -110,9 +109,8 @@ START_TEST(from_another_thread)
     pthread_join(thread, NULL);
     finish(&attempt, NULL, 0);
 }
-END_TEST
 
-START_TEST(between_begin_and_end_of_mpi)
+UNIT_TEST(between_begin_and_end_of_mpi)
 {
     struct attempt attempt;
 
@@ -127,7 +125,6 @@ START_TEST(between_begin_and_end_of_mpi)
     ck_assert_int_eq(duite_wait(attempt.rt), DUITE_E_STATE); /* told once */
     finish(&attempt, NULL, 0);
 }
-END_TEST
 
 static void *stopping_thread(void *context)
 {
@@ -138,7 +135,7 @@ static void *stopping_thread(void *context)
     return NULL;
 }
 
-START_TEST(stop_from_another_thread)
+UNIT_TEST(stop_from_another_thread)
 {
     struct attempt attempt;
     pthread_t thread;
@@ -150,18 +147,4 @@ START_TEST(stop_from_another_thread)
     for (int i = 0; i < CALLS; i++)
         attempt.code[i] = DUITE_E_STATE;
     finish(&attempt, NULL, 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("state");
-    TCase *cases = tcase_create("state");
-
-    tcase_add_loop_test(cases, from_a_body, 0, 3);
-    tcase_add_test(cases, from_another_thread);
-    tcase_add_test(cases, stop_from_another_thread);
-    tcase_add_test(cases, between_begin_and_end_of_mpi);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

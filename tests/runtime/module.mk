@@ -37,8 +37,7 @@ LEAK_TESTS += tests/runtime/test_window tests/runtime/test_memo tests/runtime/te
     tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_sums \
     tests/runtime/test_lines
 TSAN_TESTS += tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_offload_names tests/runtime/test_settle \
-    tests/runtime/test_balance tests/runtime/test_monitor tests/runtime/test_passes tests/runtime/test_passes_random \
-    tests/runtime/test_emit
+    tests/runtime/test_balance tests/runtime/test_monitor tests/runtime/test_passes tests/runtime/test_passes_random
 PLAIN_TESTS += tests/runtime/test_stack
 MEMO_FILES = tests/runtime/repeated.c tests/runtime/repeated.h tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_memo_ahead_SOURCES = tests/runtime/test_memo_ahead.c $(MEMO_FILES)
@@ -83,7 +82,6 @@ tests_runtime_test_passes_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_passes_random_SOURCES = tests/runtime/test_passes_random.c tests/runtime/rounds.c tests/runtime/rounds.h \
     tests/runtime/rounds_run.c tests/runtime/rounds_run.h
 tests_runtime_test_passes_random_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_emit_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graph_sums_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_lines_LDADD = $(DUITE_TEST_LIBS)
 endif

@@ -87,14 +87,16 @@ duite_options repeated_options(int memo)
     return options;
 }
 
-void repeated_start(struct repeated *program, const duite_options *options)
+struct repeated repeated_start(const duite_options *options)
 {
+    struct repeated program = {0};
+
     misuse_mpi();
-    *program = (struct repeated){0};
     atomic_store(&repeated_over, 0);
-    ck_assert_int_eq(duite_start(&program->rt, options), DUITE_OK);
+    ck_assert_int_eq(duite_start(&program.rt, options), DUITE_OK);
     for (int i = 0; i < OBJECTS; i++)
-        program->object[i] = misuse_new(program->rt, 1);
+        program.object[i] = misuse_new(program.rt, 1);
+    return program;
 }
 
 void repeated_fork(struct repeated *program, const duite_kernel *kernel, int to, int from,

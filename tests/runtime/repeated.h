@@ -38,7 +38,7 @@ uint32_t repeated_mixed(uint32_t to, uint32_t from, uint32_t number);
 /* Two threads, the kernels, and options.memo. */
 duite_options repeated_options(int memo);
 
-void repeated_start(struct repeated *program, const duite_options *options);
+struct repeated repeated_start(const duite_options *options);
 /* Forks MIX or TWIN, which fails unless `fails` is 0. */
 void repeated_fork(struct repeated *program, const duite_kernel *kernel, int to, int from,
                    int fails);

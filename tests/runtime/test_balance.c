@@ -111,7 +111,7 @@ static void make_uneven(int n_ranks)
         grid.weight[i] = grid.home[i] == 0 ? 3e-3 : 1e-3;
 }
 
-START_TEST(even)
+UNIT_TEST(even)
 {
     uint64_t next, before = 0;
     make(RANKS);
@@ -122,9 +122,8 @@ START_TEST(even)
     }
     ck_assert_uint_eq(before, 32);
 }
-END_TEST
 
-START_TEST(noise)
+UNIT_TEST(noise)
 {
     uint64_t random = 7;
     make(RANKS);
@@ -134,11 +133,10 @@ START_TEST(noise)
         ck_assert_int_eq(ask(NULL), 0);
     }
 }
-END_TEST
 
 /* 64 blocks of 3 ms, 192 of 1: each rank is to have 96 ms, so at least 32 of the dear ones go, no
  * more than these by much, and the border grows little. */
-START_TEST(one_is_dear)
+UNIT_TEST(one_is_dear)
 {
     uint64_t next;
     make_uneven(RANKS);
@@ -151,9 +149,8 @@ START_TEST(one_is_dear)
     ck_assert_int_eq(ask(&next), 0);
     ck_assert_uint_eq(next, 2);
 }
-END_TEST
 
-START_TEST(same_again)
+UNIT_TEST(same_again)
 {
     int first[BLOCKS];
     make_uneven(RANKS);
@@ -163,18 +160,16 @@ START_TEST(same_again)
     ask(NULL);
     ck_assert_mem_eq(first, grid.home, sizeof first);
 }
-END_TEST
 
 /* The dear rank is the first of a line: what it gives goes on to those behind. */
-START_TEST(line)
+UNIT_TEST(line)
 {
     make_uneven(MAX_RANKS);
     ask(NULL);
     ck_assert(excess() < 0.05);
 }
-END_TEST
 
-START_TEST(some_stay)
+UNIT_TEST(some_stay)
 {
     make_uneven(RANKS);
     for (int i = 0; i < BLOCKS; i++)
@@ -185,10 +180,9 @@ START_TEST(some_stay)
     memset(grid.fixed, 1, sizeof grid.fixed);
     ck_assert_int_eq(ask(NULL), 0);
 }
-END_TEST
 
 /* Work that cannot move is work all the same, and more workers do more. */
-START_TEST(fixed_work)
+UNIT_TEST(fixed_work)
 {
     make(RANKS);
     grid.other[1] = 0.032;
@@ -200,9 +194,8 @@ START_TEST(fixed_work)
     ask(NULL);
     ck_assert(excess() < 0.05);
 }
-END_TEST
 
-START_TEST(too_dear_to_move)
+UNIT_TEST(too_dear_to_move)
 {
     make_uneven(RANKS);
     grid.blocks.byte_seconds = 1; /* hours, for what saves a second in ten replays */
@@ -210,9 +203,8 @@ START_TEST(too_dear_to_move)
     grid.blocks.byte_seconds = 1e-9;
     ck_assert_int_gt(ask(NULL), 0);
 }
-END_TEST
 
-START_TEST(too_little_measured)
+UNIT_TEST(too_little_measured)
 {
     make_uneven(RANKS);
     for (int i = 0; i < BLOCKS; i++)
@@ -222,10 +214,9 @@ START_TEST(too_little_measured)
     grid.blocks.replays = 1; /* of the very first replay */
     ck_assert_int_eq(ask(NULL), 0);
 }
-END_TEST
 
 /* Whatever moves, the same rank is slow again: that is none of the blocks' doing. */
-START_TEST(in_vain)
+UNIT_TEST(in_vain)
 {
     int moves = 0;
     make(RANKS);
@@ -243,10 +234,9 @@ START_TEST(in_vain)
     }
     ck_assert_int_le(moves, 3);
 }
-END_TEST
 
 /* Looks that take long are rare. */
-START_TEST(dear_looks)
+UNIT_TEST(dear_looks)
 {
     uint64_t next;
     make(RANKS);
@@ -254,10 +244,9 @@ START_TEST(dear_looks)
     ask(&next);
     ck_assert_uint_ge(next, 100);
 }
-END_TEST
 
 /* Scattered blocks are mapped again, since no small change makes them even with few bytes. */
-START_TEST(ragged)
+UNIT_TEST(ragged)
 {
     make(RANKS);
     for (int i = 0; i < BLOCKS; i++)
@@ -269,7 +258,6 @@ START_TEST(ragged)
     ck_assert(excess() < 0.05);
     ck_assert(bill(grid.home).cut < 0.3 * cut);
 }
-END_TEST
 
 /* The parts of a new map get the names that leave most blocks where they are. */
 static int quadrants(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
@@ -289,7 +277,7 @@ static int fails(const duite_object_graph *graph, int n_ranks, uint64_t seed, in
     return DUITE_E_MEMORY;
 }
 
-START_TEST(names_of_parts)
+UNIT_TEST(names_of_parts)
 {
     const duite_mapping turned = {.name = "turned", .summary = "", .map = quadrants};
     const duite_mapping broken = {.name = "broken", .summary = "", .map = fails};
@@ -303,9 +291,8 @@ START_TEST(names_of_parts)
     ck_assert(!balance_anew(&grid.blocks, 10, grid.home));
     ck_assert_mem_eq(before, grid.home, sizeof before);
 }
-END_TEST
 
-START_TEST(spent)
+UNIT_TEST(spent)
 {
     static struct work_spent sums;
     static const uint32_t BLOCK[] = {0, 1, 2, 3, 6, 7, 1000, 100000};
@@ -324,28 +311,4 @@ START_TEST(spent)
     ck_assert_uint_eq(work_spent_take(&sums, 7), 5);
     ck_assert_uint_eq(work_spent_take(&sums, DUITE_NO_BLOCK), 0);
     work_spent_free(&sums);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("balance");
-    TCase *test = tcase_create("balance");
-
-    tcase_add_test(test, even);
-    tcase_add_test(test, noise);
-    tcase_add_test(test, one_is_dear);
-    tcase_add_test(test, same_again);
-    tcase_add_test(test, line);
-    tcase_add_test(test, some_stay);
-    tcase_add_test(test, fixed_work);
-    tcase_add_test(test, too_dear_to_move);
-    tcase_add_test(test, too_little_measured);
-    tcase_add_test(test, in_vain);
-    tcase_add_test(test, dear_looks);
-    tcase_add_test(test, ragged);
-    tcase_add_test(test, names_of_parts);
-    tcase_add_test(test, spent);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

@@ -44,7 +44,7 @@ static int nest(const duite_call *call)
     return code ? code : duite_get(call->rt, child, duite_out(call, 0, int32_t));
 }
 
-START_TEST(once)
+UNIT_LOOP(once, 0, (int)(sizeof WAYS / sizeof *WAYS))
 {
     duite_options options = duite_options_default();
     duite_counters counters;
@@ -69,14 +69,4 @@ START_TEST(once)
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
     if (options.trace)
         remove(options.trace);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("busy");
-    TCase *cases = tcase_create("busy");
-    tcase_add_loop_test(cases, once, 0, (int)(sizeof WAYS / sizeof *WAYS));
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

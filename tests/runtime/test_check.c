@@ -166,29 +166,26 @@ static void found(enum deed deed, int where, const char *sentence)
     stop();
 }
 
-START_TEST(a_write_under_r)
+UNIT_TEST(a_write_under_r)
 {
     found(WRITE_READ, 3, "writes to parameter 0, which it only reads: byte 12");
 }
-END_TEST
 
-START_TEST(a_write_to_the_arguments)
+UNIT_TEST(a_write_to_the_arguments)
 {
     found(WRITE_ARGS, 0, "writes to its arguments or beyond (byte 4 of 8)");
 }
-END_TEST
 
-START_TEST(beyond_the_ends)
+UNIT_TEST(beyond_the_ends)
 {
     found(BEYOND_END, 0, "writes beyond an end of parameter 1 (40 bytes)");
     found(BEYOND_END, 6, "goes beyond parameter 1: to byte 64 of 40");
     found(BEFORE_START, 0, "writes beyond an end of parameter 2");
     found(FAR_BEYOND, 0, "goes beyond parameter 0: to byte 8040 of 40");
 }
-END_TEST
 
 /* 40 bytes do not end where a page does: these reads do not fault. */
-START_TEST(reads_beyond_the_ends)
+UNIT_TEST(reads_beyond_the_ends)
 {
     found(READ_BEHIND, 3, "goes beyond parameter 2: it reads before or behind its 40 bytes");
     found(READ_BEFORE, 0, "goes beyond parameter 0: it reads before or behind its 40 bytes");
@@ -196,10 +193,9 @@ START_TEST(reads_beyond_the_ends)
           "goes beyond its arguments: it reads before or behind their 8 bytes");
     found(RETURN_BEHIND, 0, "goes beyond parameter 0: it reads");
 }
-END_TEST
 
 /* As many elements as it has, though there is room for more, which holds no values yet. */
-START_TEST(reads_beyond_the_size)
+UNIT_TEST(reads_beyond_the_size)
 {
     const duite_kernel *kernels[] = {&PEEK, NULL};
     duite_options options = duite_options_default();
@@ -216,23 +212,20 @@ START_TEST(reads_beyond_the_size)
     duite_free(rt, sized);
     duite_stop(&rt);
 }
-END_TEST
 
-START_TEST(bytes_that_w_left_unwritten)
+UNIT_TEST(bytes_that_w_left_unwritten)
 {
     found(UNWRITTEN, 0, "leaves parameter 1, which it overwrites, unwritten at byte 0");
     found(UNWRITTEN, COUNT - 1, "unwritten at byte 36");
 }
-END_TEST
 
-START_TEST(kernels_that_are_not_deterministic)
+UNIT_TEST(kernels_that_are_not_deterministic)
 {
     found(UNSTEADY, 4, "is not deterministic: two runs differ in parameter 3 at byte 16");
     found(UNSTEADY_CODE, 0, "is not deterministic: it returns 0 and then 9");
 }
-END_TEST
 
-START_TEST(stale_pointers)
+UNIT_TEST(stale_pointers)
 {
     const enum deed uses[] = {USE_KEPT, WRITE_KEPT};
     for (int i = 0; i < 2; i++) {
@@ -245,7 +238,6 @@ START_TEST(stale_pointers)
         stop();
     }
 }
-END_TEST
 
 static void values(int32_t (*value)[COUNT])
 {
@@ -253,7 +245,7 @@ static void values(int32_t (*value)[COUNT])
         ck_assert_int_eq(duite_get(rt, object[i], value[i]), DUITE_OK);
 }
 
-START_TEST(honest_programs_are_as_without)
+UNIT_TEST(honest_programs_are_as_without)
 {
     int32_t value[2][4][COUNT];
     for (int check = 0; check < 2; check++) {
@@ -267,7 +259,6 @@ START_TEST(honest_programs_are_as_without)
     ck_assert_mem_eq(value[0], value[1], sizeof value[0]);
     ck_assert_int_eq(value[0][2][0], 40);
 }
-END_TEST
 
 /* Makes its object as long as its argument says, one element after the other. */
 static int grow(const duite_call *call)
@@ -281,7 +272,7 @@ static int grow(const duite_call *call)
 static const duite_kernel GROW = {
     .name = "grow", .body = grow, .access = {DUITE_RW}, .args_size = sizeof(int32_t)};
 
-START_TEST(objects_that_change_size)
+UNIT_TEST(objects_that_change_size)
 {
     const int32_t sizes[] = {3, 20, 7, 12};
     const duite_kernel *kernels[] = {&GROW, NULL};
@@ -306,9 +297,8 @@ START_TEST(objects_that_change_size)
     duite_free(rt, sized);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
-END_TEST
 
-START_TEST(a_failing_body_keeps_its_code)
+UNIT_TEST(a_failing_body_keeps_its_code)
 {
     start(1);
     ck_assert_int_eq(run(&BODY, FAIL, 0), 7);
@@ -316,7 +306,6 @@ START_TEST(a_failing_body_keeps_its_code)
     ck_assert_int_eq(atomic_load(&calls), 1);
     stop();
 }
-END_TEST
 
 static sigjmp_buf out;
 
@@ -325,7 +314,7 @@ static void on_segv(int signal)
     siglongjmp(out, signal);
 }
 
-START_TEST(other_faults_go_to_the_handler_there_was)
+UNIT_TEST(other_faults_go_to_the_handler_there_was)
 {
     volatile int *volatile nowhere = (int *)8;
     signal(SIGSEGV, on_segv);
@@ -340,9 +329,8 @@ START_TEST(other_faults_go_to_the_handler_there_was)
         ck_abort_msg("nothing happened after stop");
     }
 }
-END_TEST
 
-START_TEST(by_the_environment)
+UNIT_TEST(by_the_environment)
 {
     setenv("DUITE_CHECK", "accesses", 1);
     ck_assert_int_eq(duite_options_default().check, 1);
@@ -351,26 +339,4 @@ START_TEST(by_the_environment)
     options.kernels = (const duite_kernel *[]){&BODY, NULL};
     ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
     ck_assert(strstr(duite_message(), "DUITE_CHECK") != NULL);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("check");
-    TCase *cases = tcase_create("checking mode");
-    tcase_add_test(cases, a_write_under_r);
-    tcase_add_test(cases, a_write_to_the_arguments);
-    tcase_add_test(cases, beyond_the_ends);
-    tcase_add_test(cases, reads_beyond_the_ends);
-    tcase_add_test(cases, reads_beyond_the_size);
-    tcase_add_test(cases, bytes_that_w_left_unwritten);
-    tcase_add_test(cases, kernels_that_are_not_deterministic);
-    tcase_add_test(cases, stale_pointers);
-    tcase_add_test(cases, honest_programs_are_as_without);
-    tcase_add_test(cases, objects_that_change_size);
-    tcase_add_test(cases, a_failing_body_keeps_its_code);
-    tcase_add_test(cases, other_faults_go_to_the_handler_there_was);
-    tcase_add_test(cases, by_the_environment);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

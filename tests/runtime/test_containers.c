@@ -22,7 +22,7 @@ static bool entry_before(const void *a, const void *b, const void *table)
     return value[((const struct entry *)a)->key] < value[((const struct entry *)b)->key];
 }
 
-START_TEST(heap_sorts)
+UNIT_LOOP(heap_sorts, 0, 4)
 {
     static struct entry heap[N];
     static int value[N];
@@ -48,10 +48,9 @@ START_TEST(heap_sorts)
     }
     ck_assert_int_eq(out, N);
 }
-END_TEST
 
 /* Pushes between pops: what comes out is the smallest of what is in. */
-START_TEST(heap_mixed)
+UNIT_LOOP(heap_mixed, 0, 4)
 {
     static struct entry heap[N];
     static int value[N];
@@ -74,9 +73,8 @@ START_TEST(heap_mixed)
         }
     }
 }
-END_TEST
 
-START_TEST(ranks_apart)
+UNIT_TEST(ranks_apart)
 {
     uint64_t a[WORDS] = {0}, b[WORDS] = {0};
     ck_assert_uint_eq(base_ranks_words(RANKS), WORDS);
@@ -96,13 +94,12 @@ START_TEST(ranks_apart)
     base_ranks_clear(b, WORDS);
     ck_assert(base_ranks_is_empty(b, WORDS));
 }
-END_TEST
 
 struct node {
     struct node *next;
 };
 
-START_TEST(stack_returns_all)
+UNIT_TEST(stack_returns_all)
 {
     static struct node nodes[N];
     _Atomic(struct node *) stack = NULL;
@@ -117,17 +114,4 @@ START_TEST(stack_returns_all)
     for (int i = 0; i < N; i++, list = list->next)
         ck_assert_ptr_eq(list, &nodes[i]);
     ck_assert_ptr_null(list);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("containers");
-    TCase *test = tcase_create("containers");
-    tcase_add_loop_test(test, heap_sorts, 0, 4);
-    tcase_add_loop_test(test, heap_mixed, 0, 4);
-    tcase_add_test(test, ranks_apart);
-    tcase_add_test(test, stack_returns_all);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

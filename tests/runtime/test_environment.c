@@ -40,7 +40,7 @@ static duite_options plain(void)
     return options;
 }
 
-START_TEST(nothing_is_chosen)
+UNIT_TEST(nothing_is_chosen)
 {
     for (int i = 0; i < N_VARIABLES; i++)
         unsetenv(VARIABLES[i]);
@@ -54,9 +54,8 @@ START_TEST(nothing_is_chosen)
     ck_assert_ptr_null(options.trace);
     start_and_stop(&options, 0);
 }
-END_TEST
 
-START_TEST(the_environment_chooses)
+UNIT_TEST(the_environment_chooses)
 {
     char folder[] = "/tmp/duite.XXXXXX", trace[64];
 
@@ -78,7 +77,6 @@ START_TEST(the_environment_chooses)
     ck_assert_int_eq(unlink(trace), 0);
     rmdir(folder);
 }
-END_TEST
 
 /* ---- The share of the cores ---- */
 
@@ -120,7 +118,7 @@ static void says(const struct work_share *share, unsigned cores, unsigned worker
                   share->limited, share->from, cores, workers, limited, from);
 }
 
-START_TEST(the_least_of_all_is_the_share)
+UNIT_TEST(the_least_of_all_is_the_share)
 {
     static const struct {
         unsigned ranks, asked;
@@ -180,7 +178,6 @@ START_TEST(the_least_of_all_is_the_share)
         says(&share, rows[i].cores, rows[i].workers, rows[i].limited, rows[i].from);
     }
 }
-END_TEST
 
 static void put(const char *folder, const char *name, const char *text)
 {
@@ -200,7 +197,7 @@ static void put(const char *folder, const char *name, const char *text)
 
 /* Of a cgroup and of all above it, version 2 and 1, and of one in a container, whose path is not
  * there. Shared by ranks, rounded down. */
-START_TEST(quotas_of_cgroups)
+UNIT_TEST(quotas_of_cgroups)
 {
     static const char *const none[] = {NULL}, *const task[] = {"SLURM_CPUS_PER_TASK", "1", NULL};
     static const struct {
@@ -239,11 +236,10 @@ START_TEST(quotas_of_cgroups)
     snprintf(command, sizeof command, "rm -r %s", folder);
     ck_assert_int_eq(system(command), 0);
 }
-END_TEST
 
 /* A job of one core on a host with more has one worker, which stays free to run on any of them: all
  * jobs would be bound to the same one. */
-START_TEST(a_job_keeps_to_its_cores)
+UNIT_TEST(a_job_keeps_to_its_cores)
 {
     cpu_set_t before, inside;
     const char *from;
@@ -264,10 +260,9 @@ START_TEST(a_job_keeps_to_its_cores)
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
     unsetenv("SLURM_CPUS_PER_TASK");
 }
-END_TEST
 
 /* Even where the environment makes no sense. */
-START_TEST(the_program_goes_first)
+UNIT_TEST(the_program_goes_first)
 {
     for (int i = 0; i < N_VARIABLES; i++)
         setenv(VARIABLES[i], i % 2 ? "" : "-/-", 1);
@@ -281,7 +276,6 @@ START_TEST(the_program_goes_first)
     options.trace = NULL;
     start_and_stop(&options, 2);
 }
-END_TEST
 
 /* Starting with this value of a variable is refused, in a sentence with both, and these words. */
 static void refuses(const char *variable, const char *value, const char *const *words)
@@ -303,7 +297,7 @@ static void refuses(const char *variable, const char *value, const char *const *
     unsetenv(variable);
 }
 
-START_TEST(wrong_names)
+UNIT_TEST(wrong_names)
 {
     refuses("DUITE_SCHEDULER", "lazy", duite_scheduler_names());
     refuses("DUITE_MAPPING", "flat", duite_mapping_names());
@@ -315,9 +309,8 @@ START_TEST(wrong_names)
     refuses("DUITE_SCHEDULER", "./no-such-file.so", (const char *[]){"cannot be loaded", NULL});
     refuses("DUITE_TRACE", "", (const char *[]){"empty", NULL});
 }
-END_TEST
 
-START_TEST(wrong_numbers)
+UNIT_TEST(wrong_numbers)
 {
     static const char *const threads[] = {"from 0 to 4096", NULL};
     static const char *const seed[] = {"from 0 to 18446744073709551614", NULL};
@@ -334,10 +327,9 @@ START_TEST(wrong_numbers)
     refuses("DUITE_SEED", "18446744073709551615", seed);
     refuses("DUITE_SEED", "18446744073709551616", seed);
 }
-END_TEST
 
 /* What the program set wrongly is not blamed on the environment. */
-START_TEST(the_fault_of_the_program)
+UNIT_TEST(the_fault_of_the_program)
 {
     setenv("DUITE_SCHEDULER", "fifo", 1);
     setenv("DUITE_THREADS", "2", 1);
@@ -352,23 +344,4 @@ START_TEST(the_fault_of_the_program)
     options.threads = UINT32_MAX;
     ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
     ck_assert_ptr_null(strstr(duite_message(), "DUITE_THREADS"));
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("environment");
-    TCase *cases = tcase_create("environment");
-
-    tcase_add_test(cases, nothing_is_chosen);
-    tcase_add_test(cases, the_environment_chooses);
-    tcase_add_test(cases, the_program_goes_first);
-    tcase_add_test(cases, the_least_of_all_is_the_share);
-    tcase_add_test(cases, quotas_of_cgroups);
-    tcase_add_test(cases, a_job_keeps_to_its_cores);
-    tcase_add_test(cases, wrong_names);
-    tcase_add_test(cases, wrong_numbers);
-    tcase_add_test(cases, the_fault_of_the_program);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

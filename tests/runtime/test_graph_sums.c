@@ -86,19 +86,9 @@ static void check_sums(unsigned threads, unsigned rounds)
     ck_assert_int_eq(duite_stop(&rt), 0);
 }
 
-START_TEST(sums_of_a_round)
+UNIT_TEST(sums_of_a_round)
 {
     for (unsigned threads = 1; threads < 4; threads += 2)
         for (unsigned rounds = 1; rounds < 6; rounds++)
             check_sums(threads, rounds);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("graph sums");
-    TCase *test = tcase_create("graph sums");
-    tcase_add_test(test, sums_of_a_round);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

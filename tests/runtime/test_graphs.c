@@ -155,7 +155,7 @@ static void ring_free(duite *rt, const struct ring *ring)
         ck_assert_int_eq(duite_free(rt, ring->x[i % 2][i / 2]), 0);
 }
 
-START_TEST(stencil_as_by_hand)
+UNIT_TEST(stencil_as_by_hand)
 {
     static const unsigned ROUNDS[] = {0, 1, 2, 3, 50, 1};
 
@@ -182,9 +182,8 @@ START_TEST(stencil_as_by_hand)
             stop(rt);
         }
 }
-END_TEST
 
-START_TEST(counters_of_replays)
+UNIT_TEST(counters_of_replays)
 {
     duite *rt = start(2, "steal");
     struct ring ring;
@@ -208,7 +207,6 @@ START_TEST(counters_of_replays)
     ring_free(rt, &ring);
     stop(rt);
 }
-END_TEST
 
 /* ---- Contributions ---- */
 
@@ -273,7 +271,7 @@ static void check_sums(duite_build *build, unsigned rounds, int begun)
     stop(rt);
 }
 
-START_TEST(sums_have_the_same_bits)
+UNIT_TEST(sums_have_the_same_bits)
 {
     for (unsigned rounds = 0; rounds < 6; rounds++)
         for (int begun = 0; begun < 4; begun++) {
@@ -281,7 +279,6 @@ START_TEST(sums_have_the_same_bits)
             check_sums(open_sums_build, rounds, begun);
         }
 }
-END_TEST
 
 /* ---- While a flag holds ---- */
 
@@ -333,7 +330,7 @@ static void check_loop(unsigned threads, int32_t from, uint64_t max, uint64_t ex
     stop(rt);
 }
 
-START_TEST(while_a_flag_holds)
+UNIT_TEST(while_a_flag_holds)
 {
     for (unsigned threads = 1; threads <= 3; threads++) {
         check_loop(threads, 1, 100, 1);
@@ -344,10 +341,9 @@ START_TEST(while_a_flag_holds)
         check_loop(threads, 3, 1, 1);
     }
 }
-END_TEST
 
 /* An object that no task of the graph writes, of every type: 0 ends after one round. */
-START_TEST(flags_of_every_type)
+UNIT_TEST(flags_of_every_type)
 {
     static const duite_type TYPES[] = {DUITE_BYTE, DUITE_I32, DUITE_I64, DUITE_F32, DUITE_F64};
     duite *rt = start(2, "fifo");
@@ -383,19 +379,4 @@ START_TEST(flags_of_every_type)
     ck_assert_int_eq(duite_free(rt, loop.x), 0);
     ck_assert_int_eq(duite_free(rt, loop.y), 0);
     stop(rt);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("graphs");
-    TCase *replays = tcase_create("replays");
-
-    tcase_add_test(replays, stencil_as_by_hand);
-    tcase_add_test(replays, counters_of_replays);
-    tcase_add_test(replays, sums_have_the_same_bits);
-    tcase_add_test(replays, while_a_flag_holds);
-    tcase_add_test(replays, flags_of_every_type);
-    suite_add_tcase(suite, replays);
-    return unit_run(suite);
 }

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-START_TEST(arguments_change)
+UNIT_TEST(arguments_change)
 {
     struct graphs_fixture f = graphs_begin(graphs_build);
 
@@ -18,9 +18,8 @@ START_TEST(arguments_change)
     ck_assert_int_eq(graphs_value_of(f.rt, f.b), 226);
     graphs_end(&f, 0);
 }
-END_TEST
 
-START_TEST(objects_change)
+UNIT_TEST(objects_change)
 {
     struct graphs_fixture f = graphs_begin(graphs_build);
 
@@ -42,7 +41,6 @@ START_TEST(objects_change)
     ck_assert_int_eq(graphs_value_of(f.rt, f.b), 21322);
     graphs_end(&f, 0);
 }
-END_TEST
 
 static int round_build(duite *rt, void *context)
 {
@@ -56,7 +54,7 @@ static int round_build(duite *rt, void *context)
 
 /* A body learns its round: of each replay from 0, run from the compiled form or forked. What it
  * forks itself has none, and neither has what the main program forks. */
-START_TEST(rounds_are_told)
+UNIT_TEST(rounds_are_told)
 {
     struct graphs_fixture f = graphs_begin(round_build), forked = f;
     duite_graph graph;
@@ -78,10 +76,9 @@ START_TEST(rounds_are_told)
     ck_assert_int_eq(duite_graph_free(f.rt, graph), 0);
     graphs_end(&f, 0);
 }
-END_TEST
 
 /* An object of the graph is freed: build is called again, and finds another one. */
-START_TEST(recorded_anew)
+UNIT_TEST(recorded_anew)
 {
     struct graphs_fixture f = graphs_begin(graphs_build), *seen = &f;
     duite_graph graph;
@@ -104,10 +101,9 @@ START_TEST(recorded_anew)
     ck_assert_int_eq(duite_graph_free(f.rt, graph), 0);
     graphs_end(&f, 0);
 }
-END_TEST
 
 /* The same, though nothing is made or gets a home between the replays. */
-START_TEST(recorded_without_what_is_gone)
+UNIT_TEST(recorded_without_what_is_gone)
 {
     struct graphs_fixture f = graphs_begin(graphs_build), *seen = &f;
     const duite_object other = graphs_number(f.rt, 7), old = f.a;
@@ -125,10 +121,9 @@ START_TEST(recorded_without_what_is_gone)
     ck_assert_int_eq(duite_graph_free(f.rt, graph), 0);
     graphs_end(&f, 0);
 }
-END_TEST
 
 /* Build names something that is gone: the replay says so, until there is something else. */
-START_TEST(cannot_be_recorded_anew)
+UNIT_TEST(cannot_be_recorded_anew)
 {
     struct graphs_fixture f = graphs_begin(graphs_build), *seen = &f;
     duite_graph graph;
@@ -147,7 +142,6 @@ START_TEST(cannot_be_recorded_anew)
     ck_assert_int_eq(duite_graph_free(f.rt, graph), 0);
     graphs_end(&f, 0);
 }
-END_TEST
 
 /* ---- Several graphs, and tasks forked between them ---- */
 
@@ -160,7 +154,7 @@ static int other_build(duite *rt, void *context)
     return 0;
 }
 
-START_TEST(graphs_between_tasks)
+UNIT_TEST(graphs_between_tasks)
 {
     struct graphs_fixture f = graphs_begin(graphs_build);
     duite_graph other;
@@ -183,9 +177,8 @@ START_TEST(graphs_between_tasks)
     ck_assert_int_eq(duite_graph_free(f.rt, other), 0);
     graphs_end(&f, 0);
 }
-END_TEST
 
-START_TEST(freed_while_it_runs)
+UNIT_TEST(freed_while_it_runs)
 {
     struct graphs_fixture f = graphs_begin(graphs_build);
 
@@ -204,7 +197,6 @@ START_TEST(freed_while_it_runs)
     }
     graphs_end(&f, 0);
 }
-END_TEST
 
 /* ---- Failures ---- */
 
@@ -219,7 +211,7 @@ static int failing_build(duite *rt, void *context)
     return 0;
 }
 
-START_TEST(failure_in_a_round)
+UNIT_TEST(failure_in_a_round)
 {
     struct graphs_fixture f = graphs_begin(failing_build);
     int64_t value = 5;
@@ -241,9 +233,8 @@ START_TEST(failure_in_a_round)
     ck_assert_int_eq(duite_wait(f.rt), 0);
     graphs_end(&f, 0);
 }
-END_TEST
 
-START_TEST(poisoned_flag_ends)
+UNIT_TEST(poisoned_flag_ends)
 {
     struct graphs_fixture f = graphs_begin(failing_build);
     uint64_t rounds = 0;
@@ -259,9 +250,8 @@ START_TEST(poisoned_flag_ends)
     ck_assert_int_eq(duite_wait(f.rt), 33);
     graphs_end(&f, 0);
 }
-END_TEST
 
-START_TEST(poisoned_before)
+UNIT_TEST(poisoned_before)
 {
     struct graphs_fixture f = graphs_begin(graphs_build);
 
@@ -272,25 +262,4 @@ START_TEST(poisoned_before)
     ck_assert_int_eq(graphs_value_of(f.rt, f.b), 22);
     ck_assert_int_eq(duite_wait(f.rt), 21);
     graphs_end(&f, 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("graphs that change");
-    TCase *changes = tcase_create("changes");
-
-    tcase_add_test(changes, arguments_change);
-    tcase_add_test(changes, objects_change);
-    tcase_add_test(changes, rounds_are_told);
-    tcase_add_test(changes, recorded_anew);
-    tcase_add_test(changes, recorded_without_what_is_gone);
-    tcase_add_test(changes, cannot_be_recorded_anew);
-    tcase_add_test(changes, graphs_between_tasks);
-    tcase_add_test(changes, freed_while_it_runs);
-    tcase_add_test(changes, failure_in_a_round);
-    tcase_add_test(changes, poisoned_flag_ends);
-    tcase_add_test(changes, poisoned_before);
-    suite_add_tcase(suite, changes);
-    return unit_run(suite);
 }

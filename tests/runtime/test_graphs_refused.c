@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-START_TEST(wrong_bindings)
+UNIT_TEST(wrong_bindings)
 {
     struct graphs_fixture f = graphs_begin(graphs_build);
     duite_object longer, other;
@@ -36,9 +36,8 @@ START_TEST(wrong_bindings)
     ck_assert_int_eq(duite_free(f.rt, other), 0);
     graphs_end(&f, 0);
 }
-END_TEST
 
-START_TEST(not_freed_is_told)
+UNIT_TEST(not_freed_is_told)
 {
     struct graphs_fixture f = graphs_begin(graphs_build);
 
@@ -49,7 +48,6 @@ START_TEST(not_freed_is_told)
     ck_assert_int_eq(duite_stop(&f.rt), DUITE_E_NOT_FREED);
     ck_assert_ptr_nonnull(strstr(duite_message(), "graph"));
 }
-END_TEST
 
 static int wrong_build(duite *rt, void *context)
 {
@@ -102,7 +100,7 @@ static int wrong_build(duite *rt, void *context)
     }
 }
 
-START_TEST(not_while_recording)
+UNIT_TEST(not_while_recording)
 {
     struct graphs_fixture f = graphs_begin(graphs_build);
     duite_graph graph;
@@ -117,7 +115,6 @@ START_TEST(not_while_recording)
     ck_assert_int_eq(graphs_value_of(f.rt, f.a), 0);
     graphs_end(&f, 0);
 }
-END_TEST
 
 /* The error of a call counts even if build does not look at it; build's own code is passed on. */
 static int careless_build(duite *rt, void *context)
@@ -137,7 +134,7 @@ static int refusing_build(duite *rt, void *context)
     return 77;
 }
 
-START_TEST(build_fails)
+UNIT_TEST(build_fails)
 {
     struct graphs_fixture f = graphs_begin(graphs_build);
     duite_graph graph;
@@ -153,9 +150,8 @@ START_TEST(build_fails)
     ck_assert_int_eq(graphs_value_of(f.rt, f.a), 0);
     graphs_end(&f, 0);
 }
-END_TEST
 
-START_TEST(no_such_graph)
+UNIT_TEST(no_such_graph)
 {
     struct graphs_fixture f = graphs_begin(graphs_build);
     duite_graph old = f.graph;
@@ -184,7 +180,6 @@ START_TEST(no_such_graph)
     ck_assert_int_eq(graphs_value_of(f.rt, f.a), 0);
     graphs_end(&f, 0);
 }
-END_TEST
 
 /* Every call on a graph, as a thread makes it that is not the main one. */
 static void *try_all(void *context)
@@ -204,7 +199,7 @@ static void *try_all(void *context)
     return NULL;
 }
 
-START_TEST(not_from_another_thread)
+UNIT_TEST(not_from_another_thread)
 {
     struct graphs_fixture f = graphs_begin(graphs_build);
     pthread_t thread;
@@ -216,10 +211,9 @@ START_TEST(not_from_another_thread)
     ck_assert_int_eq(graphs_value_of(f.rt, f.a), 13);
     graphs_end(&f, 0);
 }
-END_TEST
 
 /* An object that the graph's forks cannot take in the place of theirs. */
-START_TEST(wrong_bindings_of_size)
+UNIT_TEST(wrong_bindings_of_size)
 {
     struct graphs_fixture f = graphs_begin(graphs_build);
     duite_object list;
@@ -230,21 +224,4 @@ START_TEST(wrong_bindings_of_size)
     ck_assert_int_eq(duite_wait(f.rt), DUITE_E_BINDING);
     ck_assert_int_eq(duite_free(f.rt, list), 0);
     graphs_end(&f, 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("graphs refused");
-    TCase *refused = tcase_create("refused");
-
-    tcase_add_test(refused, wrong_bindings);
-    tcase_add_test(refused, not_freed_is_told);
-    tcase_add_test(refused, not_while_recording);
-    tcase_add_test(refused, build_fails);
-    tcase_add_test(refused, no_such_graph);
-    tcase_add_test(refused, not_from_another_thread);
-    tcase_add_test(refused, wrong_bindings_of_size);
-    suite_add_tcase(suite, refused);
-    return unit_run(suite);
 }

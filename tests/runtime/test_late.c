@@ -51,7 +51,7 @@ static struct late late_load(void *library)
     return late;
 }
 
-START_TEST(runs)
+UNIT_TEST(runs)
 {
     static const duite_kernel *const kernels[] = {&ADD, NULL};
     void *library = dlopen(".libs/libduite.so", RTLD_NOW | RTLD_LOCAL);
@@ -72,14 +72,4 @@ START_TEST(runs)
     ck_assert_int_eq(got, TASKS * (TASKS - 1) / 2);
     late.free(rt, sum);
     ck_assert_int_eq(late.stop(&rt), DUITE_OK);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("libduite, loaded late");
-    TCase *test = tcase_create("late");
-    tcase_add_test(test, runs);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

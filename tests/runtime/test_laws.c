@@ -145,7 +145,9 @@ static void combine(const duite_kernel *kernel, duite_type type, const void *old
         __VA_ARGS__                                                                                \
     }
 
-START_TEST(integers)
+UNIT_FIXTURE(begin, end)
+
+UNIT_TEST(integers)
 {
     CHECK(GIVE_MIN, DUITE_I32, int32_t, V(5, 5, -7, INT32_MAX), V(1, 5, -7, INT32_MAX - 1),
           V(3, 6, -6, INT32_MAX), V(1, 7, 0, INT32_MAX - 1), V(2, 8, 9, INT32_MAX));
@@ -160,10 +162,9 @@ START_TEST(integers)
     CHECK(GIVE_SUM, DUITE_I64, int64_t, V(5, 0, 0, INT64_MAX), V(8, -1, 0, INT64_MIN),
           V(1, -2, 0, 0), V(2, 1, 0, 1));
 }
-END_TEST
 
 /* Equal ones keep the first, so that 0 and -0 have one answer; the old value is before them all. */
-START_TEST(zeros)
+UNIT_TEST(zeros)
 {
     CHECK(GIVE_MIN, DUITE_F64, double, V(-0.0, 0.0, 1, 1), V(-0.0, 0.0, -0.0, 0.0),
           V(0.0, -0.0, -0.0, 0.0), V(0.0, -0.0, 0.0, -0.0));
@@ -174,7 +175,6 @@ START_TEST(zeros)
     CHECK(GIVE_MAX, DUITE_F32, float, V(-0.0f, 0.0f, -1, -1), V(-0.0f, 0.0f, -0.0f, 0.0f),
           V(0.0f, -0.0f, -0.0f, 0.0f), V(0.0f, -0.0f, 0.0f, -0.0f));
 }
-END_TEST
 
 /* A NaN with a payload, so that it can be told from others. */
 static double nan_of(uint64_t payload)
@@ -196,7 +196,7 @@ static float nanf_of(uint32_t payload)
 }
 
 /* Not a number wins wherever it stands; of several the last does. */
-START_TEST(not_numbers)
+UNIT_TEST(not_numbers)
 {
     const double a = nan_of(1), b = nan_of(2);
     const float c = nanf_of(1), d = nanf_of(2);
@@ -214,9 +214,8 @@ START_TEST(not_numbers)
     CHECK(GIVE_MAX, DUITE_F32, float, V(-INFINITY, -INFINITY, INFINITY, 0),
           V(-INFINITY, -FLT_MAX, INFINITY, INFINITY), V(-INFINITY, -FLT_MAX, 0, INFINITY));
 }
-END_TEST
 
-START_TEST(structures_in_bytes)
+UNIT_TEST(structures_in_bytes)
 {
     static const double GIVEN[][2] = {{5, 0}, {2, 1}, {3, 2}, {2, 3}, {4, 4}};
     const struct least old[2] = {{2.5, 99}, {7, 77}};
@@ -233,11 +232,10 @@ START_TEST(structures_in_bytes)
     ck_assert_int_eq(is[1].place, 77);
     duite_free(rt, object);
 }
-END_TEST
 
 /* Each parameter has its law; without one it is a sum. (1 2)(3 4) 5 under 10 l + r: 12, 34; 10 * 12
  * + 34 = 154; 10 * 154 + 5 = 1545; then the old value 7 in front. */
-START_TEST(a_law_each)
+UNIT_TEST(a_law_each)
 {
     static const int64_t EXPECTED[] = {7 + 15, 7, 70 + 1545, 1, 1};
     duite_object object[5];
@@ -256,11 +254,10 @@ START_TEST(a_law_each)
         duite_free(rt, object[i]);
     }
 }
-END_TEST
 
 /* Contributions of another law come after those before them: max(min(9, 3), 5), not
  * min(max(9, 5), 3). */
-START_TEST(another_law_is_another_access)
+UNIT_TEST(another_law_is_another_access)
 {
     static const int64_t GIVEN[][WIDTH] = {{3, 3, 3, 3}, {5, 5, 5, 5}, {4, 4, 4, 4}, {9, 9, 9, 9}};
     const duite_kernel *const KERNELS[] = {&GIVE_MIN, &GIVE_MAX, &GIVE_MIN, &GIVE_SUM};
@@ -275,21 +272,4 @@ START_TEST(another_law_is_another_access)
     for (int i = 0; i < WIDTH; i++)
         ck_assert_int_eq(value[i], 13);
     duite_free(rt, object);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("laws");
-    TCase *test = tcase_create("laws");
-
-    tcase_add_checked_fixture(test, begin, end);
-    tcase_add_test(test, integers);
-    tcase_add_test(test, zeros);
-    tcase_add_test(test, not_numbers);
-    tcase_add_test(test, structures_in_bytes);
-    tcase_add_test(test, a_law_each);
-    tcase_add_test(test, another_law_is_another_access);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

@@ -137,14 +137,13 @@ static void line_check(unsigned points, unsigned threads, bool recorded)
     ck_assert_int_eq(duite_stop(&rt), 0);
 }
 
-START_TEST(neighbours_wait_for_each_other)
+UNIT_TEST(neighbours_wait_for_each_other)
 {
     for (unsigned points = 2; points <= MOST; points++)
         for (unsigned threads = 2; threads <= 3; threads++)
             for (int recorded = 0; recorded < 2; recorded++)
                 line_check(points, threads, recorded);
 }
-END_TEST
 
 /* ---- Rounds that one value decides on ---- */
 
@@ -179,7 +178,7 @@ static int pair_round(duite *rt, void *context)
            duite_fork(rt, &PASS, NULL, 1, &pair->left);
 }
 
-START_TEST(rounds_that_do_not_come_are_not_awaited)
+UNIT_TEST(rounds_that_do_not_come_are_not_awaited)
 {
     const unsigned replays = unit_quick() ? REPLAYS / 10 : REPLAYS;
     struct pair pair;
@@ -203,15 +202,4 @@ START_TEST(rounds_that_do_not_come_are_not_awaited)
     ck_assert_int_eq(duite_free(rt, pair.value), 0);
     ck_assert_int_eq(duite_free(rt, pair.left), 0);
     ck_assert_int_eq(duite_stop(&rt), 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("lines");
-    TCase *test = tcase_create("lines");
-    tcase_add_test(test, neighbours_wait_for_each_other);
-    tcase_add_test(test, rounds_that_do_not_come_are_not_awaited);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

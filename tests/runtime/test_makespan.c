@@ -116,7 +116,7 @@ static int makespan(const char *scheduler)
 
 /* 40 units, and at most one more for what was taken while the first task still released others;
  * who takes what came first has the chain to do when all else is done: 20 + 40, or one less. */
-START_TEST(a_chain_that_was_forked_last)
+UNIT_TEST(a_chain_that_was_forked_last)
 {
     const int knowing = makespan("priority"), in_order = makespan("fifo");
 
@@ -125,15 +125,4 @@ START_TEST(a_chain_that_was_forked_last)
     ck_assert_int_le(knowing, LENGTH + 1);
     ck_assert_int_ge(in_order, 3 * LENGTH / 2 - 1);
     ck_assert_int_le(in_order, 3 * LENGTH / 2);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("schedules of two workers");
-    TCase *test = tcase_create("virtual time");
-
-    tcase_add_test(test, a_chain_that_was_forked_last);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

@@ -14,15 +14,13 @@
 
 static uint64_t run_rounds(const duite_options *options)
 {
-    struct repeated program;
-
-    repeated_start(&program, options);
+    struct repeated program = repeated_start(options);
     for (int i = 0; i < ROUNDS; i++)
         repeated_round(&program);
     return repeated_stop(&program);
 }
 
-START_TEST(rounds_are_recognised)
+UNIT_TEST(rounds_are_recognised)
 {
     duite_options options = repeated_options(ALWAYS);
 
@@ -30,9 +28,8 @@ START_TEST(rounds_are_recognised)
         for (options.window = 0; options.window < 20; options.window = 4 * options.window + 1)
             ck_assert_uint_ge(run_rounds(&options), OBJECTS * ROUNDS / 2);
 }
-END_TEST
 
-START_TEST(nothing_is_recognised_where_it_is_off)
+UNIT_TEST(nothing_is_recognised_where_it_is_off)
 {
     duite_options off = repeated_options(0), checked = repeated_options(ALWAYS);
     duite_options traced = repeated_options(ALWAYS);
@@ -48,9 +45,8 @@ START_TEST(nothing_is_recognised_where_it_is_off)
     close(file);
     unlink(trace);
 }
-END_TEST
 
-START_TEST(the_environment_switches_it_off)
+UNIT_TEST(the_environment_switches_it_off)
 {
     duite_options options;
 
@@ -69,7 +65,6 @@ START_TEST(the_environment_switches_it_off)
     unsetenv("DUITE_MEMO");
     ck_assert_int_eq(duite_options_default().memo, 1);
 }
-END_TEST
 
 /* In the middle of a round. */
 static void do_other(struct repeated *program, int what, int i)
@@ -108,15 +103,13 @@ static void do_other(struct repeated *program, int what, int i)
     }
 }
 
-START_TEST(anything_else_ends_it)
+UNIT_TEST(anything_else_ends_it)
 {
     duite_options options = repeated_options(ALWAYS);
 
     for (int what = 0; what < 9; what++)
         for (options.window = 0; options.window < 3; options.window += 2) {
-            struct repeated program;
-
-            repeated_start(&program, &options);
+            struct repeated program = repeated_start(&options);
             for (int i = 0; i < 3 * ROUNDS; i++) {
                 for (int k = 0; k < OBJECTS; k++) {
                     if (i % ROUNDS == 40 && k == 5)
@@ -127,16 +120,14 @@ START_TEST(anything_else_ends_it)
             ck_assert_uint_ge(repeated_stop(&program), ROUNDS * OBJECTS / 3);
         }
 }
-END_TEST
 
 /* Rounds on half of the objects, and after them tasks that begin at once and wait in their bodies
  * for what the rounds wrote. */
 static void ask_after_rounds(const duite_options *options)
 {
     const int half = OBJECTS / 2;
-    struct repeated program;
 
-    repeated_start(&program, options);
+    struct repeated program = repeated_start(options);
     for (int turn = 0; turn < 3; turn++) {
         repeated_round(&program);
         repeated_expect(&program, 0);
@@ -153,22 +144,20 @@ static void ask_after_rounds(const duite_options *options)
     ck_assert_uint_ge(repeated_stop(&program), ROUNDS * half);
 }
 
-START_TEST(tasks_that_wait_come_after_rounds)
+UNIT_TEST(tasks_that_wait_come_after_rounds)
 {
     duite_options options = repeated_options(ALWAYS);
 
     for (options.threads = 1; options.threads <= 4; options.threads++)
         ask_after_rounds(&options);
 }
-END_TEST
 
 /* The message names the task by its number. */
 static void fail_at(int memo, int fails_at, char *message, size_t size)
 {
     const duite_options options = repeated_options(memo);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int i = 0; i < ROUNDS * OBJECTS; i++)
         repeated_fork(&program, &MIX, i % OBJECTS, (i + 3) % OBJECTS, i == fails_at ? 17 : 0);
     ck_assert_int_eq(duite_wait(program.rt), 17);
@@ -181,7 +170,7 @@ static void fail_at(int memo, int fails_at, char *message, size_t size)
     ck_assert_uint_ge(repeated_stop(&program), memo ? 100 : 0);
 }
 
-START_TEST(failures_are_the_same)
+UNIT_TEST(failures_are_the_same)
 {
     char without[1000], with[1000];
 
@@ -191,17 +180,15 @@ START_TEST(failures_are_the_same)
         ck_assert_str_eq(with, without);
     }
 }
-END_TEST
 
 /* A round that ends early leaves the poison of what it would have overwritten. */
 static void end_early(int forks, int fails_at)
 {
     const duite_options options = repeated_options(ALWAYS);
     int poisoned[OBJECTS] = {0};
-    struct repeated program;
     uint32_t value;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int i = 0; i < forks; i++) {
         const int to = i % OBJECTS, from = (i + 3) % OBJECTS;
         const struct repeated_argument args = {.number = program.forks++,
@@ -221,27 +208,24 @@ static void end_early(int forks, int fails_at)
     ck_assert_int_eq(duite_stop(&program.rt), 17);
 }
 
-START_TEST(a_round_may_end_anywhere)
+UNIT_TEST(a_round_may_end_anywhere)
 {
     for (int forks = 70; forks < 70 + 3 * OBJECTS; forks++)
         for (int back = 1; back < OBJECTS; back++)
             end_early(forks, forks - back);
 }
-END_TEST
 
 /* Such rounds are compiled at once: when bodies are known to be short, a few rounds are enough.
  * They look long where another program takes the core meanwhile, which does not happen every time.
  */
-START_TEST(short_rounds_are_recognised_at_once)
+UNIT_TEST(short_rounds_are_recognised_at_once)
 {
     duite_options options = repeated_options(1);
     uint64_t most = 0;
 
     options.threads = 1;
     for (int attempt = 0; attempt < 10 && most < 5 * OBJECTS; attempt++) {
-        struct repeated program;
-
-        repeated_start(&program, &options);
+        struct repeated program = repeated_start(&options);
         for (int i = 0; i < 5; i++) /* too few to be recognised */
             repeated_round(&program);
         ck_assert_int_eq(duite_wait(program.rt), DUITE_OK);
@@ -251,16 +235,14 @@ START_TEST(short_rounds_are_recognised_at_once)
     }
     ck_assert_uint_ge(most, 5 * OBJECTS);
 }
-END_TEST
 
 /* So long that a thread compiles them; how many forks come before it has done so is anybody's
  * guess. */
-START_TEST(long_rounds_are_right)
+UNIT_TEST(long_rounds_are_right)
 {
     const duite_options options = repeated_options(1);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int i = 0; i < 200; i++)
         for (int k = 0; k < 300; k++) {
             const int to = k * k / 3 % OBJECTS;
@@ -269,30 +251,26 @@ START_TEST(long_rounds_are_right)
         }
     repeated_stop(&program);
 }
-END_TEST
 
-START_TEST(tasks_that_write_nothing_stay_forks)
+UNIT_TEST(tasks_that_write_nothing_stay_forks)
 {
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int i = 0; i < ROUNDS * OBJECTS; i++)
         ck_assert_int_eq(DUITE_FORK(program.rt, &LOOK, NULL, program.object[0]), DUITE_OK);
     ck_assert_uint_eq(repeated_stop(&program), 0);
 }
-END_TEST
 
 /* Each fork is there twice in a round, with another one after it: a round that comes again is found
  * by more than the fork that it begins with. */
-START_TEST(rounds_begin_where_they_did)
+UNIT_TEST(rounds_begin_where_they_did)
 {
     enum { LENGTH = 6 };
     static const int TO[LENGTH] = {0, 1, 0, 2, 1, 2};
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int begin = 0; begin < LENGTH; begin++) {
         for (int i = begin; i < begin + ROUNDS * LENGTH; i++)
             repeated_fork(&program, &MIX, TO[i % LENGTH], 3, 0);
@@ -300,17 +278,15 @@ START_TEST(rounds_begin_where_they_did)
     }
     ck_assert_uint_ge(repeated_stop(&program), LENGTH * ROUNDS * LENGTH * 3 / 4);
 }
-END_TEST
 
 /* Forks repeat themselves until the next round is recorded, and then no more: no plan is kept of
  * that. */
-START_TEST(almost_a_round)
+UNIT_TEST(almost_a_round)
 {
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
     int kept = 0, n = 0;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     const struct plan_memo *memo = (const struct plan_memo *)program.rt->taker;
 
     for (; memo->state != MEMO_RECORD && n < ROUNDS * OBJECTS; n++)
@@ -323,17 +299,15 @@ START_TEST(almost_a_round)
     ck_assert_int_eq(kept, 0);
     repeated_stop(&program);
 }
-END_TEST
 
 /* A round that was recognised is forked again when one of its objects is no more, and another one
  * has its slot. */
-START_TEST(rounds_of_a_freed_object)
+UNIT_TEST(rounds_of_a_freed_object)
 {
     enum { FREED = 5 };
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int i = 0; i < ROUNDS; i++)
         repeated_round(&program);
     ck_assert_int_eq(duite_wait(program.rt), DUITE_OK); /* so that its plan is free */
@@ -361,15 +335,13 @@ START_TEST(rounds_of_a_freed_object)
     ck_assert_uint_ge(before, ROUNDS * OBJECTS / 2);
     ck_assert_uint_eq(repeated_stop(&program), before);
 }
-END_TEST
 
 /* Of a round that is recognised, too. */
-START_TEST(arguments_that_no_body_finds)
+UNIT_TEST(arguments_that_no_body_finds)
 {
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int i = 0; i < ROUNDS * OBJECTS; i++)
         ck_assert_int_eq(DUITE_FORK(program.rt, &HOLD, NULL, program.object[i % OBJECTS]),
                          DUITE_OK);
@@ -380,28 +352,4 @@ START_TEST(arguments_that_no_body_finds)
             i % 100 == 99 ? DUITE_E_ARGUMENT : DUITE_OK);
     ck_assert_int_eq(duite_wait(program.rt), DUITE_E_ARGUMENT);
     repeated_stop(&program);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("memo");
-    TCase *cases = tcase_create("memo");
-
-    tcase_add_test(cases, rounds_are_recognised);
-    tcase_add_test(cases, nothing_is_recognised_where_it_is_off);
-    tcase_add_test(cases, the_environment_switches_it_off);
-    tcase_add_test(cases, anything_else_ends_it);
-    tcase_add_test(cases, tasks_that_wait_come_after_rounds);
-    tcase_add_test(cases, failures_are_the_same);
-    tcase_add_test(cases, a_round_may_end_anywhere);
-    tcase_add_test(cases, short_rounds_are_recognised_at_once);
-    tcase_add_test(cases, long_rounds_are_right);
-    tcase_add_test(cases, tasks_that_write_nothing_stay_forks);
-    tcase_add_test(cases, rounds_begin_where_they_did);
-    tcase_add_test(cases, almost_a_round);
-    tcase_add_test(cases, rounds_of_a_freed_object);
-    tcase_add_test(cases, arguments_that_no_body_finds);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

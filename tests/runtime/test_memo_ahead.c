@@ -4,43 +4,37 @@
 #include "tests/support/unit.h"
 
 /* The main program runs ahead of the bodies by more rounds than a ring has. */
-START_TEST(rings_turn)
+UNIT_TEST(rings_turn)
 {
     duite_options options = repeated_options(ALWAYS);
 
     for (options.window = 0; options.window <= 1000; options.window += 1000) {
-        struct repeated program;
-
-        repeated_start(&program, &options);
+        struct repeated program = repeated_start(&options);
         for (int i = 0; i < (unit_quick() ? 4000 : 12000); i++)
             repeated_round(&program);
         ck_assert_uint_ge(repeated_stop(&program), 1000);
     }
 }
-END_TEST
 
 /* A task in the middle of a replay is held until a ring is full; its slot is not written again. */
-START_TEST(a_full_ring_is_left)
+UNIT_TEST(a_full_ring_is_left)
 {
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     atomic_store(&repeated_held_at, 300 * OBJECTS);
     for (int i = 0; i < 6000; i++)
         repeated_round(&program);
     atomic_store(&repeated_held_at, 0);
     ck_assert_uint_ge(repeated_stop(&program), 1000);
 }
-END_TEST
 
 /* More arguments than a ring has room for, and no task of theirs can run. */
-START_TEST(forks_go_ahead)
+UNIT_TEST(forks_go_ahead)
 {
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int again = 0; again < 2; again++) {
         atomic_store(&repeated_held, 1);
         for (int i = 0; i < OBJECTS; i++)
@@ -53,15 +47,13 @@ START_TEST(forks_go_ahead)
     }
     ck_assert_uint_ge(repeated_stop(&program), 1000);
 }
-END_TEST
 
 /* A task may run as soon as it is forked, whatever comes after it. */
-START_TEST(forks_are_not_held_back)
+UNIT_TEST(forks_are_not_held_back)
 {
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int i = 0; i < ROUNDS; i++)
         for (int k = 0; k < OBJECTS; k++) {
             repeated_fork(&program, &MIX, k, (k + 3) % OBJECTS, 0);
@@ -70,15 +62,13 @@ START_TEST(forks_are_not_held_back)
         }
     ck_assert_uint_ge(repeated_stop(&program), OBJECTS * ROUNDS / 2);
 }
-END_TEST
 
 /* More rounds than there are plans, each of them again and again. */
-START_TEST(rounds_take_turns)
+UNIT_TEST(rounds_take_turns)
 {
     const duite_options options = repeated_options(ALWAYS);
-    struct repeated program;
 
-    repeated_start(&program, &options);
+    struct repeated program = repeated_start(&options);
     for (int turn = 0; turn < 3; turn++)
         for (int kind = 1; kind < 13; kind++)
             for (int i = 0; i < ROUNDS; i++)
@@ -86,19 +76,4 @@ START_TEST(rounds_take_turns)
                     repeated_fork(&program, k % 3 ? &MIX : &TWIN, k * kind % OBJECTS,
                                   (k * kind + 1) % OBJECTS, 0);
     ck_assert_uint_ge(repeated_stop(&program), 5000);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("memo");
-    TCase *cases = tcase_create("ahead");
-
-    tcase_add_test(cases, rings_turn);
-    tcase_add_test(cases, a_full_ring_is_left);
-    tcase_add_test(cases, forks_go_ahead);
-    tcase_add_test(cases, forks_are_not_held_back);
-    tcase_add_test(cases, rounds_take_turns);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -77,7 +77,7 @@ static int threads_before(void)
 }
 
 /* One thread, from the first look on until the last one is removed. */
-START_TEST(looks)
+UNIT_TEST(looks)
 {
     struct base_monitor monitor = {0};
     struct looked often = {0}, seldom = {0}, later = {0}, refused = {.refuses = 5};
@@ -110,11 +110,10 @@ START_TEST(looks)
         c.seconds = 3600;
     }
 }
-END_TEST
 
 /* A report returns although nobody reads standard error, a pipe or a socket; and comes whole where
  * somebody does. */
-START_TEST(blocked_report)
+UNIT_LOOP(blocked_report, 0, 2)
 {
     char text[200] = "";
     int end[2], before = dup(STDERR_FILENO);
@@ -133,16 +132,4 @@ START_TEST(blocked_report)
     dup2(before, STDERR_FILENO);
     ck_assert(!(flags & O_NONBLOCK));
     ck_assert_str_eq(text, "all of it");
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("monitor");
-    TCase *test = tcase_create("monitor");
-
-    tcase_add_test(test, looks);
-    tcase_add_loop_test(test, blocked_report, 0, 2);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

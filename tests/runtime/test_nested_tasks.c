@@ -266,7 +266,9 @@ static void says(const char *text, const char *what)
     ck_assert_msg(strstr(text, what) != NULL, "'%s' does not say '%s'", text, what);
 }
 
-START_TEST(depth)
+UNIT_FIXTURE(begin, end)
+
+UNIT_TEST(depth)
 {
     DUITE_FORK(rt, &DEEPER, DUITE_ARGS(struct args, .n = 20000), object);
     holds(object, 7);
@@ -275,10 +277,9 @@ START_TEST(depth)
     DUITE_FORK(rt, &DEEPER_WAITING, DUITE_ARGS(struct args, .n = 300), object);
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
 }
-END_TEST
 
 /* As many tasks as one likes, and the memory of fifty. */
-START_TEST(memory)
+UNIT_LOOP(memory, 0, 3)
 {
     const struct args args = {.n = unit_quick() ? 20000 : 500000};
 
@@ -288,9 +289,8 @@ START_TEST(memory)
     holds(object, args.n - 1);
     ck_assert_msg((int64_t)grown < 1 << 20, "%zu bytes", grown);
 }
-END_TEST
 
-START_TEST(sizes)
+UNIT_TEST(sizes)
 {
     int32_t values[MOST];
     size_t count = 0;
@@ -310,10 +310,9 @@ START_TEST(sizes)
     ck_assert_uint_eq(count, MOST);
     duite_free(rt, list);
 }
-END_TEST
 
 /* The first in the reference order is told, with its place in the tree, by all who wait. */
-START_TEST(failures)
+UNIT_TEST(failures)
 {
     duite_object other;
     int32_t value;
@@ -337,9 +336,8 @@ START_TEST(failures)
     holds(other, 7);
     duite_free(rt, other);
 }
-END_TEST
 
-START_TEST(reading)
+UNIT_TEST(reading)
 {
     duite_object other;
 
@@ -350,7 +348,6 @@ START_TEST(reading)
     holds(other, 12);
     duite_free(rt, other);
 }
-END_TEST
 
 static duite_object pair[2];
 
@@ -369,7 +366,7 @@ static int build_postponed(duite *runtime, void *context)
 }
 
 /* The task itself contributes, with children and without any, or fails. */
-START_TEST(contributing)
+UNIT_TEST(contributing)
 {
     int32_t value = -1;
 
@@ -385,9 +382,8 @@ START_TEST(contributing)
     ck_assert_int_eq(duite_wait(rt), 24);
     duite_set(rt, object, NULL);
 }
-END_TEST
 
-START_TEST(replays)
+UNIT_TEST(replays)
 {
     duite_graph graph;
     uint64_t rounds;
@@ -409,22 +405,4 @@ START_TEST(replays)
     duite_graph_free(rt, graph);
     for (int i = 0; i < 2; i++)
         duite_free(rt, pair[i]);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("tasks that fork");
-    TCase *cases = tcase_create("tasks that fork");
-
-    tcase_add_checked_fixture(cases, begin, end);
-    tcase_add_test(cases, depth);
-    tcase_add_loop_test(cases, memory, 0, 3);
-    tcase_add_test(cases, sizes);
-    tcase_add_test(cases, failures);
-    tcase_add_test(cases, reading);
-    tcase_add_test(cases, contributing);
-    tcase_add_test(cases, replays);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -6,33 +6,30 @@
 #define OWNER(variadic, n, ...)                                                                    \
     task_owner((const duite_mode[DUITE_MAX_ACCESS]){__VA_ARGS__}, variadic, n)
 
-START_TEST(the_first_written)
+UNIT_TEST(the_first_written)
 {
     ck_assert_uint_eq(OWNER(DUITE_NONE, 1, DUITE_W), 0);
     ck_assert_uint_eq(OWNER(DUITE_NONE, 3, DUITE_R, DUITE_CW, DUITE_RW), 2);
     ck_assert_uint_eq(OWNER(DUITE_NONE, 3, DUITE_R, DUITE_W, DUITE_RW), 1);
     ck_assert_uint_eq(OWNER(DUITE_NONE, 3, DUITE_RP, DUITE_CWP, DUITE_WP), 2);
 }
-END_TEST
 
-START_TEST(else_the_first_read)
+UNIT_TEST(else_the_first_read)
 {
     ck_assert_uint_eq(OWNER(DUITE_NONE, 2, DUITE_R, DUITE_R), 0);
     ck_assert_uint_eq(OWNER(DUITE_NONE, 3, DUITE_CW, DUITE_RP, DUITE_R), 1);
     ck_assert_uint_eq(OWNER(DUITE_CW, 9, DUITE_CW, DUITE_R), 1);
 }
-END_TEST
 
-START_TEST(nobody)
+UNIT_TEST(nobody)
 {
     ck_assert_uint_eq(OWNER(DUITE_NONE, 0, DUITE_NONE), TASK_NOBODY);
     ck_assert_uint_eq(OWNER(DUITE_NONE, 2, DUITE_CW, DUITE_CWP), TASK_NOBODY);
     ck_assert_uint_eq(OWNER(DUITE_CW, 1000, DUITE_NONE), TASK_NOBODY);
 }
-END_TEST
 
 /* Of the further parameters the first one decides, if there is any. */
-START_TEST(further_parameters)
+UNIT_TEST(further_parameters)
 {
     ck_assert_uint_eq(OWNER(DUITE_RW, 1, DUITE_R), 0);
     ck_assert_uint_eq(OWNER(DUITE_RW, 2, DUITE_R), 1);
@@ -44,9 +41,8 @@ START_TEST(further_parameters)
     ck_assert_uint_eq(task_owner(full, DUITE_W, DUITE_MAX_ACCESS), TASK_NOBODY);
     ck_assert_uint_eq(task_owner(full, DUITE_W, DUITE_MAX_ACCESS + 2), DUITE_MAX_ACCESS);
 }
-END_TEST
 
-START_TEST(ranks)
+UNIT_TEST(ranks)
 {
     ck_assert_int_eq(task_owner_rank(TASK_ANYWHERE, false, 3), 3);
     ck_assert_int_eq(task_owner_rank(TASK_ANYWHERE, false, -1), 0);
@@ -54,18 +50,4 @@ START_TEST(ranks)
     ck_assert_int_eq(task_owner_rank(TASK_ANYWHERE, true, 3), TASK_EVERYWHERE);
     ck_assert(task_owner_decides(TASK_ANYWHERE, false));
     ck_assert(!task_owner_decides(0, false) && !task_owner_decides(TASK_ANYWHERE, true));
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("owner rule");
-    TCase *test = tcase_create("owner rule");
-    tcase_add_test(test, the_first_written);
-    tcase_add_test(test, else_the_first_read);
-    tcase_add_test(test, nobody);
-    tcase_add_test(test, further_parameters);
-    tcase_add_test(test, ranks);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

@@ -9,71 +9,64 @@
 static void lowered(const char *objects, const char *forks, uint32_t flag, const char *expected)
 {
     struct rounds_made made;
-    struct plan_round round = {0};
+    UNIT_OWNED(plan_round_free) struct plan_round round = {0};
     rounds_make(&made, objects, forks);
     made.source.flag = flag;
     ck_assert(plan_lower(&round, &made.source));
     ck_assert_str_eq(rounds_nodes(&round), expected);
-    plan_round_free(&round);
 }
 
-START_TEST(lower_forks)
+UNIT_TEST(lower_forks)
 {
     lowered("8 8", "w0; r0 u1; =0; ;", PLAN_NONE, "task(w0) task(r0 u1) set(w0) task()");
     lowered("8 8", "w0; r1;", 1, "task(w0) task(r1) flag(r1)");
     lowered("8", "", PLAN_NONE, "");
 }
-END_TEST
 
 /* The first other access ends contributions, another law does, and the round. */
-START_TEST(lower_sums)
+UNIT_TEST(lower_sums)
 {
     lowered("8 8", "c0; c0; r0;", PLAN_NONE, "task(w2) task(w3) sum(u0 r2 r3 | 1+2) task(r0)");
     lowered("8", "c0; C0;", PLAN_NONE, "task(w1) sum(u0 r1) task(w2) sum(u0 r2)");
     lowered("8 8", "c1; c0; c1;", PLAN_NONE,
             "task(w2) task(w3) task(w4) sum(u0 r3) sum(u1 r2 r4 | 1+2)");
 }
-END_TEST
 
 /* Six leaves: (1 2)(3 4) and (5 6), folded from the right. */
-START_TEST(lower_trees)
+UNIT_TEST(lower_trees)
 {
     lowered("8", "c0; c0; c0; c0; c0; c0;", PLAN_NONE,
             "task(w1) task(w2) task(w3) task(w4) task(w5) task(w6) "
             "sum(u0 r1 r2 r3 r4 r5 r6 | 1+2 3+4 1+3 5+6 1+5)");
     lowered("8", "c0; c0; c0;", PLAN_NONE, "task(w1) task(w2) task(w3) sum(u0 r1 r2 r3 | 1+2 1+3)");
 }
-END_TEST
 
 /* ---- Edges ---- */
 
 static void edged(const char *objects, const char *forks, uint32_t flag, const char *expected)
 {
     struct rounds_made made;
-    struct plan_round round = {0};
+    UNIT_OWNED(plan_round_free) struct plan_round round = {0};
     rounds_make(&made, objects, forks);
     made.source.flag = flag;
     ck_assert(plan_lower(&round, &made.source) && plan_edges(&round));
     ck_assert_str_eq(rounds_edges(&round), expected);
-    plan_round_free(&round);
 }
 
-START_TEST(edges_within_and_between)
+UNIT_TEST(edges_within_and_between)
 {
     edged("8", "w0; r0; r0;", PLAN_NONE, "0>1 0>2 2~>0 1~>0");
     edged("8 8", "w0; w0; r0;", PLAN_NONE, "0>1 1>2 2~>0");
     edged("8 8", "u0; u1;", PLAN_NONE, "0~>0 1~>1");
     edged("8 8", "r0; r1;", PLAN_NONE, "0~>0 1~>1");
 }
-END_TEST
 
 /* Two uses of one place by two nodes give one edge; the deciding node joins all roots. */
-START_TEST(edges_of_flags)
+UNIT_TEST(edges_of_flags)
 {
     edged("8 8", "w0 w1; r0 r1;", PLAN_NONE, "0>1 1~>0");
     edged("8 8", "w0; w1;", 0, "0>2 1>2 2~>0 1~>1 2~>1");
 }
-END_TEST
 
 /* ---- Assign, messages, part ---- */
 
@@ -103,18 +96,16 @@ static void assigned_free(struct assigned *s)
 
 static void part_is(const struct assigned *s, int rank, const char *expected)
 {
-    struct plan_messages messages;
-    struct plan_round part = {0};
+    UNIT_OWNED(plan_messages_free) struct plan_messages messages;
+    UNIT_OWNED(plan_round_free) struct plan_round part = {0};
     ck_assert(plan_messages_find(&messages, &s->assignment, rank) && plan_part(&part, &messages));
     ck_assert_str_eq(rounds_nodes(&part), expected);
-    plan_round_free(&part);
-    plan_messages_free(&messages);
 }
 
 /* A halo: each rank reads what the other one wrote in the round before. Version 2 and 3 leave. */
-START_TEST(exchange)
+UNIT_TEST(exchange)
 {
-    struct assigned s;
+    UNIT_OWNED(assigned_free) struct assigned s;
     assign(&s, "8 8 8 8", "r0 r1 w2; r0 r1 w3; r2 w0; r3 w1;", (const int[]){0, 1, 0, 1}, 2);
     ck_assert_str_eq(rounds_ranks(&s.assignment), "0 1 0 1");
     ck_assert_str_eq(rounds_needs(&s.assignment), "0:01 1:01 4:0 5:1");
@@ -122,24 +113,20 @@ START_TEST(exchange)
     ck_assert_str_eq(rounds_messages(&s.messages), "0>1 in 0: v0; 1>0 in 0: v1");
     part_is(&s, 0, "receive from 1 in 0(w4) send to 1 in 0(r0) task(r0 r4 w2) task(r2 w0)");
     part_is(&s, 1, "receive from 0 in 0(w4) send to 0 in 0(r1) task(r4 r1 w3) task(r3 w1)");
-    assigned_free(&s);
 }
-END_TEST
 
 /* A replicated task and a set run where they are read; one that nobody reads at home, or, if it is
  * overwritten, nowhere. */
-START_TEST(assign_where_read)
+UNIT_TEST(assign_where_read)
 {
-    struct assigned s;
+    UNIT_OWNED(assigned_free) struct assigned s;
     assign(&s, "8 8 8", "R w0; r0 w1; @2 r0; =2; =2;", (const int[]){0, 1, 1}, 3);
     ck_assert_str_eq(rounds_ranks(&s.assignment), "12 1 2 - 1");
     ck_assert_str_eq(rounds_messages(&s.messages), "");
-    assigned_free(&s);
 }
-END_TEST
 
 /* A small sum is added by all who read it, a large one at the home. */
-START_TEST(assign_sums)
+UNIT_TEST(assign_sums)
 {
     struct assigned s;
     assign(&s, "8 8 8", "r1 c0; r2 c0; r0 u1; r0 u2;", (const int[]){0, 0, 1}, 2);
@@ -156,14 +143,13 @@ START_TEST(assign_sums)
     ck_assert_str_eq(rounds_messages(&s.messages), "1>0 in 0: p1; 0>1 in 1: v3");
     assigned_free(&s);
 }
-END_TEST
 
 /* Five ranks have a leaf each, and all add up: in three rounds each sends one message to the rank
  * 1, 2 and 4 places before it. Halves combine on the way; what the other one has is not sent again.
  */
-START_TEST(sums_by_rounds)
+UNIT_TEST(sums_by_rounds)
 {
-    struct assigned s;
+    UNIT_OWNED(assigned_free) struct assigned s;
     assign(&s, "8 8 8 8 8 8",
            "r1 c0; r2 c0; r3 c0; r4 c0; r5 c0; r0 u1; r0 u2; r0 u3; r0 u4; r0 u5;",
            (const int[]){0, 0, 1, 2, 3, 4}, 5);
@@ -177,13 +163,11 @@ START_TEST(sums_by_rounds)
             "receive from 1 in 0(w6) receive from 2 in 1(w7) receive from 4 in 2(w8) "
             "task(r1 w9) send to 4 in 0(r9) partial(u9 u6 | 0+1) send to 3 in 1(r9) "
             "partial(u9 u7 | 0+1) send to 1 in 2(r9) sum(u0 u9 u8 | 1+2) task(r0 u1)");
-    assigned_free(&s);
 }
-END_TEST
 
 /* What one of five ranks makes and all read goes on from those that have it; the value of the round
  * before does, too. */
-START_TEST(values_by_rounds)
+UNIT_TEST(values_by_rounds)
 {
     struct assigned s;
     assign(&s, "8 8 8 8 8 8", "w0; r0 u1; r0 u2; r0 u3; r0 u4; r0 u5;",
@@ -199,11 +183,10 @@ START_TEST(values_by_rounds)
                      "2>1 in 0: v0; 2>0 in 1: v0; 1>4 in 1: v0; 2>3 in 2: v0");
     assigned_free(&s);
 }
-END_TEST
 
 /* A rank combines what it has alone before it sends. */
 /* Values of up to four ranks, or of half of them, go directly. */
-START_TEST(values_by_rounds_of_many)
+UNIT_TEST(values_by_rounds_of_many)
 {
     static const struct {
         int n_ranks, readers;
@@ -219,11 +202,10 @@ START_TEST(values_by_rounds_of_many)
         ck_assert_uint_eq(n, all[i].rounds ? (size_t)all[i].readers + 1 : 0);
     }
 }
-END_TEST
 
-START_TEST(part_of_pieces)
+UNIT_TEST(part_of_pieces)
 {
-    struct assigned s;
+    UNIT_OWNED(assigned_free) struct assigned s;
     assign(&s, "4096 8 8", "r1 c0; r1 c0; r2 c0; r2 c0; r2 c0; r0 u1;", (const int[]){0, 0, 1}, 2);
     ck_assert_uint_eq(s.messages.n_pieces, 3);
     ck_assert_str_eq(rounds_messages(&s.messages), "1>0 in 0: p1 p2");
@@ -232,13 +214,11 @@ START_TEST(part_of_pieces)
     part_is(&s, 0,
             "receive from 1 in 0(w3 w4) task(r1 w5) task(r1 w6) partial(u5 u6 | 0+1) "
             "sum(u0 u5 u3 u4 | 1+2 1+3) task(r0 u1)");
-    assigned_free(&s);
 }
-END_TEST
 
 /* What is overwritten before its message can go is copied aside; what is written on from a message
  * is brought home first. */
-START_TEST(part_copies)
+UNIT_TEST(part_copies)
 {
     struct assigned s;
     assign(&s, "8 8 8", "w0; @1 r0 w1; u0; @1 r0 w2; w0;", (const int[]){0, 1, 1}, 2);
@@ -250,37 +230,12 @@ START_TEST(part_copies)
     part_is(&s, 1, "receive from 0 in 0(w2) copy(r2 w0) task(u0) send to 0 in 1(r0)");
     assigned_free(&s);
 }
-END_TEST
 
 /* What waits for a message goes in a later phase, so that no two messages wait for each other. */
-START_TEST(phases)
+UNIT_TEST(phases)
 {
-    struct assigned s;
+    UNIT_OWNED(assigned_free) struct assigned s;
     assign(&s, "8 8 8", "w0; @1 r0 w1; @2 r1 w2; @0 r2;", (const int[]){0, 1, 2}, 3);
     ck_assert_str_eq(rounds_phases(&s.messages), "0 1 2 3");
     ck_assert_str_eq(rounds_messages(&s.messages), "0>1 in 0: v3; 1>2 in 1: v4; 2>0 in 2: v5");
-    assigned_free(&s);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("passes");
-    TCase *test = tcase_create("passes");
-    tcase_add_test(test, lower_forks);
-    tcase_add_test(test, lower_sums);
-    tcase_add_test(test, lower_trees);
-    tcase_add_test(test, edges_within_and_between);
-    tcase_add_test(test, edges_of_flags);
-    tcase_add_test(test, exchange);
-    tcase_add_test(test, assign_where_read);
-    tcase_add_test(test, assign_sums);
-    tcase_add_test(test, sums_by_rounds);
-    tcase_add_test(test, values_by_rounds);
-    tcase_add_test(test, values_by_rounds_of_many);
-    tcase_add_test(test, part_of_pieces);
-    tcase_add_test(test, part_copies);
-    tcase_add_test(test, phases);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

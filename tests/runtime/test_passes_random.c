@@ -137,7 +137,7 @@ static void check_assignment(const struct plan_assignment *a)
 static void check_more_ranks(const struct plan_assignment *a, const int *home)
 {
     enum { MORE = 150 };
-    struct plan_assignment more;
+    UNIT_OWNED(plan_assignment_free) struct plan_assignment more;
     const bool flagged = a->round->source->flag != PLAN_NONE;
     ck_assert(plan_assign(&more, a->round, home, a->n_ranks + MORE));
     for (int rank = 0; rank < more.n_ranks; rank++) {
@@ -150,7 +150,6 @@ static void check_more_ranks(const struct plan_assignment *a, const int *home)
             ck_assert_int_eq(base_ranks_has(plan_needs_set(&more, v), rank),
                              some && base_ranks_has(plan_needs_set(like, v), as));
     }
-    plan_assignment_free(&more);
 }
 
 /* One message at most from a rank to another in a phase, and items in order. */
@@ -186,7 +185,7 @@ static size_t tasks_of(const struct plan_assignment *a)
 
 static void run_parts(struct run *run, const struct plan_round *round, const int *home)
 {
-    struct plan_assignment a;
+    UNIT_OWNED(plan_assignment_free) struct plan_assignment a;
     struct plan_messages all, own;
     ck_assert(plan_assign(&a, round, home, run->n_ranks));
     ck_assert(plan_messages_find(&all, &a, PLAN_ALL));
@@ -219,7 +218,6 @@ static void run_parts(struct run *run, const struct plan_round *round, const int
         plan_round_free(&run->rank[r].part);
     }
     plan_messages_free(&all);
-    plan_assignment_free(&a);
 }
 
 /* One rank: the round is run as it was lowered. */
@@ -249,7 +247,7 @@ static void queues_begin(struct run *run)
 static void random_passes(struct run *run, uint64_t seed, bool wide)
 {
     struct rounds_made made;
-    struct plan_round round = {0};
+    UNIT_OWNED(plan_round_free) struct plan_round round = {0};
     static struct reference reference;
     uint64_t random = seed;
     int n_ranks = 1 + (int)draw(&random, wide ? MAX_RANKS : FEW_RANKS), home[ROUNDS_MAX];
@@ -271,10 +269,9 @@ static void random_passes(struct run *run, uint64_t seed, bool wide)
         run->rank[r].part = (struct plan_round){0};
     ck_assert(plan_lower(&round, &made.source));
     run_parts(run, &round, home);
-    plan_round_free(&round);
 }
 
-START_TEST(random_rounds)
+UNIT_TEST(random_rounds)
 {
     struct run *run = calloc(1, sizeof *run);
     ck_assert_ptr_nonnull(run);
@@ -291,14 +288,4 @@ START_TEST(random_rounds)
         for (int to = 0; to < MAX_RANKS; to++)
             free(run->queue[from][to]);
     free(run);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("random passes");
-    TCase *test = tcase_create("random passes");
-    tcase_add_test(test, random_rounds);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

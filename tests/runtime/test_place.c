@@ -26,7 +26,7 @@ static bool is_whole(const struct data_failure *failure)
 }
 
 /* At every depth, of siblings of which at least one is whole. */
-START_TEST(order)
+UNIT_LOOP(order, 0, FULL)
 {
     const unsigned ones = (unsigned)_i;
     for (size_t i = 0; i < N; i++)
@@ -39,18 +39,16 @@ START_TEST(order)
             ck_assert_ptr_eq(data_failure_first(&late, &early), &early);
         }
 }
-END_TEST
 
-START_TEST(nothing_follows_what_was_cut_off)
+UNIT_TEST(nothing_follows_what_was_cut_off)
 {
     struct data_failure failure = place(FULL - 1, 0x80), before = failure;
     ck_assert_uint_eq(failure.path_length, FULL);
     data_path_add(&failure, 1);
     ck_assert_mem_eq(&failure, &before, sizeof failure);
 }
-END_TEST
 
-START_TEST(printed)
+UNIT_TEST(printed)
 {
     char text[1024];
     struct data_failure failure = {.number = 7};
@@ -62,16 +60,4 @@ START_TEST(printed)
     data_path_print(&failure, text, sizeof text);
     ck_assert_uint_eq(strlen(text), 1 + 2 * (FULL - 1) + 3);
     ck_assert_str_eq(text + strlen(text) - 5, ".1...");
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("place");
-    TCase *test = tcase_create("place");
-    tcase_add_loop_test(test, order, 0, FULL);
-    tcase_add_test(test, nothing_follows_what_was_cut_off);
-    tcase_add_test(test, printed);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

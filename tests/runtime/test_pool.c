@@ -48,7 +48,7 @@ static void *check_and_free(void *argument)
     return fine ? argument : NULL;
 }
 
-START_TEST(disjoint)
+UNIT_LOOP(disjoint, 0, N_SIZES - 1)
 {
     static struct cargo a, b;
     a.size = b.size = SIZES[_i] < 2000 ? SIZES[_i] : 2000;
@@ -63,10 +63,9 @@ START_TEST(disjoint)
     }
     base_pool_leave();
 }
-END_TEST
 
 /* One thread takes, another gives back: nothing is lost, nothing is used twice. */
-START_TEST(journey)
+UNIT_TEST(journey)
 {
     static struct cargo cargo;
     cargo.size = 192;
@@ -81,9 +80,8 @@ START_TEST(journey)
     }
     base_pool_leave();
 }
-END_TEST
 
-START_TEST(large_and_nothing)
+UNIT_TEST(large_and_nothing)
 {
     base_pool_enter();
     for (int i = 0; i < N_SIZES; i++) {
@@ -96,10 +94,9 @@ START_TEST(large_and_nothing)
     ck_assert_ptr_null(base_pool_take(SIZE_MAX));
     base_pool_leave();
 }
-END_TEST
 
 /* Through small pages, large pages and blocks that the system moves. */
-START_TEST(growing)
+UNIT_TEST(growing)
 {
     enum { MANY = 10000000 };
     size_t capacity = 0;
@@ -117,17 +114,4 @@ START_TEST(growing)
     ck_assert_ptr_null(base_grow(array, &capacity, SIZE_MAX / 4, sizeof *array));
     ck_assert_uint_eq(capacity, before);
     free(array);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("pool");
-    TCase *test = tcase_create("pool");
-    tcase_add_loop_test(test, disjoint, 0, N_SIZES - 1);
-    tcase_add_test(test, journey);
-    tcase_add_test(test, large_and_nothing);
-    tcase_add_test(test, growing);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

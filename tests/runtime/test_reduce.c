@@ -45,7 +45,7 @@ static void leaf(struct values *values, unsigned first)
     snprintf(values->text[first], TEXT, "%u", first);
 }
 
-START_TEST(one_rank)
+UNIT_LOOP(one_rank, 1, LEAVES + 1)
 {
     static struct values values;
     struct data_subtree tree[LEAVES + 1];
@@ -63,9 +63,8 @@ START_TEST(one_rank)
     if (n == 7)
         ck_assert_str_eq(values.text[0], "(((0 1) (2 3)) ((4 5) 6))");
 }
-END_TEST
 
-START_TEST(several_ranks)
+UNIT_LOOP(several_ranks, 1, LEAVES + 1)
 {
     static struct values values;
     static struct data_subtree part[RANKS][LEAVES], all[2][LEAVES];
@@ -91,7 +90,6 @@ START_TEST(several_ranks)
     expect(expected, 0, n);
     ck_assert_str_eq(values.text[0], expected);
 }
-END_TEST
 
 /* ---- Lists that ranks pass on ---- */
 
@@ -122,7 +120,7 @@ static void member_take(struct member *to, struct member *from)
 
 /* Each rank takes the list of the one 2^round places behind: each has everything in the end, some
  * of it several times and in larger subtrees on the way. */
-START_TEST(passed_on)
+UNIT_LOOP(passed_on, 1, LEAVES + 1)
 {
     static struct member member[MEMBERS], before[MEMBERS];
     const unsigned n = (unsigned)_i;
@@ -151,11 +149,10 @@ START_TEST(passed_on)
         ck_assert_str_eq(member[rank].values.text[0], expected);
     }
 }
-END_TEST
 
 /* The list of leaves in a row is what comes of putting them in one by one; a whole tree ends with
  * the last leaf. */
-START_TEST(in_a_row)
+UNIT_LOOP(in_a_row, 1, LEAVES + 1)
 {
     struct data_subtree at[DATA_SUBTREES_IN_ROW];
     struct data_subtrees list = {.at = at};
@@ -171,17 +168,4 @@ START_TEST(in_a_row)
     ck_assert_uint_eq(whole.first, 0);
     ck_assert_uint_eq(data_subtree_end(&whole, (uint64_t)_i), (uint64_t)_i);
     ck_assert(_i < 2 || (UINT64_C(1) << (whole.level - 1)) < (uint64_t)_i);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("reduce");
-    TCase *test = tcase_create("reduce");
-    tcase_add_loop_test(test, one_rank, 1, LEAVES + 1);
-    tcase_add_loop_test(test, several_ranks, 1, LEAVES + 1);
-    tcase_add_loop_test(test, passed_on, 1, LEAVES + 1);
-    tcase_add_loop_test(test, in_a_row, 1, LEAVES + 1);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

@@ -72,7 +72,7 @@ static void run_ready(const char *scheduler)
     ck_assert_int_eq(n_ran, TASKS);
 }
 
-START_TEST(one_worker)
+UNIT_TEST(one_worker)
 {
     static const char *const OLDEST_FIRST[] = {"fifo", "static"},
                              *NEWEST_FIRST[] = {"lifo", "steal"};
@@ -86,7 +86,6 @@ START_TEST(one_worker)
             ck_assert_int_eq(order[i], TASKS - 1 - i);
     }
 }
-END_TEST
 
 /* By priority, and in fork order among equals. */
 static void check_order(const int *seen)
@@ -111,7 +110,7 @@ static int build_urgent(duite *rt, void *context)
 }
 
 /* Forked and replayed, one worker runs them in their order. */
-START_TEST(by_priority)
+UNIT_TEST(by_priority)
 {
     duite *rt = start("priority", 1);
     duite_object object[TASKS];
@@ -133,7 +132,6 @@ START_TEST(by_priority)
     duite_graph_free(rt, graph);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
-END_TEST
 
 /* Steps of a ring of blocks with two objects each, the second of which follows the first: returns
  * what is left in block 0, and fills worker_of. */
@@ -168,7 +166,7 @@ static int32_t run_ring(const char *scheduler, unsigned threads, duite_counters 
 }
 
 /* The worker of a block is its number modulo the workers, whatever object of it is written. */
-START_TEST(fixed_workers)
+UNIT_TEST(fixed_workers)
 {
     for (unsigned threads = 1; threads <= 3; threads++) {
         duite_counters counters;
@@ -180,7 +178,6 @@ START_TEST(fixed_workers)
                 ck_assert_uint_eq(worker_of[i][s], i % threads);
     }
 }
-END_TEST
 
 /* Whether there is a built-in one of each name, which calls itself so and is, or is not, for tests.
  */
@@ -198,7 +195,7 @@ static bool are_rows(const char *const *names, bool for_tests)
     return fine;
 }
 
-START_TEST(rows)
+UNIT_TEST(rows)
 {
     ck_assert(are_rows(duite_scheduler_names(), false));
     ck_assert(are_rows(duite_mapping_names(), false));
@@ -206,9 +203,8 @@ START_TEST(rows)
     ck_assert(are_rows(sched_test_names(), true));
     ck_assert(are_rows(balance_test_names(), true));
 }
-END_TEST
 
-START_TEST(same_results)
+UNIT_TEST(same_results)
 {
     duite_counters counters;
     const int32_t first = run_ring("fifo", 1, &counters);
@@ -217,10 +213,9 @@ START_TEST(same_results)
         for (unsigned threads = 1; threads <= 4; threads++)
             ck_assert_int_eq(run_ring(*name, threads, &counters), first);
 }
-END_TEST
 
 /* Asked for one of several workers: one queue or the own one, an end, and whom to steal from. */
-START_TEST(decisions)
+UNIT_TEST(decisions)
 {
     static const struct {
         const char *name;
@@ -252,9 +247,8 @@ START_TEST(decisions)
         free(state);
     }
 }
-END_TEST
 
-START_TEST(chains_at_home)
+UNIT_TEST(chains_at_home)
 {
     const struct duite_scheduler *s = duite_scheduler_find("static");
     void *state = calloc(1, s->state_size);
@@ -264,10 +258,9 @@ START_TEST(chains_at_home)
     ck_assert_int_eq(s->chain(state, &(duite_ready){.kernel = "note", .block = 7}), 0);
     free(state);
 }
-END_TEST
 
 /* What was run by worker 2, or 3, in a replay. */
-START_TEST(stays_warm)
+UNIT_TEST(stays_warm)
 {
     static const char *const NAMES[] = {"steal", "locality"};
     for (int i = 0; i < 2; i++) {
@@ -283,22 +276,4 @@ START_TEST(stays_warm)
         ck_assert_int_eq(s->chain(state, &other), 0);
         free(state);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("schedulers");
-    TCase *test = tcase_create("schedulers");
-
-    tcase_add_test(test, one_worker);
-    tcase_add_test(test, fixed_workers);
-    tcase_add_test(test, rows);
-    tcase_add_test(test, same_results);
-    tcase_add_test(test, decisions);
-    tcase_add_test(test, by_priority);
-    tcase_add_test(test, chains_at_home);
-    tcase_add_test(test, stays_warm);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

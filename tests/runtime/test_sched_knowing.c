@@ -52,7 +52,7 @@ static int build_chain(duite *rt, void *context)
 }
 
 /* Under `priority` one worker takes the chain first, though it was forked last. */
-START_TEST(longest_path_first)
+UNIT_TEST(longest_path_first)
 {
     static const int EXPECTED[] = {20, 23, 21, 22, 24, 0, 1, 2};
     duite *rt = start(duite_scheduler_find("priority"), 1);
@@ -72,12 +72,11 @@ START_TEST(longest_path_first)
     duite_graph_free(rt, graph);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
-END_TEST
 
 /* ---- Distances ---- */
 
 /* The first ring is tried before the second, each from a random one on. */
-START_TEST(nearest_first)
+UNIT_TEST(nearest_first)
 {
     static const unsigned WORKER[] = {2, 4, 5, 0, 1}, DISTANCE[] = {1, 1, 1, 3, 3};
     const struct duite_scheduler *s = duite_scheduler_find("locality");
@@ -101,7 +100,6 @@ START_TEST(nearest_first)
     ck_assert_uint_eq(firsts, 1u << 2 | 1u << 4 | 1u << 5);
     free(state);
 }
-END_TEST
 
 /* ---- Schedulers that do not keep to the rules ---- */
 
@@ -132,7 +130,7 @@ static unsigned always(void *state, unsigned attempt)
 
 /* Queues that there are not, and rounds that do not end: all tasks run once, and the wait names who
  * it was. */
-START_TEST(misbehaving)
+UNIT_TEST(misbehaving)
 {
     static const duite_scheduler WRONG = {.name = "wrong",
                                           .summary = "for tests",
@@ -158,17 +156,4 @@ START_TEST(misbehaving)
         "to return DUITE_NO_QUEUE at last");
     duite_free(rt, a);
     ck_assert_int_eq(duite_stop(&rt), DUITE_E_ARGUMENT);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("schedulers that know more");
-    TCase *test = tcase_create("knowing");
-
-    tcase_add_test(test, longest_path_first);
-    tcase_add_test(test, nearest_first);
-    tcase_add_test(test, misbehaving);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

@@ -87,7 +87,7 @@ static void check_told(const duite_ready *ready)
     }
 }
 
-START_TEST(what_is_said)
+UNIT_TEST(what_is_said)
 {
     duite *rt = start();
     int32_t value;
@@ -115,14 +115,13 @@ START_TEST(what_is_said)
     duite_graph_free(rt, graph);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
-END_TEST
 
 static int build_warm(duite *rt, void *context)
 {
     return duite_fork(rt, &LONG, NULL, 1, context);
 }
 
-START_TEST(what_is_warm)
+UNIT_TEST(what_is_warm)
 {
     duite *rt = start();
     duite_object a = misuse_new(rt, 1);
@@ -138,16 +137,4 @@ START_TEST(what_is_warm)
     duite_free(rt, a);
     duite_graph_free(rt, graph);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("schedulers");
-    TCase *test = tcase_create("told");
-
-    tcase_add_test(test, what_is_said);
-    tcase_add_test(test, what_is_warm);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

@@ -66,7 +66,9 @@ static void end(void)
     data_table_stop(&table);
 }
 
-START_TEST(edges_and_weights)
+UNIT_FIXTURE(begin, end)
+
+UNIT_TEST(edges_and_weights)
 {
     make(0, 4);
     map_hint(&table, object[0], 2, 2, &object[1], (double[]){5, 7});
@@ -84,11 +86,10 @@ START_TEST(edges_and_weights)
     for (int i = 0; i < 4; i++)
         ck_assert(at(i)->home == i % RANKS && at(i)->holder == i % RANKS);
 }
-END_TEST
 
 /* 0 <- 1 <- 2 <- 3 made in both directions, and 4 alone: two nodes, their weights and edges added
  * up. */
-START_TEST(followers)
+UNIT_TEST(followers)
 {
     for (int upwards = 0; upwards < 2; upwards++) {
         make(0, 5);
@@ -108,11 +109,10 @@ START_TEST(followers)
         ck_assert_int_eq(at(4)->home, 1);
     }
 }
-END_TEST
 
 /* Who follows an object with a home goes there, in a chain too; edges to settled ones do not count.
  */
-START_TEST(of_settled_ones)
+UNIT_TEST(of_settled_ones)
 {
     make(0, 5);
     settle();
@@ -133,10 +133,9 @@ START_TEST(of_settled_ones)
     settle();
     ck_assert_int_eq(seen.calls, 2);
 }
-END_TEST
 
 /* Blocks count the leaders of each rank, over settlings and slots that are taken again. */
-START_TEST(blocks)
+UNIT_TEST(blocks)
 {
     make(0, 8);
     map_colocate(&table, object[3], object[0]);
@@ -149,10 +148,9 @@ START_TEST(blocks)
     settle();
     ck_assert(at(5)->home == 0 && at(5)->block == 3);
 }
-END_TEST
 
 /* A chain of very many, each link before its leader: it has to end some time. */
-START_TEST(long_chain)
+UNIT_TEST(long_chain)
 {
     enum { LONG = 300000 };
     duite_object first, last, next;
@@ -169,7 +167,6 @@ START_TEST(long_chain)
     ck_assert(seen.weight[0] == LONG + 1);
     ck_assert_uint_eq(data_object_find(&table, first)->block, 0);
 }
-END_TEST
 
 /* A failed mapping leaves everything to the next try. */
 static int map_wrongly(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
@@ -192,7 +189,7 @@ static uint32_t homes_by_default(int first, int n)
 
 /* Objects of which nothing was hinted go round, also from one time to the next; with weights alone
  * they are cut into ranges. */
-START_TEST(without_hints)
+UNIT_TEST(without_hints)
 {
     make(0, 7);
     ck_assert_uint_eq(homes_by_default(0, 7), 1231231);
@@ -202,9 +199,8 @@ START_TEST(without_hints)
     ck_assert_int_eq(map_hint(&table, object[11], 4, 0, NULL, NULL), DUITE_OK);
     ck_assert_uint_eq(homes_by_default(11, 6), 122333);
 }
-END_TEST
 
-START_TEST(wrong_mapping)
+UNIT_TEST(wrong_mapping)
 {
     const duite_mapping wrong = {.name = "wrong", .summary = "", .map = map_wrongly};
 
@@ -214,22 +210,4 @@ START_TEST(wrong_mapping)
     ck_assert_int_eq(at(3)->home, -1);
     settle();
     ck_assert(seen.weight[2] == 6 && seen.edge[0][2] == 1);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("settle");
-    TCase *test = tcase_create("settle");
-
-    tcase_add_checked_fixture(test, begin, end);
-    tcase_add_test(test, edges_and_weights);
-    tcase_add_test(test, followers);
-    tcase_add_test(test, of_settled_ones);
-    tcase_add_test(test, blocks);
-    tcase_add_test(test, long_chain);
-    tcase_add_test(test, without_hints);
-    tcase_add_test(test, wrong_mapping);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

@@ -93,7 +93,7 @@ static void end(int64_t expected)
 
 /* ---- Tests; the number is that of threads ---- */
 
-START_TEST(all_wait_for_one_task)
+UNIT_LOOP(all_wait_for_one_task, 1, 4)
 {
     begin((unsigned)_i);
     DUITE_FORK(rt, &INCREASE, NULL, value);
@@ -101,9 +101,8 @@ START_TEST(all_wait_for_one_task)
         DUITE_FORK(rt, &LOOK, NULL, value, sum);
     end(MANY);
 }
-END_TEST
 
-START_TEST(each_waits_for_its_own)
+UNIT_LOOP(each_waits_for_its_own, 1, 4)
 {
     begin((unsigned)_i);
     for (int i = 0; i < MANY; i++) {
@@ -112,10 +111,9 @@ START_TEST(each_waits_for_its_own)
     }
     end((int64_t)MANY * (MANY + 1) / 2);
 }
-END_TEST
 
 /* The chain of writers is longer than what runs inline in one go. */
-START_TEST(all_wait_for_a_chain)
+UNIT_LOOP(all_wait_for_a_chain, 1, 4)
 {
     begin((unsigned)_i);
     for (int i = 0; i < MANY; i++)
@@ -124,7 +122,6 @@ START_TEST(all_wait_for_a_chain)
         DUITE_FORK(rt, &LOOK, NULL, value, sum);
     end((int64_t)MANY * MANY);
 }
-END_TEST
 
 static int64_t nest(int32_t levels, int *code)
 {
@@ -135,7 +132,7 @@ static int64_t nest(int32_t levels, int *code)
     return result;
 }
 
-START_TEST(nesting_ends_where_the_stack_does)
+UNIT_LOOP(nesting_ends_where_the_stack_does, 1, 4)
 {
     int code;
 
@@ -148,18 +145,4 @@ START_TEST(nesting_ends_where_the_stack_does)
     ck_assert_int_eq(duite_wait(rt), DUITE_E_DEPTH);
     ck_assert_int_eq(nest(100, &code), 100);
     end(0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("stack");
-    TCase *cases = tcase_create("stack");
-
-    tcase_add_loop_test(cases, all_wait_for_one_task, 1, 4);
-    tcase_add_loop_test(cases, each_waits_for_its_own, 1, 4);
-    tcase_add_loop_test(cases, all_wait_for_a_chain, 1, 4);
-    tcase_add_loop_test(cases, nesting_ends_where_the_stack_does, 1, 4);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -73,15 +73,14 @@ static void run_steps(size_t window, unsigned threads)
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
 
-START_TEST(forks_are_throttled)
+UNIT_TEST(forks_are_throttled)
 {
     for (unsigned threads = 1; threads <= 4; threads++)
         for (size_t window = 1; window <= 16; window *= 4)
             run_steps(window, threads);
 }
-END_TEST
 
-START_TEST(forks_go_ahead_without_a_window)
+UNIT_TEST(forks_go_ahead_without_a_window)
 {
     duite *rt = start(0, 1);
     const duite_object a = misuse_new(rt, 1), b = misuse_new(rt, 1);
@@ -94,10 +93,9 @@ START_TEST(forks_go_ahead_without_a_window)
     duite_free(rt, b);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
-END_TEST
 
 /* What they are combined by is forked by the access that comes after them. */
-START_TEST(contributions_do_not_wait_to_be_combined)
+UNIT_TEST(contributions_do_not_wait_to_be_combined)
 {
     for (unsigned threads = 1; threads <= 3; threads++) {
         duite *rt = start(1, threads);
@@ -114,7 +112,6 @@ START_TEST(contributions_do_not_wait_to_be_combined)
         ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
     }
 }
-END_TEST
 
 static int build(duite *rt, void *context)
 {
@@ -127,7 +124,7 @@ static int build(duite *rt, void *context)
     return code;
 }
 
-START_TEST(recording_is_not_throttled)
+UNIT_TEST(recording_is_not_throttled)
 {
     duite *rt = start(1, 2);
     duite_object object[2] = {misuse_new(rt, 1), misuse_new(rt, 1)};
@@ -148,18 +145,4 @@ START_TEST(recording_is_not_throttled)
     duite_free(rt, object[0]);
     duite_free(rt, object[1]);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("window");
-    TCase *window = tcase_create("window");
-
-    tcase_add_test(window, forks_are_throttled);
-    tcase_add_test(window, forks_go_ahead_without_a_window);
-    tcase_add_test(window, contributions_do_not_wait_to_be_combined);
-    tcase_add_test(window, recording_is_not_throttled);
-    suite_add_tcase(suite, window);
-    return unit_run(suite);
 }

@@ -11,4 +11,11 @@ static inline const char *rank_said(void)
     return rank ? rank : getenv("PMI_RANK");
 }
 
+/* How many ranks it says that there are; NULL as above. */
+static inline const char *ranks_said(void)
+{
+    const char *size = getenv("OMPI_COMM_WORLD_SIZE");
+    return size ? size : getenv("PMI_SIZE");
+}
+
 #endif

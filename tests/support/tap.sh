@@ -4,6 +4,7 @@
 #     ok NAME COMMAND...               passes when COMMAND exits with 0
 #     exits STATUS NAME COMMAND...     passes when COMMAND exits with STATUS
 #     not_ok_expected NAME COMMAND...  passes when COMMAND fails by itself: neither a signal nor the time limit
+#     refuses SENTENCE COMMAND...      for these: COMMAND ends with 2, prints nothing, and says why in one line, which has the sentence
 #     skip NAME REASON                 one case that cannot run here
 #     skip_all REASON                  ends the script as skipped (77)
 # and the plan and the exit status follow at its end. What COMMAND prints is kept in $scratch/output, and shown as
@@ -100,6 +101,16 @@ not_ok_expected() {
         echo "(exit status $tap_got; a plain failure was expected)" >> "$scratch/output"
         tap_result 1 "$tap_name"
     fi
+}
+
+refuses() {
+    tap_sentence=$1 tap_status=0
+    shift
+    "$@" > "$scratch/printed" 2> "$scratch/complained" || tap_status=$?
+    cat "$scratch/printed" "$scratch/complained"
+    # A sanitizer without its symbolizer adds lines of its own, and argp tells of --help.
+    test $tap_status = 2 && test ! -s "$scratch/printed" && grep -qF -e "$tap_sentence" "$scratch/complained" &&
+        test "$(grep -vc -e '^==[0-9]*==' -e ': warning: ' -e '^Try `' -e '^information\.$' "$scratch/complained")" = 1
 }
 
 skip() {

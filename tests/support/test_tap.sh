@@ -48,6 +48,17 @@ not ok 3 - dies
 # (exit status 139; a plain failure was expected)
 1..3
 status 1'
+ok "a refusal, in one line and nothing else" gives 'plan_later; ok plain refuses why sh -c "echo why >&2; exit 2"
+ok works refuses why sh -c "echo why >&2"; ok talks refuses why sh -c "echo why >&2; echo and >&2; exit 2"' 'ok 1 - plain
+not ok 2 - works
+# why
+# (exit status 1)
+not ok 3 - talks
+# why
+# and
+# (exit status 1)
+1..3
+status 1'
 ok "one case skipped" gives 'plan_later; skip this "no such thing"' 'ok 1 - this # SKIP no such thing
 1..1
 status 0'

@@ -1,5 +1,5 @@
 /* The environment is prepared before the first case is made, since check reads its time limit
- * there; nothing here outlives unit_run. What the user set in the environment wins. */
+ * there. What the user set in the environment wins. The list of cases is made before main(). */
 
 #include "tests/support/unit.h"
 
@@ -10,6 +10,14 @@
 #include <string.h>
 #include <unistd.h>
 
+static struct unit_cases *first_cases, **last_cases = &first_cases;
+
+void unit_register(struct unit_cases *cases)
+{
+    *last_cases = cases;
+    last_cases = &cases->next;
+}
+
 __attribute__((constructor)) static void prepare(void)
 {
     setenv("CK_DEFAULT_TIMEOUT", "1200", 0);
@@ -19,6 +27,16 @@ __attribute__((constructor)) static void prepare(void)
         setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 0);
         setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 0);
     }
+}
+
+int unit_main(void)
+{
+    Suite *suite = suite_create("tests");
+    TCase *tcase = tcase_create("tests");
+    for (struct unit_cases *cases = first_cases; cases; cases = cases->next)
+        cases->add(tcase);
+    suite_add_tcase(suite, tcase);
+    return unit_run(suite);
 }
 
 int unit_run(Suite *suite)
@@ -43,4 +61,10 @@ int unit_quick(void)
 {
     const char *quick = getenv("DUITE_QUICK");
     return quick != NULL && strcmp(quick, "1") == 0;
+}
+
+int unit_alone(void)
+{
+    const char *size = ranks_said();
+    return size == NULL || strcmp(size, "1") == 0;
 }

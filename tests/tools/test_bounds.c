@@ -33,7 +33,7 @@ static void bounds_are(struct trace_file *file, double path, double bound)
 }
 
 /* 1 + 2 + 3 ms in a row; a task beside them makes the work of the one worker more. */
-START_TEST(values_make_chains)
+UNIT_TEST(values_make_chains)
 {
     struct trace_file file = begun(2);
     for (int i = 1; i <= 3; i++)
@@ -41,10 +41,9 @@ START_TEST(values_make_chains)
     trace_file_fork(&file, FILE_W, 5 * MS, 0, 1, SLOTS(2));
     bounds_are(&file, 6 * MS, 11 * MS);
 }
-END_TEST
 
 /* 1 + 4: who writes without reading waits for nobody if there is memory enough. */
-START_TEST(writers_begin_chains)
+UNIT_TEST(writers_begin_chains)
 {
     struct trace_file file = begun(2);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
@@ -52,10 +51,9 @@ START_TEST(writers_begin_chains)
     trace_file_fork(&file, FILE_W, 2 * MS, 0, 1, SLOTS(1));
     bounds_are(&file, 5 * MS, 7 * MS);
 }
-END_TEST
 
 /* 1 + 3 + 1: contributions wait for no other, and a reader for all of them. */
-START_TEST(contributions_end_together)
+UNIT_TEST(contributions_end_together)
 {
     struct trace_file file = begun(2);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
@@ -64,12 +62,11 @@ START_TEST(contributions_end_together)
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(2));
     bounds_are(&file, 5 * MS, 8 * MS);
 }
-END_TEST
 
 /* Three rounds of 1 + 2 in a row, then 1 more on what the last one left. */
 static const struct trace_file_node NODES[] = {{FILE_RW, 1 * MS, 0, 1, {0}},
                                                {FILE_R_W, 2 * MS, 0, 2, {0, 1}}};
-START_TEST(rounds_follow_rounds)
+UNIT_TEST(rounds_follow_rounds)
 {
     struct trace_file file = begun(2);
     trace_file_graph(&file, 2, 2, NODES);
@@ -77,10 +74,9 @@ START_TEST(rounds_follow_rounds)
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(2));
     bounds_are(&file, 6 * MS, 10 * MS);
 }
-END_TEST
 
 /* The same with a flag that the second task writes: the next round begins when it is read. */
-START_TEST(flags_hold_rounds)
+UNIT_TEST(flags_hold_rounds)
 {
     struct trace_file file = begun(2);
     trace_file_graph(&file, 2, 2, NODES);
@@ -90,11 +86,10 @@ START_TEST(flags_hold_rounds)
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(2));
     bounds_are(&file, 10 * MS, 10 * MS);
 }
-END_TEST
 
 /* The second task waits for the flag, too, although one of its own round reads what it overwrites:
  * 2 (the first round's flag) + 1 (the second round's second task) + 3. */
-START_TEST(readers_do_not_hide_flags)
+UNIT_TEST(readers_do_not_hide_flags)
 {
     static const struct trace_file_node nodes[] = {{FILE_R_W, 2 * MS, 0, 2, {0, 1}},
                                                    {FILE_W, 1 * MS, 0, 1, {0}}};
@@ -106,10 +101,9 @@ START_TEST(readers_do_not_hide_flags)
     trace_file_fork(&file, FILE_RW, 3 * MS, 0, 1, SLOTS(1));
     bounds_are(&file, 6 * MS, 9 * MS);
 }
-END_TEST
 
 /* Of a replay that was poisoned from its second round on, later rounds count nothing. */
-START_TEST(poisoned_rounds_take_no_time)
+UNIT_TEST(poisoned_rounds_take_no_time)
 {
     struct trace_file file = begun(2);
     trace_file_graph(&file, 2, 2, NODES);
@@ -120,10 +114,9 @@ START_TEST(poisoned_rounds_take_no_time)
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(2));
     bounds_are(&file, 4 * MS, 4 * MS);
 }
-END_TEST
 
 /* Each word, replaced, gives bounds or a refusal. */
-START_TEST(damage_is_refused)
+UNIT_TEST(damage_is_refused)
 {
     static const uint32_t planted[] = {0, 1, 0xff, 0xffffff00u | TRACE_GRAPH, UINT32_MAX};
     struct trace_file file;
@@ -145,21 +138,4 @@ START_TEST(damage_is_refused)
     ck_assert_int_eq(bounds_of(&file, &path, &bound), DUITE_E_ARGUMENT);
     file = begun(1);
     ck_assert_int_eq(bounds_of(&file, &path, &bound), DUITE_E_ARGUMENT);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("bounds");
-    TCase *cases = tcase_create("bounds");
-    tcase_add_test(cases, values_make_chains);
-    tcase_add_test(cases, writers_begin_chains);
-    tcase_add_test(cases, contributions_end_together);
-    tcase_add_test(cases, rounds_follow_rounds);
-    tcase_add_test(cases, flags_hold_rounds);
-    tcase_add_test(cases, readers_do_not_hide_flags);
-    tcase_add_test(cases, poisoned_rounds_take_no_time);
-    tcase_add_test(cases, damage_is_refused);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

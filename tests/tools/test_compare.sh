@@ -121,14 +121,7 @@ ok "a damaged one names its line" bad_file
 ok "a full disk" full
 ok "without gnuplot" without_plots
 ok "an unknown scheduler lists the known ones" refused 2 "known are steal, locality" tree --scheduler best
-starpu_graph() { refused_by "$bin/bench/rivals/starpu-graph" "known are .* lws.*" irregular --scheduler nope; }
-refused_by() { # PROGRAM SENTENCE OPTIONS...: before anything runs: with nothing on standard output
-    program=$1 sentence=$2 status=0
-    shift 2
-    limited "$program" "$@" > "$scratch/out" 2> "$scratch/said" || status=$?
-    cat "$scratch/said" "$scratch/out"
-    test $status = 2 && test ! -s "$scratch/out" && grep -q "$sentence" "$scratch/said"
-}
+starpu_graph() { refuses " lws" limited "$bin/bench/rivals/starpu-graph" irregular --scheduler nope; }
 starpu_runs() {
     STARPU_SCHED=nope refused 0 "1 rounds" irregular --scheduler starpu:eager --rounds 1 --output e &&
         test "$(grep -c '^0,irregular,.*,starpu:eager,.*,fine$' "$scratch/e/runs.csv")" = 1 && ! grep nope "$scratch/e/run.log"
@@ -141,9 +134,9 @@ if test -x "$bin/bench/rivals/starpu-graph"; then
     ok "one that it has runs, also if the environment names another" starpu_runs
 fi
 mkdir "$scratch/alone" && cp "$bin/duite-compare" "$scratch/alone" # no rivals beside it
-ok "StarPU's twin is not there" refused_by "$scratch/alone/duite-compare" "alone/bench/rivals/starpu-graph is not there" \
+ok "StarPU's twin is not there" refuses "alone/bench/rivals/starpu-graph is not there" limited "$scratch/alone/duite-compare" \
     irregular --scheduler starpu:lws --output "$scratch/n"
-ok "duite-graph has none of StarPU's schedulers" refused_by "$bin/duite-graph" "bench/rivals/starpu-graph --schedulers lists them" \
+ok "duite-graph has none of StarPU's schedulers" refuses "bench/rivals/starpu-graph --schedulers lists them" limited "$bin/duite-graph" \
     irregular --scheduler starpu:lws
 # A member that fails beside one that does not: the page names it and says why; no table and no file has a figure of it.
 failed() {
@@ -167,25 +160,7 @@ timed_out() {
     grep -q "failed; stopped after 1 s (--timeout)" "$scratch/said"
 }
 # A member whose policy never returns beside one that does: stopped, named, not tried again; the other has all its figures.
-hangs() {
-    cat > "$scratch/hangs.c" << 'EOF'
-#include <duite_policy.h>
-#include <unistd.h>
-static unsigned place(void *state, const duite_ready *task)
-{
-    (void)task;
-    while (++*(int *)state > 20)
-        sleep(1);
-    return DUITE_SHARED_QUEUE;
-}
-static duite_end serve(void *state) { (void)state; return DUITE_OLDEST; }
-static unsigned victim(void *state, unsigned attempt) { (void)state, (void)attempt; return DUITE_NO_QUEUE; }
-static int chain(void *state, const duite_ready *task) { (void)state, (void)task; return 0; }
-const duite_scheduler duite_own_scheduler = {
-    .name = "hangs", .summary = "", .state_size = sizeof(int), .place = place, .serve = serve, .victim = victim, .chain = chain};
-EOF
-    ${CC:-cc} -Wall -Wextra -Werror -shared -fPIC -I"$top/runtime" -o "$scratch/hangs.so" "$scratch/hangs.c"
-}
+hangs() { ${CC:-cc} -Wall -Wextra -Werror -shared -fPIC -I"$top/runtime" -o "$scratch/hangs.so" "$top/tests/support/hangs.c"; }
 stopped() { # RANKS...
     members=$#
     refused 1 "duite-compare: $((3 * members)) runs failed: h/compare.md" tree --scheduler steal,./hangs.so --ranks "$(echo "$*" | tr ' ' ,)" \

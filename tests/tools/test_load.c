@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-START_TEST(a_quarter_of_the_cores)
+UNIT_TEST(a_quarter_of_the_cores)
 {
     char text[200];
     ck_assert_ptr_null(load_warn_average(0.5, 2, text, sizeof text));
@@ -18,10 +18,9 @@ START_TEST(a_quarter_of_the_cores)
     ck_assert_ptr_nonnull(load_warn_others(1.5, 4, text, sizeof text));
     ck_assert_ptr_nonnull(strstr(text, "other programs took 1.50 of 4 cores"));
 }
-END_TEST
 
 /* As if it had begun 1,000 s ago, when the cores and this process had worked less. */
-START_TEST(own_time_is_left_out)
+UNIT_TEST(own_time_is_left_out)
 {
     struct load load;
     load_begin(&load);
@@ -37,15 +36,4 @@ START_TEST(own_time_is_left_out)
     ck_assert_double_eq(load_others(&load), 0);
     load.busy = NAN;
     ck_assert(isnan(load_others(&load)));
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("load");
-    TCase *all = tcase_create("load");
-    tcase_add_test(all, a_quarter_of_the_cores);
-    tcase_add_test(all, own_time_is_left_out);
-    suite_add_tcase(suite, all);
-    return unit_run(suite);
 }

@@ -19,7 +19,7 @@ static void is(double value, double expected)
 }
 
 /* Three tasks in a row: 1 + 2 + 3 ms, however many cores. */
-START_TEST(chain)
+UNIT_TEST(chain)
 {
     struct trace_file file = predicted_trace(1, 8);
     for (int i = 1; i <= 3; i++)
@@ -33,10 +33,9 @@ START_TEST(chain)
     ck_assert_uint_eq(r.tasks, 3);
     ck_assert_uint_eq(r.messages, 0);
 }
-END_TEST
 
 /* Of the same three, and one beside them: what is on the chain is listed by kernels. */
-START_TEST(bodies_of_the_chain)
+UNIT_TEST(bodies_of_the_chain)
 {
     struct trace_file file = predicted_trace(2, 8);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(2));
@@ -56,10 +55,9 @@ START_TEST(bodies_of_the_chain)
     free(kernels);
     trace_run_free(run);
 }
-END_TEST
 
 /* Tasks of 3, 3, 2, 2, 2 ms on two cores, first come, first served: 3 + 2 + 2 and 3 + 2. */
-START_TEST(independent)
+UNIT_TEST(independent)
 {
     struct trace_file file = predicted_trace(5, 8);
     const double took[] = {3, 3, 2, 2, 2};
@@ -72,10 +70,9 @@ START_TEST(independent)
     is(r.critical_path, 3 * MS);
     ck_assert_int_eq(r.limit, PREDICT_WORK);
 }
-END_TEST
 
 /* A writer waits for all readers of what it overwrites, and two readers run at once: 1 + 4 + 1. */
-START_TEST(readers)
+UNIT_TEST(readers)
 {
     struct trace_file file = predicted_trace(3, 8);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
@@ -85,11 +82,10 @@ START_TEST(readers)
     const struct predict_cluster two = predicted_machine(1, 2);
     is(predicted(&file, &two).makespan, 6 * MS);
 }
-END_TEST
 
 /* What limits is what holds up most: of 2 + 8 ms the long task, which waited for a core, has 8;
  * that the longest chain of tasks is 8 ms, too, is nothing that held it up. */
-START_TEST(the_largest_share_limits)
+UNIT_TEST(the_largest_share_limits)
 {
     struct trace_file file = predicted_trace(3, 8);
     trace_file_fork(&file, FILE_W, 2 * MS, 0, 1, SLOTS(1));
@@ -104,10 +100,9 @@ START_TEST(the_largest_share_limits)
     is(r.chain[PREDICT_PATH], 2 * MS);
     ck_assert_int_eq(r.limit, PREDICT_WORK);
 }
-END_TEST
 
 /* The long one first if it is told to be urgent: 6, not 2 + 2 + 6 on the second core's end. */
-START_TEST(priorities)
+UNIT_TEST(priorities)
 {
     for (int urgent = 0; urgent < 2; urgent++) {
         struct trace_file file = predicted_trace(4, 8);
@@ -121,10 +116,9 @@ START_TEST(priorities)
         is(predicted(&file, &two).makespan, urgent ? 6 * MS : 8 * MS);
     }
 }
-END_TEST
 
 /* 1 ms on host 0, 1,000,000 bytes in 2 ms and 0.5 ms on their way, 1 ms on host 1. */
-START_TEST(message)
+UNIT_TEST(message)
 {
     struct trace_file file = predicted_trace(2, 1000000);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
@@ -141,11 +135,10 @@ START_TEST(message)
     ck_assert_uint_eq(r.messages, 1);
     ck_assert_uint_eq(r.bytes, 1000000);
 }
-END_TEST
 
 /* One message for all who read it there; cards carry one at a time: objects 1 and 2 of host 0 go to
  * host 1 in 2 ms each, one after the other. */
-START_TEST(cards)
+UNIT_TEST(cards)
 {
     struct trace_file file = predicted_trace(4, 1000000);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
@@ -160,10 +153,9 @@ START_TEST(cards)
     is(r.makespan, 5 * MS);
     ck_assert_int_eq(r.limit, PREDICT_BANDWIDTH);
 }
-END_TEST
 
 /* One card sends to two hosts: 2 ms, then 2 ms more. */
-START_TEST(sender)
+UNIT_TEST(sender)
 {
     struct trace_file file = predicted_trace(3, 1000000);
     trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(1));
@@ -173,10 +165,9 @@ START_TEST(sender)
     three.bandwidth = 5e8;
     is(predicted(&file, &three).makespan, 4 * MS);
 }
-END_TEST
 
 /* The switch carries all: 4 hosts in a ring send at once, 1 ms in cards, 4 ms in a slow switch. */
-START_TEST(fabric)
+UNIT_TEST(fabric)
 {
     for (int slow = 0; slow < 2; slow++) {
         struct trace_file file = predicted_trace(8, 1000000);
@@ -190,10 +181,9 @@ START_TEST(fabric)
         is(predicted(&file, &four).makespan, slow ? 4 * MS : 1 * MS);
     }
 }
-END_TEST
 
 /* Contributions run at once; who reads the sum waits for them all. */
-START_TEST(sums)
+UNIT_TEST(sums)
 {
     struct trace_file file = predicted_trace(5, 8);
     for (uint32_t i = 0; i < 3; i++)
@@ -202,10 +192,9 @@ START_TEST(sums)
     const struct predict_cluster three = predicted_machine(1, 3);
     is(predicted(&file, &three).makespan, 4 * MS);
 }
-END_TEST
 
 /* What is forked after a wait comes after all before it; after a get, after that object. */
-START_TEST(waits)
+UNIT_TEST(waits)
 {
     for (int get = 0; get < 2; get++) {
         struct trace_file file = predicted_trace(3, 8);
@@ -220,10 +209,9 @@ START_TEST(waits)
         is(predicted(&file, &two).makespan, get ? 5 * MS : 8 * MS);
     }
 }
-END_TEST
 
 /* A core of twice the speed, and half a millisecond between tasks. */
-START_TEST(speed_and_overhead)
+UNIT_TEST(speed_and_overhead)
 {
     struct trace_file file = predicted_trace(1, 8);
     for (int i = 0; i < 4; i++)
@@ -235,7 +223,6 @@ START_TEST(speed_and_overhead)
     is(r.makespan, 4 * MS + 3 * 0.5 * MS);
     is(r.chain[PREDICT_OVERHEAD], 1.5 * MS);
 }
-END_TEST
 
 /* Five bodies of 1 ms, one of which was held up if that is said, and one of another kernel. */
 static struct trace_file bodies_one_late(double late)
@@ -248,7 +235,7 @@ static struct trace_file bodies_one_late(double late)
 }
 
 /* Of 1, 1, 1, 9 and 1 ms the median; another kernel's is its own. */
-START_TEST(steady)
+UNIT_TEST(steady)
 {
     for (int is_steady = 0; is_steady < 2; is_steady++) {
         struct trace_file file = bodies_one_late(9 * MS);
@@ -260,11 +247,10 @@ START_TEST(steady)
         is(r.medians, 7 * MS);
     }
 }
-END_TEST
 
 /* A trace in which bodies took far longer than their kernels' medians is believed with a warning
  * alone, which names --steady; bodies a little apart, and --steady itself, need none. */
-START_TEST(warns_of_a_disturbed_trace)
+UNIT_TEST(warns_of_a_disturbed_trace)
 {
     static const struct {
         double late;
@@ -289,10 +275,9 @@ START_TEST(warns_of_a_disturbed_trace)
                       "%s", said);
     }
 }
-END_TEST
 
 /* Replicated: once, everywhere; what it reads goes to all. */
-START_TEST(replicated)
+UNIT_TEST(replicated)
 {
     struct trace_file file = predicted_trace(3, 1000);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
@@ -304,10 +289,9 @@ START_TEST(replicated)
     ck_assert_uint_eq(r.messages, 2);
     ck_assert(r.makespan > 4 * MS && r.makespan < 4.001 * MS);
 }
-END_TEST
 
 /* Every scheduler ends with every task. */
-START_TEST(schedulers)
+UNIT_TEST(schedulers)
 {
     for (size_t k = 0; duite_scheduler_names()[k]; k++) {
         struct trace_file file = predicted_trace(20, 8);
@@ -323,11 +307,10 @@ START_TEST(schedulers)
                       some.scheduler->name);
     }
 }
-END_TEST
 
 /* Rounds of which no task ran, since all were poisoned, take no time; the replay's rounds are words
  * 3 and 4 of its entry, before the number of the last fork and the one object. */
-START_TEST(poisoned_rounds_take_no_time)
+UNIT_TEST(poisoned_rounds_take_no_time)
 {
     const struct trace_file_node node = {FILE_RW, 1 * MS, 0, 1, {0}};
     const struct predict_cluster one = predicted_machine(1, 1);
@@ -340,10 +323,9 @@ START_TEST(poisoned_rounds_take_no_time)
     is(r.makespan, 2 * MS);
     ck_assert_uint_eq(r.tasks, 2);
 }
-END_TEST
 
 /* One task in three ran in each of a thousand rounds: no reason to call the trace damaged. */
-START_TEST(poisoned_tasks_are_no_damage)
+UNIT_TEST(poisoned_tasks_are_no_damage)
 {
     static const struct trace_file_node nodes[] = {
         {FILE_RW, 1 * MS, 0, 1, {0}}, {FILE_RW, 1 * MS, 0, 1, {1}}, {FILE_RW, 1 * MS, 0, 1, {2}}};
@@ -355,32 +337,4 @@ START_TEST(poisoned_tasks_are_no_damage)
         if (i % 3)
             file.event[i].number = 1; /* some nested task of the first one */
     ck_assert_uint_eq(predicted(&file, &one).tasks, 3000);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("predict");
-    TCase *cases = tcase_create("predict");
-    tcase_add_test(cases, chain);
-    tcase_add_test(cases, bodies_of_the_chain);
-    tcase_add_test(cases, independent);
-    tcase_add_test(cases, the_largest_share_limits);
-    tcase_add_test(cases, readers);
-    tcase_add_test(cases, priorities);
-    tcase_add_test(cases, message);
-    tcase_add_test(cases, cards);
-    tcase_add_test(cases, sender);
-    tcase_add_test(cases, fabric);
-    tcase_add_test(cases, sums);
-    tcase_add_test(cases, waits);
-    tcase_add_test(cases, speed_and_overhead);
-    tcase_add_test(cases, steady);
-    tcase_add_test(cases, warns_of_a_disturbed_trace);
-    tcase_add_test(cases, replicated);
-    tcase_add_test(cases, schedulers);
-    tcase_add_test(cases, poisoned_rounds_take_no_time);
-    tcase_add_test(cases, poisoned_tasks_are_no_damage);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -17,7 +17,7 @@ static void nearly(double value, double expected)
 
 /* Two messages come at once, after 1 ms: the host takes one after the other, 0.2 ms each, and its
  * task of 1 ms begins when it comes to the second one. Hosts 1 and 2 send one each. */
-START_TEST(messages_wait_for_one_another)
+UNIT_TEST(messages_wait_for_one_another)
 {
     struct trace_file file = predicted_trace(3, 8);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(2));
@@ -27,7 +27,6 @@ START_TEST(messages_wait_for_one_another)
     three.message = 0.2 * MS;
     nearly(predicted(&file, &three).makespan, 2.2 * MS);
 }
-END_TEST
 
 /* What came of the example above, with messages as its trace has them: a worker was busy with them
  * for `handled` s, of which two were sent or taken, and for `looked` s without one. It ran three
@@ -59,7 +58,7 @@ static void same(double value, double expected)
     ck_assert_msg(fabs(value - expected) < 1e-12, "%.9g, not %.9g", value, expected);
 }
 
-START_TEST(messages_cost_what_they_did)
+UNIT_TEST(messages_cost_what_they_did)
 {
     struct predict_cluster three = predicted_machine(3, 1);
     three.message = three.look = -1;
@@ -84,11 +83,10 @@ START_TEST(messages_cost_what_they_did)
     const struct predict_cluster one = predicted_machine(1, 1);
     same(with_messages(0.4 * MS, 0.002 * MS, &one).look, 0);
 }
-END_TEST
 
 /* Host 1 sends to two hosts after 1 ms: the second message leaves 0.2 ms later. Its only core sends
  * both before its next task, of 2 ms; a second core has nothing else to do, and delays nothing. */
-START_TEST(idle_cores_handle_messages)
+UNIT_TEST(idle_cores_handle_messages)
 {
     for (uint32_t cores = 1; cores <= 2; cores++) {
         struct trace_file file = predicted_trace(8, 8);
@@ -101,11 +99,10 @@ START_TEST(idle_cores_handle_messages)
         nearly(predicted(&file, &four).makespan, cores == 1 ? 3.4 * MS : 2.2 * MS);
     }
 }
-END_TEST
 
 /* Four contributions took 4 ms to combine on the one rank of the trace. On two hosts each combines
  * two of them; then the one with the object takes the other's piece, too: 2 + (2 + 1) ms. */
-START_TEST(hosts_combine_their_own_contributions)
+UNIT_TEST(hosts_combine_their_own_contributions)
 {
     for (uint32_t hosts = 1; hosts <= 2; hosts++) {
         struct trace_file file = predicted_trace(6, 8);
@@ -117,12 +114,11 @@ START_TEST(hosts_combine_their_own_contributions)
         nearly(predicted(&file, &cluster).makespan, hosts == 1 ? 5 * MS : 6 * MS);
     }
 }
-END_TEST
 
 /* The same in three rounds of a replay, whose sum each host makes that reads it: 2 ms for its own
  * contributions and 1 ms for the other's piece, at once on both. One of the traced sums took 40 ms:
  * medians know nothing of it, and the mean of 16 ms makes each round 9 ms longer. */
-START_TEST(each_host_adds_what_it_has)
+UNIT_TEST(each_host_adds_what_it_has)
 {
     static const struct trace_file_node nodes[] = {
         {FILE_SET, 0, 0, 1, {2}},        {FILE_R_CW, 0, 0, 2, {0, 2}},
@@ -140,11 +136,10 @@ START_TEST(each_host_adds_what_it_has)
         nearly(predicted(&file, &two).makespan, steady ? 3 * 4 * MS : 3 * 13 * MS);
     }
 }
-END_TEST
 
 /* Twenty forks in 10 ms. On two hosts each forks ten of its own, 0.5 ms each, and passes over the
  * ten others for two fifths of that. */
-START_TEST(forks_of_others_are_cheap)
+UNIT_TEST(forks_of_others_are_cheap)
 {
     for (uint32_t hosts = 1; hosts <= 2; hosts++) {
         struct trace_file file = predicted_trace(20, 8);
@@ -155,11 +150,10 @@ START_TEST(forks_of_others_are_cheap)
         nearly(predicted(&file, &cluster).makespan, hosts == 1 ? 10 * MS : 7 * MS);
     }
 }
-END_TEST
 
 /* Object 1 of host 0 exchanges 200 bytes with object 3 and 100 with object 4, both on host 1: half
  * of that goes there, however large it is, if what hosts send is packed. */
-START_TEST(packed_values)
+UNIT_TEST(packed_values)
 {
     static const struct trace_file_node nodes[] = {{FILE_W, 1 * MS, 0, 1, {0}},
                                                    {FILE_R_W, 1 * MS, 0, 2, {0, 2}},
@@ -180,7 +174,6 @@ START_TEST(packed_values)
         ck_assert_uint_eq(r.bytes, packed ? 5 * 150 : 5 * 1000);
     }
 }
-END_TEST
 
 /* Eight hosts with two objects each: a graph of 16 tasks, two on each host. */
 static struct predict_result eight_hosts(struct trace_file_node *nodes, uint32_t n)
@@ -196,7 +189,7 @@ static struct predict_result eight_hosts(struct trace_file_node *nodes, uint32_t
 /* A sum of eight contributions, one a host, that each host reads: three messages a host, one after
  * the other. In the rounds lists of 1, 2 and 4 leaves go; those that begin at an even place, or one
  * divisible by four, are combined: 8 + (4 + 4 * 2) + (2 + 2 * 2 + 4 * 3) values. */
-START_TEST(sums_from_host_to_host)
+UNIT_TEST(sums_from_host_to_host)
 {
     struct trace_file_node nodes[17] = {{FILE_SET, 0, 0, 1, {0}}};
     for (uint32_t i = 0; i < 8; i++) {
@@ -208,10 +201,9 @@ START_TEST(sums_from_host_to_host)
     ck_assert_uint_eq(r.bytes, 8 * (8 + 12 + 18));
     nearly(r.makespan, (1 + 3 + 1) * MS);
 }
-END_TEST
 
 /* A value of one host that all read: seven messages, three one after the other to the last host. */
-START_TEST(values_from_host_to_host)
+UNIT_TEST(values_from_host_to_host)
 {
     struct trace_file_node nodes[9] = {{FILE_W, 1 * MS, 0, 1, {0}}};
     for (uint32_t i = 0; i < 8; i++)
@@ -221,10 +213,9 @@ START_TEST(values_from_host_to_host)
     ck_assert_uint_eq(r.bytes, 7 * 8);
     nearly(r.makespan, (1 + 3 + 1) * MS);
 }
-END_TEST
 
 /* Bodies of larger blocks take longer; what is between tasks does not. */
-START_TEST(larger_bodies)
+UNIT_TEST(larger_bodies)
 {
     struct trace_file file = predicted_trace(1, 8);
     for (int i = 0; i < 4; i++)
@@ -233,23 +224,4 @@ START_TEST(larger_bodies)
     one.bodies = 3;
     one.overhead = 0.5 * MS;
     nearly(predicted(&file, &one).makespan, 3 * 8 * MS + 3 * 0.5 * MS);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("predicted costs");
-    TCase *cases = tcase_create("costs");
-    tcase_add_test(cases, messages_wait_for_one_another);
-    tcase_add_test(cases, messages_cost_what_they_did);
-    tcase_add_test(cases, idle_cores_handle_messages);
-    tcase_add_test(cases, hosts_combine_their_own_contributions);
-    tcase_add_test(cases, each_host_adds_what_it_has);
-    tcase_add_test(cases, forks_of_others_are_cheap);
-    tcase_add_test(cases, packed_values);
-    tcase_add_test(cases, sums_from_host_to_host);
-    tcase_add_test(cases, values_from_host_to_host);
-    tcase_add_test(cases, larger_bodies);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

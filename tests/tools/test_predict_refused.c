@@ -18,7 +18,7 @@ static void refused(struct trace_file *file, const struct predict_cluster *clust
     trace_run_free(run);
 }
 
-START_TEST(refusals)
+UNIT_TEST(refusals)
 {
     const struct predict_cluster one = predicted_machine(1, 1);
     struct predict_cluster other = predicted_machine(2, 1);
@@ -53,7 +53,6 @@ START_TEST(refusals)
     other.balance = duite_balancer_find("migrate");
     refused(&file, &other, "name a mapping");
 }
-END_TEST
 
 /* A number in a small file asks for no memory that the file has nothing for. */
 static void costs_little(struct trace_file *file)
@@ -68,25 +67,23 @@ static void costs_little(struct trace_file *file)
                   after.ru_maxrss - before.ru_maxrss);
 }
 
-START_TEST(a_far_slot_costs_little)
+UNIT_TEST(a_far_slot_costs_little)
 {
     struct trace_file file = predicted_trace(1, 8);
     trace_file_object(&file, (1u << 28) - 1, 8);
     costs_little(&file);
 }
-END_TEST
 
 /* Rounds without tasks: all that says how many there were is a number. */
-START_TEST(many_rounds_cost_little)
+UNIT_TEST(many_rounds_cost_little)
 {
     struct trace_file file = predicted_trace(1, 8);
     trace_file_graph(&file, 1, 0, NULL);
     trace_file_replay(&file, 1, 0, NULL, 2000000);
     costs_little(&file);
 }
-END_TEST
 
-START_TEST(a_far_graph_costs_little)
+UNIT_TEST(a_far_graph_costs_little)
 {
     struct trace_file file = predicted_trace(1, 8);
     trace_file_word(&file, TRACE_GRAPH);
@@ -94,9 +91,8 @@ START_TEST(a_far_graph_costs_little)
     trace_file_word(&file, 0);
     costs_little(&file);
 }
-END_TEST
 
-START_TEST(more_objects_than_words_cost_little)
+UNIT_TEST(more_objects_than_words_cost_little)
 {
     static const enum trace_call call[] = {TRACE_FORK, TRACE_HINT, TRACE_HOMES, TRACE_GRAPH,
                                            TRACE_REPLAY};
@@ -107,18 +103,4 @@ START_TEST(more_objects_than_words_cost_little)
             trace_file_word(&file, 0);
         costs_little(&file);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("predict");
-    TCase *cases = tcase_create("refused");
-    tcase_add_test(cases, a_far_slot_costs_little);
-    tcase_add_test(cases, many_rounds_cost_little);
-    tcase_add_test(cases, a_far_graph_costs_little);
-    tcase_add_test(cases, more_objects_than_words_cost_little);
-    tcase_add_test(cases, refusals);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

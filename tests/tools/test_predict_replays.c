@@ -10,7 +10,7 @@
 
 /* Tasks on host 0 write the objects 1 and 2, two on host 1 read both, and each of them its own
  * object before: one packet a round, and none for what is read where it is written. */
-START_TEST(packets)
+UNIT_TEST(packets)
 {
     static const struct trace_file_node nodes[] = {{FILE_W, 1 * MS, 0, 1, {0}},
                                                    {FILE_W, 1 * MS, 0, 1, {1}},
@@ -28,7 +28,6 @@ START_TEST(packets)
      * nothing else to do; looks for others cost 5e-7 s at most. */
     ck_assert_msg(r.makespan > 12.4 * MS && r.makespan < 12.41 * MS, "%.9g s", r.makespan);
 }
-END_TEST
 
 /* What so many rounds of a graph on four objects send, the first two of which live on host 0. */
 static struct predict_result sent(uint64_t bytes, uint32_t n, const struct trace_file_node *nodes,
@@ -42,7 +41,7 @@ static struct predict_result sent(uint64_t bytes, uint32_t n, const struct trace
 }
 
 /* A replicated task runs where its result is read: here on the host that has what it reads. */
-START_TEST(replicated)
+UNIT_TEST(replicated)
 {
     static const struct trace_file_node nodes[] = {{FILE_SAME, 1 * MS, 0, 2, {0, 1}},
                                                    {FILE_R_W, 1 * MS, 0, 2, {1, 0}}};
@@ -50,11 +49,10 @@ START_TEST(replicated)
     ck_assert_uint_eq(r.messages, 0);
     ck_assert(fabs(r.makespan - 10 * MS) < 1e-6);
 }
-END_TEST
 
 /* A replicated task that two hosts read runs on a core of each: 1 + 1 + 1 ms a round on host 0,
  * and 2 ms on host 1. */
-START_TEST(replicated_on_both)
+UNIT_TEST(replicated_on_both)
 {
     static const struct trace_file_node nodes[] = {{FILE_W, 1 * MS, 0, 1, {0}},
                                                    {FILE_SAME, 1 * MS, 0, 2, {0, 1}},
@@ -65,12 +63,11 @@ START_TEST(replicated_on_both)
     ck_assert_msg(fabs(r.work - 5 * 5 * MS) < 1e-6, "%.9g s of work", r.work);
     ck_assert_msg(fabs(r.makespan - 5 * 3 * MS) < 1e-5, "%.9g s", r.makespan);
 }
-END_TEST
 
 /* What rounds only read goes to another host once, in whatever replay; and not at all if it is
  * there since before the trace, which nothing of it writes. What each replay writes goes in each.
  */
-START_TEST(reads_last)
+UNIT_TEST(reads_last)
 {
     static const struct trace_file_node nodes[] = {{FILE_W, 1 * MS, 0, 1, {0}},
                                                    {FILE_RR_RW, 1 * MS, 0, 3, {0, 1, 2}}};
@@ -86,21 +83,19 @@ START_TEST(reads_last)
         ck_assert_uint_eq(predicted(&file, &two).bytes, late ? 6 * 8 : 6 * 8 + 1000);
     }
 }
-END_TEST
 
 /* A set runs wherever what it sets is read, and nothing moves. */
-START_TEST(sets)
+UNIT_TEST(sets)
 {
     static const struct trace_file_node nodes[] = {{FILE_SET, 0, 0, 1, {0}},
                                                    {FILE_R_W, 1 * MS, 0, 2, {0, 1}},
                                                    {FILE_R_W, 1 * MS, 0, 2, {0, 2}}};
     ck_assert_uint_eq(sent(8, 3, nodes, 5).messages, 0);
 }
-END_TEST
 
 /* A value goes once to each host that reads it, for a task there or for a replicated one; a sum is
  * made where it is read, of what hosts that contribute send. */
-START_TEST(exchanges)
+UNIT_TEST(exchanges)
 {
     static const struct trace_file_node values[] = {{FILE_W, 1 * MS, 0, 1, {0}},
                                                     {FILE_R_W, 1 * MS, 0, 2, {0, 2}},
@@ -115,11 +110,10 @@ START_TEST(exchanges)
     ck_assert_uint_eq(sent(8, 5, values, 5).bytes, 5 * 8);
     ck_assert_uint_eq(sent(8, 5, sums, 5).bytes, 5 * 8);
 }
-END_TEST
 
 /* Two values of one object, the second of which overwrites the first: a phase counts messages that
  * come, not those that go, so both go in one packet a round. */
-START_TEST(phases)
+UNIT_TEST(phases)
 {
     static const struct trace_file_node nodes[] = {{FILE_W, 1 * MS, 0, 1, {0}},
                                                    {FILE_R_W, 1 * MS, 0, 2, {0, 2}},
@@ -129,11 +123,10 @@ START_TEST(phases)
     ck_assert_uint_eq(r.messages, 5);
     ck_assert_uint_eq(r.bytes, 10 * 1000);
 }
-END_TEST
 
 /* Contributions of one round and of the next make one sum: five of one host go to the other in one
  * message, as two subtrees, of four and of one. */
-START_TEST(sums_over_rounds)
+UNIT_TEST(sums_over_rounds)
 {
     static const struct trace_file_node nodes[] = {{FILE_R_CW, 1 * MS, 0, 2, {0, 3}}};
     for (uint64_t bytes = 8; bytes <= 8000; bytes *= 1000) {
@@ -142,10 +135,9 @@ START_TEST(sums_over_rounds)
         ck_assert_uint_eq(r.bytes, 2 * bytes);
     }
 }
-END_TEST
 
 /* Such rounds are forked: two values from one host to another are two messages, not one packet. */
-START_TEST(forked_rounds)
+UNIT_TEST(forked_rounds)
 {
     static const struct trace_file_node nodes[] = {{FILE_R_CW, 1 * MS, 0, 2, {0, 3}},
                                                    {FILE_W, 1 * MS, 0, 1, {0}},
@@ -153,12 +145,11 @@ START_TEST(forked_rounds)
                                                    {FILE_RR_RW, 1 * MS, 0, 3, {0, 1, 2}}};
     ck_assert_uint_eq(sent(1000, 4, nodes, 5).messages, 2 * 5 + 1);
 }
-END_TEST
 
 /* Costs of 3, 1, 1 and 1: block gives 4 and 2 ms a round, the mappings that see them 3 and 3, if
  * forks say them at once, else from the second replay on, since in the first all are thought alike.
  * The values of what moves go along. */
-START_TEST(mappings)
+UNIT_TEST(mappings)
 {
     static const struct {
         const duite_mapping *mapping;
@@ -188,12 +179,11 @@ START_TEST(mappings)
                       two.mapping->name, cases[k].told, r.makespan);
     }
 }
-END_TEST
 
 /* 160 tasks, then a chain of ten that was forked last, 1 ms each, on 16 workers: first come, first
  * served, the chain begins when the others are nearly done; by the longest path it comes first: 170
  * / 16 tasks a worker. */
-START_TEST(paths)
+UNIT_TEST(paths)
 {
     enum { SHORT = 160, CHAIN = 10 };
     static struct trace_file_node nodes[SHORT + CHAIN];
@@ -211,7 +201,6 @@ START_TEST(paths)
                       makespan);
     }
 }
-END_TEST
 
 /* A scheduler that keeps what it is told of who was at the data before. */
 static uint32_t told[16];
@@ -225,7 +214,7 @@ static unsigned listen(void *state, const duite_ready *task)
 }
 
 /* Two objects, forked once and replayed in two rounds: data are warm from the second one on. */
-START_TEST(warmth)
+UNIT_TEST(warmth)
 {
     static const duite_scheduler LISTENING = {.name = "listening",
                                               .summary = "for tests",
@@ -248,10 +237,9 @@ START_TEST(warmth)
     for (unsigned i = 0; i < n_told; i++)
         ck_assert_uint_eq(told[i], i % 6 < 4 ? 0 : 1 + 1);
 }
-END_TEST
 
 /* Objects of 3 ms on host 0, of 1 ms on host 1: 6 ms a replay, 4 when some have moved. */
-START_TEST(migration)
+UNIT_TEST(migration)
 {
     double makespan[2];
     for (int moves = 0; moves < 2; moves++) {
@@ -271,26 +259,4 @@ START_TEST(migration)
     }
     ck_assert(fabs(makespan[0] - 120 * MS) < 1e-6);
     ck_assert_msg(makespan[1] < 100 * MS && makespan[1] >= 80 * MS, "%.9g s", makespan[1]);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("predict");
-    TCase *cases = tcase_create("replays");
-    tcase_add_test(cases, packets);
-    tcase_add_test(cases, replicated);
-    tcase_add_test(cases, replicated_on_both);
-    tcase_add_test(cases, reads_last);
-    tcase_add_test(cases, sets);
-    tcase_add_test(cases, exchanges);
-    tcase_add_test(cases, phases);
-    tcase_add_test(cases, sums_over_rounds);
-    tcase_add_test(cases, forked_rounds);
-    tcase_add_test(cases, mappings);
-    tcase_add_test(cases, paths);
-    tcase_add_test(cases, warmth);
-    tcase_add_test(cases, migration);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -190,7 +190,7 @@ static void predict_one(const char *trace)
     trace_run_free(run);
 }
 
-START_TEST(mappings_see_the_same)
+UNIT_TEST(mappings_see_the_same)
 {
     char trace[64];
     misuse_mpi();
@@ -204,14 +204,4 @@ START_TEST(mappings_see_the_same)
         unlink(trace);
     }
     ck_assert_uint_gt(rows, 100);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("predicted rounds");
-    TCase *test = tcase_create("rounds");
-    tcase_add_test(test, mappings_see_the_same);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

@@ -45,7 +45,7 @@ static void column_is(const struct chart_shares *shares, uint32_t column, double
 }
 
 /* Columns 0 .. 2 .. 4 .. 6 .. 8 .. 10. */
-START_TEST(columns_have_their_shares)
+UNIT_TEST(columns_have_their_shares)
 {
     struct chart_shares shares = shares_of(0, 10);
     column_is(&shares, 0, 1, 0, 0, 0);
@@ -55,10 +55,9 @@ START_TEST(columns_have_their_shares)
     column_is(&shares, 4, 0, 2, 0, 0);
     base_free(shares.seconds);
 }
-END_TEST
 
 /* Busy from 3.5 to 8.5: less 1 .. idle 5 .. 7. */
-START_TEST(windows_cut)
+UNIT_TEST(windows_cut)
 {
     struct chart_shares shares = shares_of(3.5, 8.5);
     double outer = 0, inner = 0;
@@ -68,15 +67,4 @@ START_TEST(windows_cut)
     }
     ck_assert(fabs(outer - 2) < 1e-12 && fabs(inner - 1) < 1e-12);
     base_free(shares.seconds);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("shares");
-    TCase *tests = tcase_create("shares");
-    tcase_add_test(tests, columns_have_their_shares);
-    tcase_add_test(tests, windows_cut);
-    suite_add_tcase(suite, tests);
-    return unit_run(suite);
 }

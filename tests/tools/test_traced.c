@@ -122,7 +122,7 @@ enum { NEXT_STEP, TRACE_END, STOP, ENDS };
 
 /* One step is recorded, and ended by the next one, by the end of the trace, or by that of the run.
  */
-START_TEST(last_wait)
+UNIT_LOOP(last_wait, 0, ENDS)
 {
     const char *const folder = getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp";
     duite_options options = misuse_options(MPI_COMM_WORLD);
@@ -149,15 +149,4 @@ START_TEST(last_wait)
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
     check_trace(file);
     unlink(file);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("recorded steps");
-    TCase *test = tcase_create("ends");
-
-    tcase_add_loop_test(test, last_wait, 0, ENDS);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

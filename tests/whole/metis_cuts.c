@@ -1,7 +1,7 @@
 /* Prints a hash of how METIS cuts a fixed graph into 96 parts: a sheet of 120 x 120 vertices, each
  * joined to its neighbours along rows, columns and one diagonal. The graph is made here, and METIS
  * is called as cloth/mesh calls it, so no code of the cloth has a part in the answer:
- * test_golden.sh tells by it another METIS from a change of our own cutting. */
+ * golden.sh tells by it another METIS from a change of our own cutting. */
 #include <inttypes.h>
 #include <metis.h>
 #include <stdio.h>

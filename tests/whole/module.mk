@@ -4,13 +4,13 @@ ASAN_SH += tests/whole/test_same_hash.sh tests/whole/test_world.sh tests/whole/t
     tests/whole/test_images.sh tests/whole/test_system.sh tests/whole/test_welds.sh tests/whole/test_seams_tube.sh \
     tests/whole/test_bodies.sh tests/whole/test_contact_bodies.sh tests/whole/test_pins.sh tests/whole/test_follow.sh \
     tests/whole/test_settled.sh tests/whole/test_sides.sh tests/whole/test_slope.sh tests/whole/test_untangle.sh \
-    tests/whole/test_meshes.sh tests/whole/test_golden.sh tests/whole/test_garment.sh tests/whole/test_mannequin.sh \
+    tests/whole/test_meshes.sh tests/whole/test_scenes.sh tests/whole/test_garment.sh tests/whole/test_mannequin.sh \
     tests/whole/test_hdf5.sh tests/whole/test_summary.sh
 PLAIN_SH += tests/whole/test_dress.sh tests/whole/test_probes.sh tests/whole/test_colours.sh tests/whole/test_momentum.sh \
     tests/whole/test_predicted.sh tests/whole/test_capstan.sh tests/whole/test_contact_force.sh tests/whole/test_contact_laws.sh \
     tests/whole/test_policies.sh tests/whole/test_fabrics.sh tests/whole/test_cells.sh tests/whole/test_joints.sh \
     tests/whole/test_phases.sh tests/whole/test_timed_joints.sh tests/whole/test_joints_edges.sh tests/whole/test_folds.sh \
-    tests/whole/test_seams.sh tests/whole/test_contact_scenes.sh tests/whole/test_repulsion.sh tests/whole/test_correction.sh \
+    tests/whole/test_seams.sh tests/whole/test_repulsion.sh tests/whole/test_correction.sh \
     tests/whole/test_integrators.sh tests/whole/test_materials.sh tests/whole/test_curves.sh tests/whole/test_groups.sh \
     tests/whole/test_regions.sh tests/whole/test_closed_forms.sh tests/whole/test_checkpoint.sh tests/whole/test_dressing.sh
 LONG_SH += tests/whole/test_same_hash_long.sh tests/whole/test_levels_long.sh tests/whole/test_demo.sh \
@@ -30,7 +30,7 @@ tests_whole_live_peer_LDADD = $(CLOTH_LIBS) $(ZMQ_LIBS) $(XXHASH_LIBS)
 endif
 check_PROGRAMS += tests/whole/metis_cuts
 tests_whole_metis_cuts_LDADD = $(METIS_LIBS)
-EXTRA_DIST += tests/whole/golden.txt tests/whole/balance.awk tests/whole/spin.awk \
+EXTRA_DIST += tests/whole/golden.sh tests/whole/golden.txt tests/whole/balance.awk tests/whole/spin.awk \
 	tests/whole/joints.sh
 EXTRA_DIST += tests/whole/garment_golden.txt
 EXTRA_DIST += tests/whole/mannequin_golden.txt

@@ -2,16 +2,12 @@
 # Bodies as a user meets them: one state_hash over ranks, threads and the rest; the folder of frames has the mesh, and the viewer draws
 # it from there; what is wrong with a body is said before any work.
 . "${srcdir:-.}/tests/support/tap.sh"
+. "$srcdir/tests/support/bodies.sh"
 skip_unless "$DUITE_CLOTH"
 skip_unless tests/whole/same_hash
 plan_later
 
-# A ring around the y axis, of 24 x 12 vertices, in quads.
-awk 'BEGIN { t = atan2(0, -1) / 12
-    for (i = 0; i < 24; i++) for (j = 0; j < 12; j++) {
-        far = 0.3 + 0.1 * cos(2 * t * j); printf "v %.9f %.9f %.9f\n", far * cos(t * i), 0.1 * sin(2 * t * j), far * sin(t * i) }
-    for (i = 0; i < 24; i++) for (j = 0; j < 12; j++) {
-        k = (i + 1) % 24; l = (j + 1) % 12; print "f", 12 * i + j + 1, 12 * i + l + 1, 12 * k + l + 1, 12 * k + j + 1 } }' > "$scratch/ring.obj"
+ring_obj 0.3 0.1 > "$scratch/ring.obj"
 cat > "$scratch/ring.yaml" << 'END'
 schema: 1
 contact: {mode: project}

@@ -3,6 +3,7 @@
 # slips beyond; a sheet slides down a slope by Coulomb's law, on a box and on a mesh of it. With DUITE_LONG=1: more widths of the mesh,
 # steps and coefficients, the angle of slip, and ten seconds at rest.
 . "${srcdir:-.}/tests/support/tap.sh"
+. "$srcdir/tests/support/bodies.sh"
 . "$srcdir/tests/support/probes.sh"
 plan_later
 
@@ -50,17 +51,7 @@ ok "a belt on a mesh of it" capstan "a mesh of 100 sides" 0.005 'body: {obj: bar
 
 # ---- A sheet on a slope: gravity is turned in place of it. The slab is 1.2 m wide; its top has 40 x 40 quads.
 
-awk -v n=40 'function top(i, j) { return i * (n + 1) + j + 1 }
-    BEGIN { low = (n + 1) * (n + 1)
-        for (y = 0; y < 2; y++) for (i = 0; i <= n; i++) for (j = 0; j <= n; j++) print "v", 1.2 * i / n - 0.6, -0.1 * y, 1.2 * j / n - 0.6
-        for (i = 0; i < n; i++) for (j = 0; j < n; j++) {
-            print "f", top(i, j), top(i, j + 1), top(i + 1, j + 1), top(i + 1, j)
-            print "f", low + top(i, j), low + top(i + 1, j), low + top(i + 1, j + 1), low + top(i, j + 1) }
-        for (i = 0; i < n; i++) {
-            print "f", top(i, 0), top(i + 1, 0), low + top(i + 1, 0), low + top(i, 0)
-            print "f", top(i + 1, n), top(i, n), low + top(i, n), low + top(i + 1, n)
-            print "f", top(0, i + 1), top(0, i), low + top(0, i), low + top(0, i + 1)
-            print "f", top(n, i), top(n, i + 1), low + top(n, i + 1), low + top(n, i) } }' > slab.obj
+slab_obj 40 > slab.obj
 slope() { # DEGREES FRICTION END OBSTACLE
     awk -v a="$1" -v m="$2" -v end="$3" -v obstacle="$4" 'BEGIN { a *= atan2(0, -1) / 180
         printf "schema: 1\ngravity: [%.15g, %.15g, 0]\n", 9.81 * sin(a), -9.81 * cos(a)

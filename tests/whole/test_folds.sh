@@ -111,23 +111,6 @@ waits() { # pulled, it is no hinge yet
 }
 ok "a seam that is welded in a later phase" waits
 
-refused() { # SENTENCE SCENE SETTING...
-    sentence=$1
-    shift
-    run "$@" 2> said && return 1
-    cat said
-    grep -qF "$sentence" said
-}
-ok "no fold along a border" refused "the edge between vertices 1 and 2 of cloth 'cloth1' has no triangles on both sides, so nothing folds there" \
-    flap.yaml --set 'cloths[0].folds[0].vertices=[1, 2]'
-ok "none on both sides of a weld" refused "the edge between vertices 0 and 2 of cloth 'right' is folded on both sides of a weld; one of them is expected" \
-    welded.yaml --set 'cloths[0].folds=[{vertices: [1, 2], angle: 30}]' --set 'cloths[1].folds=[{vertices: [0, 2], angle: 30}]'
-ok "none twice" refused "the edge between vertices 0 and 1 of cloth 'cloth1' is folded twice; once is expected" \
-    flap.yaml --set 'cloths[0].folds=[{vertices: [0, 1], angle: 30}, {vertices: [2, 1, 0], angle: 20}]'
-ok "none of the quadratic energy" refused "a fold is of bending: {model: hinge}, but material 'sheet' of cloth 'cloth1' has model: quadratic" \
-    flap.yaml --set materials.sheet.bending.model=quadratic
-ok "none without bending" refused "a fold needs bending, which no material of cloth 'cloth1' has" flap.yaml --set 'materials.sheet={stretch: 100}'
-
 same() {
     run book.yaml --grain 9 --end 0.3 && cp out/probes.csv one.csv && ranks 2 "$DUITE_CLOTH" book.yaml --grain 9 --end 0.3 --quiet --output out --threads 2 && cmp out/probes.csv one.csv
 }

@@ -44,20 +44,8 @@ alike() {
     apart=$(echo "$@" | awk '{ print sqrt(($1 - $4) ^ 2 + ($2 - $5) ^ 2 + ($3 - $6) ^ 2) }')
     below "panels that joints closed, m apart" "$apart" 0.01 || return 1
     for run in '1 2' '2 1' '2 2'; do
-        limited "$MPIRUN" -n "${run% *}" "$DUITE_CLOTH" panels.yaml --threads "${run#* }" --quiet --report many.json || return 1
+        ranks "${run% *}" "$DUITE_CLOTH" panels.yaml --threads "${run#* }" --quiet --report many.json || return 1
         test "$(value state_hash)" = "$(value state_hash many.json)" || { echo "another hash on $run"; return 1; }
     done
 }
 ok "joints close a seam, with the same bits on any ranks and threads" alike
-
-# ---- What is refused once the meshes are there ----
-refused() { # ERROR --set ...
-    error=$1
-    shift
-    limited "$DUITE_CLOTH" two.yaml --quiet "$@" > said 2>&1
-    test $? -eq 2 && cat said && grep -qF -- "$error" said
-}
-ok "a joint between a vertex and itself" refused "two.yaml:7:10: a joint is between vertex 0 of cloth 'one' and vertex 0 of cloth 'one', itself; two vertices are expected" \
-    --set 'joints[0].from={cloth: one, vertex: 0}'
-ok "a second joint between two vertices" refused "a joint is between vertex 0 of cloth 'one' and vertex 1 of cloth 'other', where there is one already" \
-    --set 'joints[1]={from: {cloth: one, vertex: 0}, to: {cloth: other, vertex: 1}, stiffness: 1}'

@@ -77,19 +77,6 @@ at_end() { # AT VERTEX
 ok "at the first end" at_end 0 0
 ok "at the second end" at_end 1 1
 
-refused() { # SENTENCE SETTING...
-    sentence=$1
-    shift
-    run three.yaml "$@" 2> said && return 1
-    cat said
-    grep -qF "$sentence" said
-}
-ok "no joint from an end of an edge to that edge" refused \
-    "a joint is between vertex 1 of cloth 'bar' and the edge of vertices 0 and 1 of cloth 'bar', an end of which it is; another is expected" \
-    --set 'joints[0].from={cloth: bar, vertex: 1}'
-ok "none from what welds make an end of the edge" refused 'which welds make one' \
-    --set 'welds=[{from: {cloth: one, vertex: 0}, to: {cloth: bar, vertex: 0}, tolerance: 2}]'
-
 # Two panels, 0.7 m wide, side by side, of 10 and 14 cells along the common edge: each vertex of the one side is joined to the edge of the other.
 panels() { # FINE: whether the finer panel has the vertices, else the coarser; of panels with 6 and 7 rows of vertices
     awk -v fine="$1" 'BEGIN { for (i = 0; i <= (fine ? 14 : 10); i++) { n = fine ? 10 : 14; t = i / (fine ? 14 : 10) * n; e = int(t + 1e-9); if (e == n) e--

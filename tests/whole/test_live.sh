@@ -9,17 +9,10 @@ peer=$PWD/tests/whole/live_peer
 # Runs last for some seconds, so that viewers that begin beside them find them: s of simulated time.
 case "${SANITIZER:-}" in *address*) end=1 ;; *) end=5 ;; esac
 
-refused() { # SENTENCE ARGUMENT...: status 2, and the sentence
-    sentence=$1 status=0
-    shift
-    "$@" > said 2>&1 || status=$?
-    cat said
-    test $status = 2 && grep -q -F -e "$sentence" said
-}
 if ! grep -q '^#define HAVE_ZMQ 1' config.h; then
     plan_later
     cd "$scratch" || exit 99
-    ok "without ZeroMQ --live says so" refused "built without ZeroMQ" limited "$DUITE_CLOTH" "$scene" --live 5555
+    ok "without ZeroMQ --live says so" refuses "built without ZeroMQ" limited "$DUITE_CLOTH" "$scene" --live 5555
     exit
 fi
 plan_later
@@ -121,9 +114,9 @@ if test -x "$DUITE_VIEW"; then
         test $status = 1 && grep -q 'no frame came within 0.3 s: waits for a run at 127.0.0.1:9' said
     }
     ok "no run is there" no_run
-    ok "a folder, too" refused "--connect shows the newest frame of a run" limited "$DUITE_VIEW" plain --connect 127.0.0.1:9
-    ok "no port" refused "--connect takes HOST:PORT, such as localhost:5555, not \`localhost'" limited "$DUITE_VIEW" --connect localhost
-    ok "no time" refused "--wait takes seconds" limited "$DUITE_VIEW" --connect localhost:9 --png a.png --wait 0
+    ok "a folder, too" refuses "--connect shows the newest frame of a run" limited "$DUITE_VIEW" plain --connect 127.0.0.1:9
+    ok "no port" refuses "--connect takes HOST:PORT, such as localhost:5555, not \`localhost'" limited "$DUITE_VIEW" --connect localhost
+    ok "no time" refuses "--wait takes seconds" limited "$DUITE_VIEW" --connect localhost:9 --png a.png --wait 0
     pictured() {
         start --end 1000 || return 1
         limited "$DUITE_VIEW" --connect "$address" --png live.png --size 64x48 || { stop 5; return 1; }
@@ -139,7 +132,7 @@ if test -x "$DUITE_VIEW"; then
         "$peer" serve "$1" > port &
         server=$!
         awaits $server test -s port
-        refused "$2" limited "$DUITE_VIEW" --connect "127.0.0.1:$(cat port)" --png none.png --wait 20
+        refuses "$2" limited "$DUITE_VIEW" --connect "127.0.0.1:$(cat port)" --png none.png --wait 20
         found=$?
         kill $server
         server=
@@ -152,12 +145,12 @@ fi
 
 # ---- What is wrong
 
-ok "no port" refused "--live 65536: PORT, up to 65535, or ADDRESS:PORT is expected" run --live 65536
-ok "no address of this host" refused "--live 192.0.2.1:5555: this machine has no such address" run --live 192.0.2.1:5555 --output none
+ok "no port" refuses "--live 65536: PORT, up to 65535, or ADDRESS:PORT is expected" run --live 65536
+ok "no address of this host" refuses "--live 192.0.2.1:5555: this machine has no such address" run --live 192.0.2.1:5555 --output none
 ok "then nothing is written" test ! -e none
 in_use() {
     start --end 1000 || return 1
-    refused "--live $address: the port is in use" run --live "$address" --output none
+    refuses "--live $address: the port is in use" run --live "$address" --output none
     found=$?
     stop 5 && test $found = 0 && test ! -e none
 }

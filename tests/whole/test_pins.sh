@@ -1,5 +1,5 @@
 #!/bin/sh
-# Pins as a user meets them: beads on lines and in planes against closed forms, from scenes and probes alone; reactions; what is refused.
+# Pins as a user meets them: beads on lines and in planes against closed forms, from scenes and probes alone; reactions.
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
 plan_later
@@ -149,20 +149,3 @@ jerks() { # KEY: of the pin
 }
 ok "reactions of a pin that jerks, in halved steps" jerks
 ok "reactions of a line that jerks" jerks --set 'cloths[0].pins[0].to=line' --set 'cloths[0].pins[0].direction=[1, 0, 0]'
-
-# ---- What is refused
-
-refused() { # SENTENCE ARGUMENT...
-    what=$1 status=0
-    shift
-    run bead.yaml "$@" > printed 2> complained || status=$?
-    cat complained
-    test $status = 2 && grep -q -F -e "$what" complained && test "$(wc -l < complained)" = 1
-}
-ok "a line without a direction" refused 'a pin to a line has no direction; a list of 3 numbers is expected' --set 'cloths[0].pins=[{vertices: [0], to: line}]'
-ok "a plane with a direction" refused 'a pin to a plane has a direction, which is that of a line; to: line is expected with it' --set 'cloths[0].pins=[{vertices: [0], to: plane, direction: [1, 0, 0]}]'
-ok "a point with a normal" refused 'a pin to a point has a normal, which is that of a plane; to: plane is expected with it' \
-    --set 'cloths[0].pins=[{vertices: [0], normal: [1, 0, 0]}]'
-ok "a direction that is none" refused 'the direction of a pin is zero; a direction is expected' --set 'cloths[0].pins[0].direction=[0, 0, 0]'
-ok "two pins that differ" refused ": vertex 1 of cloth 'cloth1' is held by two pins that do not hold and move alike" \
-    --set 'cloths[0].pins=[{vertices: [0]}, {vertices: [0], to: line, direction: [1, 0, 0]}]'

@@ -43,25 +43,6 @@ const duite_mapping duite_own_mapping = {.name = "mine", .summary = "", .map = m
 const duite_balancer duite_own_balancer = {.name = "mine", .summary = "", .state_size = 8, .start = start, .place = stay};
 EOF
 
-# From its 51st call on it does not return until the file NAMED is there.
-cat > "$scratch/hangs.c" << 'EOF'
-#include <duite_policy.h>
-#include <stdlib.h>
-#include <unistd.h>
-static unsigned place(void *state, const duite_ready *task)
-{
-    (void)task;
-    for (++*(int *)state; *(int *)state > 5 && access(getenv("NAMED"), F_OK);)
-        usleep(1000);
-    return DUITE_SHARED_QUEUE;
-}
-static duite_end serve(void *state) { (void)state; return DUITE_OLDEST; }
-static unsigned victim(void *state, unsigned attempt) { (void)state, (void)attempt; return DUITE_NO_QUEUE; }
-static int chain(void *state, const duite_ready *task) { (void)state, (void)task; return 0; }
-const duite_scheduler duite_own_scheduler = {
-    .name = "hangs", .summary = "", .state_size = sizeof(int), .place = place, .serve = serve, .victim = victim, .chain = chain};
-EOF
-
 # shellcheck disable=SC2086 # a list of flags
 library() { $CC -O2 -Wall -Wextra -Werror -shared -fPIC -I"$srcdir/runtime" -o "$scratch/$1.so" "$scratch/$1.c"; }
 cloth() { # RANKS OPTIONS...
@@ -115,5 +96,6 @@ ok "a file that is not there" refused "duite-cloth: --scheduler ./no.so: the sch
 ok "a library without a mapping" refused "duite-cloth: --mapping ./near.so: the library defines no duite_own_mapping" --mapping ./near.so
 ok "a name that is none" refused "there is no balancer of this name; known are none, .*, and shared libraries" --balance near.so
 
+cp "$srcdir/tests/support/hangs.c" "$scratch"
 ok "a scheduler that returns late" library hangs
 for n in 1 2; do ok "is named on $n ranks, and the state is right" named_and_right $n --scheduler ./hangs.so; done

@@ -74,19 +74,11 @@ ok "in any format" formats
 other_step() { run --save-system early --end 0.02 --quiet && ! cmp -s one/rhs.mtx early/rhs.mtx; }
 ok "another step is another system" other_step
 
-refused() { # SENTENCE ARGUMENT...
-    text=$1
-    shift
-    status=0
-    run "$@" > said 2>&1 || status=$?
-    cat said
-    test $status = 2 && grep -q -e "$text" said
-}
-ok "a step of several systems has none of its own" refused "by implicit_euler with newton.steps 1 only" --save-system none \
+ok "a step of several systems has none of its own" refuses "by implicit_euler with newton.steps 1 only" run --save-system none \
     --set newton.steps=2
-ok "what lines and planes take away the files cannot say" refused "no pins to lines or planes" --save-system none \
+ok "what lines and planes take away the files cannot say" refuses "no pins to lines or planes" run --save-system none \
     --set 'cloths[0].pins=[{vertices: [0], to: line, direction: [0, 1, 0]}]'
-ok "explicit runs have no system" refused "an explicit integrator solves no system" --save-system none --set integrator=explicit_euler
+ok "explicit runs have no system" refuses "an explicit integrator solves no system" run --save-system none --set integrator=explicit_euler
 ok "and leave no folder" test ! -e none
 : > file
-ok "a folder that cannot be made" refused "cannot make the folder file/x" --save-system file/x
+ok "a folder that cannot be made" refuses "cannot make the folder file/x" run --save-system file/x

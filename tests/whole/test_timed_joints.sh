@@ -113,7 +113,7 @@ alike() { # SETTING...
     for setting in "$@"; do set -- "$@" --set "$setting" && shift; done
     run panels.yaml "$@" --report report.json || return 1
     for run in 3,2 $others; do # RANKS,THREADS
-        limited "$MPIRUN" -n "${run%,*}" "$DUITE_CLOTH" panels.yaml --threads "${run#*,}" --quiet --report many.json --set 'probes=[]' "$@" || return 1
+        ranks "${run%,*}" "$DUITE_CLOTH" panels.yaml --threads "${run#*,}" --quiet --report many.json --set 'probes=[]' "$@" || return 1
         test "$(value state_hash)" = "$(value state_hash many.json)" || { echo "another hash on $run"; return 1; }
     done
 }

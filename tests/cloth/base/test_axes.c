@@ -21,7 +21,7 @@ static double wrong_by(const double m[3][3], const double value[3][3], const dou
     return worst;
 }
 
-START_TEST(are_those_of_the_matrix)
+UNIT_TEST(are_those_of_the_matrix)
 {
     static const double MATRIX[][3][3] = {{{2, -1, 0.5}, {-1, 3, 0.25}, {0.5, 0.25, -1}},
                                           {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}},
@@ -35,9 +35,8 @@ START_TEST(are_those_of_the_matrix)
         ck_assert_double_le(fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]), 1e-14);
     }
 }
-END_TEST
 
-START_TEST(small_entries_turn_nothing)
+UNIT_TEST(small_entries_turn_nothing)
 {
     const double moments[3][3] = {{1, 1e-17, 0}, {1e-17, 1, 0}, {0, 0, 0}};
     double m[3][3], axes[3][3];
@@ -48,15 +47,4 @@ START_TEST(small_entries_turn_nothing)
     memcpy(m, moments, sizeof m);
     cloth_axes(1e-300, m, axes);
     ck_assert_double_eq_tol(fabs(axes[0][0]), sqrt(0.5), 1e-15);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("axes");
-    TCase *cases = tcase_create("axes");
-    tcase_add_test(cases, are_those_of_the_matrix);
-    tcase_add_test(cases, small_entries_turn_nothing);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

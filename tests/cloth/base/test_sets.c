@@ -5,7 +5,7 @@ enum { N = 64 };
 
 /* Pairs (a, b) with a = b modulo 4, in an order without a pattern: then the sets are the four
  * classes of remainders, and their lowest numbers are 0 to 3. */
-START_TEST(roots_are_the_lowest_in_any_order)
+UNIT_TEST(roots_are_the_lowest_in_any_order)
 {
     for (uint32_t step = 1; step < N; step += 2) { /* odd: it visits all pairs */
         uint32_t parent[N];
@@ -20,10 +20,9 @@ START_TEST(roots_are_the_lowest_in_any_order)
         }
     }
 }
-END_TEST
 
 /* A chain that is joined from its end on is as long as it may get. */
-START_TEST(what_is_not_joined_stays_apart)
+UNIT_TEST(what_is_not_joined_stays_apart)
 {
     uint32_t parent[N];
     cloth_sets_start(parent, N);
@@ -31,15 +30,4 @@ START_TEST(what_is_not_joined_stays_apart)
         cloth_sets_join(parent, i, i - 1);
     for (uint32_t i = 0; i < N; i++)
         ck_assert_uint_eq(cloth_sets_root(parent, i), i < N / 2 ? i : N / 2);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("sets");
-    TCase *cases = tcase_create("sets");
-    tcase_add_test(cases, roots_are_the_lowest_in_any_order);
-    tcase_add_test(cases, what_is_not_joined_stays_apart);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

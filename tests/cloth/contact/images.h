@@ -39,12 +39,10 @@ static inline void show(struct shown *s, const struct surface *of,
                         const struct contact_frames *frames, uint32_t axis, uint32_t strips)
 {
     struct mesh mesh;
-    struct cloth_error error = {0};
     bool turned;
     *s = (struct shown){0};
     surface_mesh(of, &mesh);
-    ck_assert_msg(contact_bodies_add_frames(&s->bodies, &mesh, frames, &turned, &error) == 0, "%s",
-                  error.text);
+    UNIT_FINE(contact_bodies_add_frames(&s->bodies, &mesh, frames, &turned, &error));
     mesh_free(&mesh);
     s->body = contact_bodies_at(&s->bodies, 1);
     contact_view_make(s->body, axis, RESOLUTION, &s->view);

@@ -48,9 +48,8 @@ static void make(int which)
 
 static const struct contact_body *body_of(void)
 {
-    struct cloth_error error = {0};
     bool turned = true;
-    ck_assert_msg(contact_bodies_add(&bodies, &mesh, &turned, &error) == 0, "%s", error.text);
+    UNIT_FINE(contact_bodies_add(&bodies, &mesh, &turned, &error));
     ck_assert(!turned);
     return contact_bodies_at(&bodies, bodies.n);
 }
@@ -173,7 +172,9 @@ static void check_hit(const phys_vec *x, const struct contact_hit *hit)
         ck_assert_int_eq(hit->gap < 0, is_inside(at));
 }
 
-START_TEST(nearest_of_all)
+UNIT_FIXTURE(start, end)
+
+UNIT_LOOP(nearest_of_all, 0, N_MADE)
 {
     static phys_vec x[POINTS];
     static struct contact_hit hit[POINTS], alone;
@@ -197,10 +198,9 @@ START_TEST(nearest_of_all)
     }
     ck_assert_uint_gt(inside, 100);
 }
-END_TEST
 
 /* A copy of the memory elsewhere is the same bodies; a second body leaves the first as it was. */
-START_TEST(lies_anywhere)
+UNIT_TEST(lies_anywhere)
 {
     struct contact_bodies copy;
     struct contact_hit here[2], there[2];
@@ -223,10 +223,9 @@ START_TEST(lies_anywhere)
     ck_assert_ptr_null(contact_bodies_at(&copy, 0));
     free(copy.memory);
 }
-END_TEST
 
 /* Each part of a node lies in its box, by the doubles; each triangle is in one leaf. */
-START_TEST(boxes)
+UNIT_LOOP(boxes, 0, N_MADE)
 {
     make(_i);
     const struct contact_body *body = body_of();
@@ -259,11 +258,10 @@ START_TEST(boxes)
     ck_assert_uint_eq(n_facets, mesh.n_triangles);
     ck_assert_uint_eq(n_nodes, body->n_nodes);
 }
-END_TEST
 
 /* On edges and corners normals are in their middle, however many triangles a side has there. Of
  * nearest triangles that are as near the first counts: side x < 0 at the centre of a cube. */
-START_TEST(pseudo_normals)
+UNIT_TEST(pseudo_normals)
 {
     surface_box(&made, 1, 1, 1);
     surface_mesh(&made, &mesh);
@@ -282,9 +280,8 @@ START_TEST(pseudo_normals)
     find(body, 3, wrong, hit);
     ck_assert(isnan(hit[0].gap) && hit[1].gap > 0 && hit[2].gap > 1e150);
 }
-END_TEST
 
-START_TEST(apart)
+UNIT_LOOP(apart, 0, N_MADE)
 {
     size_t n_apart = 0, n_free = 0;
     random_seed = 7;
@@ -310,16 +307,14 @@ START_TEST(apart)
     ck_assert_uint_gt(n_apart, n_free / 4);
     ck_assert_uint_lt(n_free, POINTS);
 }
-END_TEST
 
-START_TEST(a_real_body)
+UNIT_LOOP(a_real_body, 0, access(real_body_path(), R_OK) == 0)
 {
     enum { N = 30000 };
-    struct cloth_error error = {0};
     struct mesh_transform metres = mesh_identity;
     for (int c = 0; c < 3; c++)
         metres.scale[c] = 0.1;
-    ck_assert_msg(mesh_read_surface(&mesh, real_body_path(), &error) == 0, "%s", error.text);
+    UNIT_FINE(mesh_read_surface(&mesh, real_body_path(), &error));
     mesh_apply(&mesh, &metres);
     const struct contact_body *body = body_of();
     phys_vec *x = aligned_alloc(CONTACT_ALIGN, N * sizeof *x);
@@ -337,21 +332,4 @@ START_TEST(a_real_body)
         check_hit(x + i, hit + i);
     free(x);
     free(hit);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("body");
-    TCase *cases = tcase_create("body");
-    tcase_add_checked_fixture(cases, start, end);
-    tcase_add_loop_test(cases, nearest_of_all, 0, N_MADE);
-    tcase_add_test(cases, lies_anywhere);
-    tcase_add_loop_test(cases, boxes, 0, N_MADE);
-    tcase_add_test(cases, pseudo_normals);
-    tcase_add_loop_test(cases, apart, 0, N_MADE);
-    if (access(real_body_path(), R_OK) == 0)
-        tcase_add_test(cases, a_real_body);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

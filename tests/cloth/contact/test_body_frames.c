@@ -31,7 +31,6 @@ static void place_frame(struct moving *m, int frame, double (*place)[3])
 
 static void make(struct moving *m)
 {
-    struct cloth_error error = {0};
     bool turned;
     surface_ball(&m->ball, 0.5, 2);
     surface_mesh(&m->ball, &m->mesh);
@@ -40,9 +39,8 @@ static void make(struct moving *m)
         place_frame(m, k, all + (size_t)k * m->ball.n);
     const struct contact_frames frames = {FRAMES, FIRST, RATE, (const double(*)[3])all};
     m->bodies = (struct contact_bodies){0};
-    ck_assert_msg(contact_bodies_add(&m->bodies, &m->mesh, &turned, &error) == 0, "%s", error.text);
-    ck_assert_msg(contact_bodies_add_frames(&m->bodies, &m->mesh, &frames, &turned, &error) == 0,
-                  "%s", error.text);
+    UNIT_FINE(contact_bodies_add(&m->bodies, &m->mesh, &turned, &error));
+    UNIT_FINE(contact_bodies_add_frames(&m->bodies, &m->mesh, &frames, &turned, &error));
 }
 
 static void drop(struct moving *m)
@@ -75,19 +73,18 @@ static void pick(phys_vec *x)
     *x = (phys_vec){random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), 0};
 }
 
-START_TEST(is_a_body_of_its_places)
+UNIT_TEST(is_a_body_of_its_places)
 {
     static struct moving m;
     static double place[BODY_VERTICES][3];
     const double times[] = {0, 0.5, 0.6, 0.75, 1.07, 1.25, 3};
     make(&m);
     for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
-        struct cloth_error error = {0};
         struct contact_bodies same = {0};
         bool turned;
         blend(&m, times[i], place);
         memcpy(m.mesh.position, place, m.ball.n * sizeof *place);
-        ck_assert_int_eq(contact_bodies_add(&same, &m.mesh, &turned, &error), 0);
+        UNIT_FINE(contact_bodies_add(&same, &m.mesh, &turned, &error));
         contact_bodies_move(&m.bodies, times[i] - 0.01, times[i]);
         const struct contact_body *body = contact_bodies_at(&m.bodies, 2);
         for (int k = 0; k < POINTS; k++) {
@@ -112,10 +109,9 @@ START_TEST(is_a_body_of_its_places)
     }
     drop(&m);
 }
-END_TEST
 
 /* The nearest point goes with its triangle: where it was, the surface was. */
-START_TEST(the_surface_has_its_velocity)
+UNIT_TEST(the_surface_has_its_velocity)
 {
     static struct moving m;
     const struct contact_shape shape = {.kind = 5, .body = 2};
@@ -139,10 +135,9 @@ START_TEST(the_surface_has_its_velocity)
     }
     drop(&m);
 }
-END_TEST
 
 /* Whatever times it was moved to before; the body without frames is as it was. */
-START_TEST(times_alone_say_the_bytes)
+UNIT_TEST(times_alone_say_the_bytes)
 {
     static struct moving m;
     make(&m);
@@ -160,9 +155,8 @@ START_TEST(times_alone_say_the_bytes)
     ck_assert(!contact_body_moves_after(contact_bodies_at(&m.bodies, 1), 0));
     drop(&m);
 }
-END_TEST
 
-START_TEST(ends_of_steps)
+UNIT_TEST(ends_of_steps)
 {
     static struct moving m;
     static double place[BODY_VERTICES][3];
@@ -184,10 +178,9 @@ START_TEST(ends_of_steps)
     free(x);
     drop(&m);
 }
-END_TEST
 
 /* Also of triangles that are a line: their corners come in any order on it. */
-START_TEST(angles)
+UNIT_TEST(angles)
 {
     const double pi = acos(-1);
     const phys_vec a = {1, 2, -3, 0}, across = {3, 0, 1, 0}, none = {0};
@@ -198,17 +191,15 @@ START_TEST(angles)
     ck_assert_double_eq(contact_angle(&a, &none), 0);
     ck_assert_double_eq(contact_angle(&none, &none), 0);
 }
-END_TEST
 
 /* A corner of a box goes along an edge to the other corner of it, where two triangles have no area
  * any more. What is left is a wedge, of which the inside is inside, and normals have the length 1:
  * that of the corner is along a sum of those of the triangles with an area. */
-START_TEST(triangles_that_lose_their_area)
+UNIT_TEST(triangles_that_lose_their_area)
 {
     struct surface box;
     struct mesh mesh;
     struct contact_bodies bodies = {0};
-    struct cloth_error error = {0};
     bool turned;
     surface_box(&box, 1, 1, 1);
     surface_mesh(&box, &mesh);
@@ -217,7 +208,7 @@ START_TEST(triangles_that_lose_their_area)
     memcpy(place[1], box.x, sizeof place[1]);
     memcpy(place[1][7], place[1][3], sizeof place[1][7]); /* (1, 1, 1) to (1, 1, -1) */
     const struct contact_frames frames = {2, 0, 1, (const double(*)[3])place[0]};
-    ck_assert_int_eq(contact_bodies_add_frames(&bodies, &mesh, &frames, &turned, &error), 0);
+    UNIT_FINE(contact_bodies_add_frames(&bodies, &mesh, &frames, &turned, &error));
     contact_bodies_move(&bodies, 1, 1);
     const struct contact_body *body = contact_bodies_at(&bodies, 1);
     for (uint32_t v = 0; v < body->n_vertices; v++)
@@ -234,9 +225,8 @@ START_TEST(triangles_that_lose_their_area)
     mesh_free(&mesh);
     free(bodies.memory);
 }
-END_TEST
 
-START_TEST(frames_that_are_nowhere)
+UNIT_TEST(frames_that_are_nowhere)
 {
     static struct moving m;
     struct cloth_error error = {0};
@@ -251,20 +241,4 @@ START_TEST(frames_that_are_nowhere)
     ck_assert_ptr_nonnull(strstr(error.text, "vertex 7 of frame 3 is "));
     ck_assert_uint_eq(m.bodies.bytes, bytes);
     drop(&m);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("body_frames");
-    TCase *cases = tcase_create("frames");
-    tcase_add_test(cases, is_a_body_of_its_places);
-    tcase_add_test(cases, the_surface_has_its_velocity);
-    tcase_add_test(cases, times_alone_say_the_bytes);
-    tcase_add_test(cases, ends_of_steps);
-    tcase_add_test(cases, angles);
-    tcase_add_test(cases, triangles_that_lose_their_area);
-    tcase_add_test(cases, frames_that_are_nowhere);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -17,16 +17,14 @@ static const struct contact_body *body;
 static void start(void)
 {
     static struct surface ring;
-    struct cloth_error error = {0};
-    struct mesh mesh = {0};
+    UNIT_OWNED(mesh_free) struct mesh mesh = {0};
     bool turned;
     surface_torus(&ring, 0.5, 0.2, 24, 12);
     ring.x[ring.n++][0] = 3;
     surface_mesh(&ring, &mesh);
     bodies = (struct contact_bodies){0};
-    ck_assert_msg(contact_bodies_add(&bodies, &mesh, &turned, &error) == 0, "%s", error.text);
+    UNIT_FINE(contact_bodies_add(&bodies, &mesh, &turned, &error));
     body = contact_bodies_at(&bodies, 1);
-    mesh_free(&mesh);
 }
 
 static void end(void)
@@ -43,9 +41,8 @@ static void *take(size_t bytes, int fill)
 
 static void *make_table(int fill)
 {
-    struct cloth_error error = {0};
     void *table = take(contact_body_skin_bytes(body), fill);
-    ck_assert_msg(contact_body_skin_make(body, FIRST_ID, table, &error) == 0, "%s", error.text);
+    UNIT_FINE(contact_body_skin_make(body, FIRST_ID, table, &error));
     return table;
 }
 
@@ -54,7 +51,9 @@ static int by_value(const void *a, const void *b)
     return memcmp(a, b, sizeof(uint64_t));
 }
 
-START_TEST(all_features_once)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(all_features_once)
 {
     void *table = make_table(0), *other = make_table(255);
     const struct contact_skin skin = contact_skin_open(table);
@@ -82,7 +81,6 @@ START_TEST(all_features_once)
     free(table);
     free(other);
 }
-END_TEST
 
 static const struct phys_key keys[2] = {{0, {0, 0, 0}, {1, 0, 0, 0}},
                                         {2, {0.2, -0.3, 0.1}, {0.96, 0, 0.28, 0}}};
@@ -96,7 +94,7 @@ static void step(double from, double to, phys_vec *x, phys_vec *y, phys_vec *way
 }
 
 /* The end of a step is the begin of the next one, to the bit; the middle's way is near to all. */
-START_TEST(steps_join)
+UNIT_TEST(steps_join)
 {
     const size_t bytes = body->n_vertices * sizeof(phys_vec);
     phys_vec *x = take(4 * bytes, 0), *y = x + body->n_vertices, *next = y + body->n_vertices;
@@ -114,7 +112,6 @@ START_TEST(steps_join)
     ck_assert_double_eq(phys_dot(&still, &still), 0);
     free(x);
 }
-END_TEST
 
 /* ---- With a cloth: triangles that share nothing ---- */
 
@@ -192,7 +189,7 @@ static uint32_t check_kind(const struct contact_side side[2], uint32_t kind, uin
     return n;
 }
 
-START_TEST(pairs_with_a_cloth)
+UNIT_TEST(pairs_with_a_cloth)
 {
     static uint32_t corner[CLOTH][3], id[3 * CLOTH];
     static unsigned char stands[CLOTH];
@@ -201,7 +198,6 @@ START_TEST(pairs_with_a_cloth)
     void *table[2], *boxes[2];
     struct contact_skin skin[2];
     struct contact_side side[2];
-    struct cloth_error error = {0};
     struct found found = {.capacity = 1000000};
     make_cloth(corner, id, x[0], y[0]);
     memset(stands, 63, sizeof stands);
@@ -216,7 +212,7 @@ START_TEST(pairs_with_a_cloth)
     const struct contact_skin counts = {
         .n_points = 3 * CLOTH, .n_triangles = CLOTH, .n_edges = 3 * CLOTH, .n_vertices = 3 * CLOTH};
     table[0] = take(contact_skin_bytes(&counts), 0);
-    ck_assert_int_eq(contact_skin_make(&from, table[0], &error), 0);
+    UNIT_FINE(contact_skin_make(&from, table[0], &error));
     table[1] = make_table(0);
     step(0.5, 0.7, x[1], y[1], way + 1);
     for (int i = 0; i < 2; i++) {
@@ -239,7 +235,6 @@ START_TEST(pairs_with_a_cloth)
         free(table[i]);
     }
 }
-END_TEST
 
 /* A bit along n from a point of the surface: how far the nearest of all facets is, of how far the
  * point is. */
@@ -261,7 +256,7 @@ static void any_direction(const phys_vec *edge, phys_vec *n)
 }
 
 /* On vertices and in the middle of edges: outside and inside of the ring, where edges go in. */
-START_TEST(opens_where_it_is_nearest)
+UNIT_TEST(opens_where_it_is_nearest)
 {
     const phys_vec *x = contact_body_vertices(body);
     const struct contact_facet *facet = contact_body_facets(body);
@@ -285,18 +280,4 @@ START_TEST(opens_where_it_is_nearest)
     ck_assert_int_gt(opened[0], 20);
     ck_assert_int_gt(opened[1], 50);
     free(fan);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("body_skin");
-    TCase *cases = tcase_create("body_skin");
-    tcase_add_checked_fixture(cases, start, end);
-    tcase_add_test(cases, all_features_once);
-    tcase_add_test(cases, steps_join);
-    tcase_add_test(cases, pairs_with_a_cloth);
-    tcase_add_test(cases, opens_where_it_is_nearest);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -34,7 +34,7 @@ static bool certain(enum contact_pair pair, double height, double first_down, do
     return contact_certify(pair, x, y, THICKNESS);
 }
 
-START_TEST(known)
+UNIT_TEST(known)
 {
     for (int i = 0; i < 2; i++) {
         const enum contact_pair pair = KINDS[i];
@@ -55,9 +55,8 @@ START_TEST(known)
         ck_assert(!certain(pair, 0, -1, 0)); /* touches at the start */
     }
 }
-END_TEST
 
-START_TEST(not_finite)
+UNIT_TEST(not_finite)
 {
     const double value[] = {NAN, INFINITY, -INFINITY};
     for (int i = 0; i < 2; i++)
@@ -74,7 +73,6 @@ START_TEST(not_finite)
                 ck_assert(!contact_cut(KINDS[i], x, y, THICKNESS, 0, t));
             }
 }
-END_TEST
 
 /* ---- Cuts ---- */
 
@@ -126,7 +124,7 @@ static bool starts(enum contact_pair pair, const phys_vec x[4])
     return contact_certify(pair, x, x, THICKNESS);
 }
 
-START_TEST(cuts)
+UNIT_LOOP(cuts, 0, PAIRS_SORTS_N)
 {
     const struct pairs_sort *sort = PAIRS_SORTS + _i;
     int uncut = 0, cut = 0, refused = 0, n = pairs_count();
@@ -152,11 +150,10 @@ START_TEST(cuts)
     }
     printf("# %s: %d of %d uncut, %d cut, %d refused\n", sort->name, uncut, n, cut, refused);
 }
-END_TEST
 
 /* What passes by is farther apart than the reach at both ends, as nearest points are, and all that
  * passes is certified. */
-START_TEST(passes_by)
+UNIT_LOOP(passes_by, 0, PAIRS_SORTS_N)
 {
     const struct pairs_sort *sort = PAIRS_SORTS + _i;
     int by = 0, far = 0, n = pairs_count();
@@ -176,10 +173,9 @@ START_TEST(passes_by)
     }
     printf("# %s: %d of %d pass by, %d more are as far\n", sort->name, by, n, far);
 }
-END_TEST
 
 /* Steps towards each other without end: each is certified after its cut, and the gap stays. */
-START_TEST(again_and_again)
+UNIT_TEST(again_and_again)
 {
     for (int i = 0; i < 2; i++) {
         double height = 1e-3;
@@ -195,10 +191,9 @@ START_TEST(again_and_again)
         ck_assert(height >= CONTACT_MARGIN);
     }
 }
-END_TEST
 
 /* t as other pairs left it is only lowered; of a side that does not move nothing is taken. */
-START_TEST(lowered)
+UNIT_TEST(lowered)
 {
     for (int i = 0; i < 2; i++) {
         double t[4] = {0.01, 0.01, 1, 1};
@@ -215,10 +210,9 @@ START_TEST(lowered)
                   t[3] == 1); /* 0.1 of the way to the plane is left */
     }
 }
-END_TEST
 
 /* Features that fly together lose but what they come nearer, and those in front nothing. */
-START_TEST(flown)
+UNIT_TEST(flown)
 {
     for (int i = 0; i < 2; i++)
         for (int down = 0; down < 2; down++) {
@@ -233,10 +227,9 @@ START_TEST(flown)
             check_cut(KINDS[i], x, y, 0, t);
         }
 }
-END_TEST
 
 /* An obstacle that comes pushes the plane as far as there is room; into the cloth it is refused. */
-START_TEST(pushed)
+UNIT_TEST(pushed)
 {
     for (int i = 0; i < 2; i++) {
         const enum contact_pair pair = KINDS[i];
@@ -252,22 +245,4 @@ START_TEST(pushed)
                 check_cut(pair, x, y, below, t);
         }
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("certificate");
-    TCase *cases = tcase_create("known"), *cut_cases = tcase_create("cut");
-    tcase_add_test(cases, known);
-    tcase_add_test(cases, not_finite);
-    tcase_add_loop_test(cut_cases, cuts, 0, PAIRS_SORTS_N);
-    tcase_add_loop_test(cut_cases, passes_by, 0, PAIRS_SORTS_N);
-    tcase_add_test(cut_cases, again_and_again);
-    tcase_add_test(cut_cases, lowered);
-    tcase_add_test(cut_cases, flown);
-    tcase_add_test(cut_cases, pushed);
-    suite_add_tcase(suite, cases);
-    suite_add_tcase(suite, cut_cases);
-    return unit_run(suite);
 }

@@ -254,7 +254,7 @@ static void end_of(const phys_vec x[4], const phys_vec y[4], unsigned held, cons
         end[k] = held >> k & 1 ? y[k] : x[k] + t[k] * (y[k] - x[k]);
 }
 
-START_TEST(certain_is_true)
+UNIT_LOOP(certain_is_true, 0, PAIRS_SORTS_N)
 {
     const struct pairs_sort *sort = PAIRS_SORTS + _i;
     int certain = 0, cut = 0, n = pairs_count();
@@ -276,11 +276,10 @@ START_TEST(certain_is_true)
     }
     printf("# %s: %d certain, %d cut, of %d\n", sort->name, certain, cut, n);
 }
-END_TEST
 
 /* The exact arithmetic sees what touches, be it at one moment and by the last digit. Two pairs that
  * meet in a point at the middle of the step; then one corner is moved by so much. */
-START_TEST(touch_is_seen)
+UNIT_TEST(touch_is_seen)
 {
     static const double CORNER[2][4][3] = {{{1, 1, 1}, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}},
                                            {{-1, 0, 1}, {3, 0, 1}, {0, -1, 0}, {0, 1, 0}}};
@@ -302,10 +301,9 @@ START_TEST(touch_is_seen)
             ck_assert(!truly_apart(KINDS[i], x, y));
         }
 }
-END_TEST
 
 /* Of pairs that are not certain many do touch. */
-START_TEST(many_touch)
+UNIT_TEST(many_touch)
 {
     int touch = 0;
     prepare();
@@ -316,17 +314,4 @@ START_TEST(many_touch)
         touch += !contact_certify(pair, x, y, THICKNESS) && !truly_apart(pair, x, y);
     }
     ck_assert_int_ge(touch, 50);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("certificate, exact");
-    TCase *judge = tcase_create("exact arithmetic"), *claims = tcase_create("certificate");
-    tcase_add_test(judge, touch_is_seen);
-    tcase_add_test(judge, many_touch);
-    tcase_add_loop_test(claims, certain_is_true, 0, PAIRS_SORTS_N);
-    suite_add_tcase(suite, judge);
-    suite_add_tcase(suite, claims);
-    return unit_run(suite);
 }

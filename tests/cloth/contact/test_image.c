@@ -2,10 +2,12 @@
  * is exact. */
 #include "tests/cloth/contact/images.h"
 
+#include <unistd.h>
+
 /* ---- A ball ---- */
 
 /* Depths are off by what the triangles are inside of the ball, along the axis. */
-START_TEST(ball_is_seen_as_a_ball)
+UNIT_LOOP(ball_is_seen_as_a_ball, 0, 3)
 {
     static struct surface ball;
     struct shown s;
@@ -38,11 +40,10 @@ START_TEST(ball_is_seen_as_a_ball)
         }
     drop(&s);
 }
-END_TEST
 
 /* Near the surface, and where it is not seen from beside, gaps are those of the tree to second
  * order. */
-START_TEST(gaps_near_a_ball)
+UNIT_TEST(gaps_near_a_ball)
 {
     static struct surface ball;
     struct shown s;
@@ -63,7 +64,6 @@ START_TEST(gaps_near_a_ball)
     }
     drop(&s);
 }
-END_TEST
 
 /* ---- Inside ---- */
 
@@ -88,7 +88,7 @@ static void check_inside(const struct surface *of, uint32_t axis)
     drop(&s);
 }
 
-START_TEST(inside_of_convex_bodies)
+UNIT_LOOP(inside_of_convex_bodies, 1, 4)
 {
     static struct surface of;
     surface_ball(&of, R, _i);
@@ -100,10 +100,9 @@ START_TEST(inside_of_convex_bodies)
     }
     check_inside(&of, CONTACT_THINNEST);
 }
-END_TEST
 
 /* Sides along the view are not seen: the way out is the front or the back. */
-START_TEST(box_has_a_front_and_a_back)
+UNIT_TEST(box_has_a_front_and_a_back)
 {
     static struct surface box;
     struct shown s;
@@ -130,7 +129,6 @@ START_TEST(box_has_a_front_and_a_back)
     ck_assert_double_eq(hit.gap, INFINITY);
     drop(&s);
 }
-END_TEST
 
 /* ---- Triangles ---- */
 
@@ -163,7 +161,7 @@ static double deepest(const struct shown *s, const double at[2], double towards,
 }
 
 /* A ring that leans, seen along each axis: from the side it hides itself. */
-START_TEST(ring_is_that_of_all_triangles)
+UNIT_LOOP(ring_is_that_of_all_triangles, 0, 3)
 {
     static struct surface ring;
     struct shown s;
@@ -194,11 +192,10 @@ START_TEST(ring_is_that_of_all_triangles)
     ck_assert_int_gt(n, 1000);
     drop(&s);
 }
-END_TEST
 
 /* Middles of pixels on edges, of a double pyramid: on those inside there are no holes, and of its
  * outline just half of the sides have theirs. */
-START_TEST(edges_have_their_pixels_once)
+UNIT_LOOP(edges_have_their_pixels_once, 0, 2)
 {
     static struct surface pyramid;
     struct shown s;
@@ -228,10 +225,9 @@ START_TEST(edges_have_their_pixels_once)
     ck_assert_uint_eq(outline, _i ? 0 : RESOLUTION);
     drop(&s);
 }
-END_TEST
 
 /* However the rows are cut, and whatever was in the memory. */
-START_TEST(strips_do_not_change_bits)
+UNIT_TEST(strips_do_not_change_bits)
 {
     static struct surface ring;
     struct shown whole, cut;
@@ -246,13 +242,12 @@ START_TEST(strips_do_not_change_bits)
     drop(&whole);
     drop(&cut);
 }
-END_TEST
 
 /* ---- Frames ---- */
 
 /* An egg that is drawn out, turned and shifted: its maps have the velocity of the chord, and are as
  * large in every frame. */
-START_TEST(bodies_by_frames)
+UNIT_TEST(bodies_by_frames)
 {
     enum { FRAMES = 3 };
     static struct surface ball;
@@ -295,21 +290,19 @@ START_TEST(bodies_by_frames)
     }
     drop(&s);
 }
-END_TEST
 
 /* ---- A body of others ---- */
 
 /* Both maps have the same pixels; just under what is seen a point is inside by both ways, and just
  * above it outside. */
-START_TEST(figure)
+UNIT_LOOP(figure, 0, access(real_body_path(), R_OK) == 0)
 {
     struct mesh mesh;
-    struct cloth_error error = {0};
     struct shown s = {0};
     bool turned;
     int covered = 0, differ = 0;
-    ck_assert_msg(mesh_read_surface(&mesh, real_body_path(), &error) == 0, "%s", error.text);
-    ck_assert_msg(contact_bodies_add(&s.bodies, &mesh, &turned, &error) == 0, "%s", error.text);
+    UNIT_FINE(mesh_read_surface(&mesh, real_body_path(), &error));
+    UNIT_FINE(contact_bodies_add(&s.bodies, &mesh, &turned, &error));
     mesh_free(&mesh);
     s.body = contact_bodies_at(&s.bodies, 1);
     contact_view_make(s.body, CONTACT_THINNEST, 512, &s.view);
@@ -334,26 +327,4 @@ START_TEST(figure)
     ck_assert_int_gt(covered, 40000);
     ck_assert_msg(differ < covered / 100, "%d of %d points differ", differ, covered);
     drop(&s);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("image");
-    TCase *cases = tcase_create("maps");
-    FILE *real = fopen(real_body_path(), "r");
-    tcase_add_loop_test(cases, ball_is_seen_as_a_ball, 0, 3);
-    tcase_add_test(cases, gaps_near_a_ball);
-    tcase_add_loop_test(cases, inside_of_convex_bodies, 1, 4);
-    tcase_add_test(cases, box_has_a_front_and_a_back);
-    tcase_add_loop_test(cases, ring_is_that_of_all_triangles, 0, 3);
-    tcase_add_loop_test(cases, edges_have_their_pixels_once, 0, 2);
-    tcase_add_test(cases, strips_do_not_change_bits);
-    tcase_add_test(cases, bodies_by_frames);
-    if (real) {
-        tcase_add_test(cases, figure);
-        fclose(real);
-    }
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -13,7 +13,7 @@ static void same(const phys_vec *a, double x, double y, double z)
 }
 
 /* The plane y = 1, seen from above. */
-START_TEST(plane_lifts_and_stops)
+UNIT_TEST(plane_lifts_and_stops)
 {
     enum { UNDER, UNDER_RISING, ABOVE, ON, HELD, N };
     const struct contact_shape plane = {.value = {5, 1, 7, 0, 1, 0}};
@@ -33,9 +33,8 @@ START_TEST(plane_lifts_and_stops)
     same(x + HELD, 0, 0, 0);
     same(v + HELD, 3, -4, 5);
 }
-END_TEST
 
-START_TEST(plane_on_a_slope)
+UNIT_TEST(plane_on_a_slope)
 {
     const struct contact_shape plane = {.value = {0, 0, 0, 0.6, 0.8, 0}};
     const struct contact_pose still = {0};
@@ -48,26 +47,13 @@ START_TEST(plane_on_a_slope)
     ck_assert_double_eq_tol(v[0][1], -0.6, 1e-15);
     ck_assert_double_eq(v[0][2], 1);
 }
-END_TEST
 
 /* What is nowhere is not put anywhere. */
-START_TEST(nowhere)
+UNIT_TEST(nowhere)
 {
     const struct contact_hit hit = {.normal = {0, 1, 0, 0}, .gap = NAN};
     phys_vec x = {1, 2, 3, 0}, v = {4, 5, 6, 0};
     ck_assert(!contact_leave(&hit, &hit.normal, &x, &v));
     same(&x, 1, 2, 3);
     same(&v, 4, 5, 6);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("meet");
-    TCase *cases = tcase_create("meet");
-    tcase_add_test(cases, plane_lifts_and_stops);
-    tcase_add_test(cases, plane_on_a_slope);
-    tcase_add_test(cases, nowhere);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

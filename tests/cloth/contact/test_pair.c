@@ -68,7 +68,7 @@ static void check_nearest(enum contact_pair pair, const phys_vec x[4], double to
     PAIRS_CHECK(apart(pair, x, &to.normal) >= to.gap - off);
 }
 
-START_TEST(closest)
+UNIT_LOOP(closest, 0, PAIRS_SORTS_N)
 {
     phys_vec x[4], y[4];
     const struct pairs_sort *sort = PAIRS_SORTS + _i;
@@ -77,10 +77,9 @@ START_TEST(closest)
         check_nearest(KINDS[i & 1], x, sort->flat > 0 ? 2e-6 : 1e-9);
     }
 }
-END_TEST
 
 /* The bits are the same with every instruction set. */
-START_TEST(same_bits)
+UNIT_TEST(same_bits)
 {
     const enum cloth_simd widest = cloth_simd;
     struct contact_nearest wide, narrow;
@@ -99,7 +98,6 @@ START_TEST(same_bits)
         PAIRS_CHECK(!memcmp(&wide, &narrow, sizeof wide));
     }
 }
-END_TEST
 
 static void set(phys_vec x[4], const double corner[4][3])
 {
@@ -138,7 +136,7 @@ static const struct known {
 };
 enum { N_KNOWN = sizeof KNOWN / sizeof *KNOWN };
 
-START_TEST(known)
+UNIT_TEST(known)
 {
     for (int i = 0; i < N_KNOWN; i++) {
         struct contact_nearest to;
@@ -153,10 +151,9 @@ START_TEST(known)
                           "case %d: weight %d is %g", i, k, to.weight[k]);
     }
 }
-END_TEST
 
 /* At a gap of 0 inside both features the normal is across both. */
-START_TEST(touching)
+UNIT_TEST(touching)
 {
     for (int i = 0; i < N_KNOWN; i++) {
         struct contact_nearest to;
@@ -168,17 +165,4 @@ START_TEST(touching)
         ck_assert(to.gap > 0 || fabs(phys_dot(&to.normal, &a)) <= 1e-15);
         ck_assert(to.gap > 0 || fabs(phys_dot(&to.normal, &b)) <= 1e-15);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("pair");
-    TCase *closest_case = tcase_create("closest points");
-    tcase_add_loop_test(closest_case, closest, 0, PAIRS_SORTS_N);
-    tcase_add_test(closest_case, same_bits);
-    tcase_add_test(closest_case, known);
-    tcase_add_test(closest_case, touching);
-    suite_add_tcase(suite, closest_case);
-    return unit_run(suite);
 }

@@ -58,7 +58,7 @@ static void run(struct mass *mass, double seconds)
         step(mass);
 }
 
-START_TEST(rests)
+UNIT_TEST(rests)
 {
     struct mass mass = make(0, 0);
     mass.x += (phys_vec){0, 0.01, 0, 0};
@@ -67,10 +67,9 @@ START_TEST(rests)
     ck_assert_double_eq_tol(mass.x[1], THICKNESS, 1e-9);
     ck_assert_double_eq_tol(mass.v[1], 0, 1e-9);
 }
-END_TEST
 
 /* Half a degree below the angle it is where it was, half a degree above it slides. */
-START_TEST(sticks_and_slips)
+UNIT_TEST(sticks_and_slips)
 {
     const double friction = 0.4, limit = atan(friction), half = 0.5 * DEGREE;
     struct mass below = make(limit - half, friction), above = make(limit + half, friction);
@@ -88,9 +87,8 @@ START_TEST(sticks_and_slips)
     run(&above, 10);
     ck_assert_double_gt(sqrt(phys_dot(&above.v, &above.v)), 0.1);
 }
-END_TEST
 
-START_TEST(slides_as_coulomb_says)
+UNIT_TEST(slides_as_coulomb_says)
 {
     for (int degrees = 20; degrees < 80; degrees += 10) {
         const double angle = degrees * DEGREE, friction = 0.3;
@@ -104,12 +102,11 @@ START_TEST(slides_as_coulomb_says)
             ck_assert_double_eq_tol(sqrt(phys_dot(&gained, &gained)), expected, 0.01 * expected);
     }
 }
-END_TEST
 
 /* Friction counts on the load that a step begins with: of all loads it leaves out the last one, as
  * the first step begins with none. So what slides on something new keeps friction load h / mass of
  * speed too much, however the load comes about. */
-START_TEST(new_contacts_brake_a_step_late)
+UNIT_TEST(new_contacts_brake_a_step_late)
 {
     const double friction = 0.3, seconds = 0.2;
     struct mass mass = make(0, friction);
@@ -120,10 +117,9 @@ START_TEST(new_contacts_brake_a_step_late)
     const double late = friction * mass.row.load / mass.kg * mass.h;
     ck_assert_double_eq_tol(mass.v[0] - (1 - friction * loads), late, 0.1 * late);
 }
-END_TEST
 
 /* On level ground it stops after v^2 / (2 friction G), and stays. */
-START_TEST(stops)
+UNIT_TEST(stops)
 {
     struct mass mass = make(0, 0.2);
     mass.h = 0.001;
@@ -139,10 +135,9 @@ START_TEST(stops)
     const phys_vec crept = mass.x - then;
     ck_assert_double_lt(sqrt(phys_dot(&crept, &crept)), 1e-9);
 }
-END_TEST
 
 /* The matrix is the derivative of the force where it does not turn over. */
-START_TEST(derivative)
+UNIT_TEST(derivative)
 {
     struct mass mass = make(0.3, 0.5);
     struct contact_row *row = &mass.row;
@@ -164,19 +159,4 @@ START_TEST(derivative)
         const phys_vec error = (force - other) - expected;
         ck_assert_double_lt(sqrt(phys_dot(&error, &error)), 1e-6 * 30 * 1e-8);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("contact row");
-    TCase *tests = tcase_create("rows");
-    tcase_add_test(tests, rests);
-    tcase_add_test(tests, sticks_and_slips);
-    tcase_add_test(tests, slides_as_coulomb_says);
-    tcase_add_test(tests, new_contacts_brake_a_step_late);
-    tcase_add_test(tests, stops);
-    tcase_add_test(tests, derivative);
-    suite_add_tcase(suite, tests);
-    return unit_run(suite);
 }

@@ -135,7 +135,10 @@ static bool surface_point(const struct contact_shape *shape, const struct contac
 
 /* ---- The cases, one for each kind ---- */
 
-START_TEST(nearest_of_all)
+/* The last kind is bodies: test_body.c. */
+#define N_SHAPES ((int)contact_n_kinds - 1)
+
+UNIT_LOOP(nearest_of_all, 0, N_SHAPES)
 {
     static phys_vec surface[SAMPLES];
     const int samples = unit_quick() ? SAMPLES / 10 : SAMPLES;
@@ -168,10 +171,9 @@ START_TEST(nearest_of_all)
         }
     }
 }
-END_TEST
 
 /* Where the normal has no jump the gap's slope is the normal; the gap itself has no jump. */
-START_TEST(the_slope_is_the_normal)
+UNIT_LOOP(the_slope_is_the_normal, 0, N_SHAPES)
 {
     const double e = 1e-6;
     size_t smooth = 0;
@@ -206,10 +208,9 @@ START_TEST(the_slope_is_the_normal)
     }
     ck_assert_uint_gt(smooth, SHAPES * POINTS / 10 * 9);
 }
-END_TEST
 
 /* The surface goes with the keys: its points of one time are at another where its velocity says. */
-START_TEST(the_surface_has_its_velocity)
+UNIT_LOOP(the_surface_has_its_velocity, 0, N_SHAPES)
 {
     const double from = 1.3, to = 1.7;
     for (int s = 0; s < SHAPES; s++) {
@@ -231,10 +232,9 @@ START_TEST(the_surface_has_its_velocity)
         }
     }
 }
-END_TEST
 
 /* Along a line between two keys the velocity is theirs, at rest it is none. */
-START_TEST(keys_say_the_velocity)
+UNIT_LOOP(keys_say_the_velocity, 0, N_SHAPES)
 {
     const struct phys_key keys[2] = {{1, {0, 0, 0}, {1, 0, 0, 0}}, {3, {4, -2, 1}, {1, 0, 0, 0}}};
     const phys_vec x = {0.3, 0.4, 0.5, 0};
@@ -251,10 +251,9 @@ START_TEST(keys_say_the_velocity)
                                     1e-14);
     }
 }
-END_TEST
 
 /* Of a kind that says so: points are apart where each has a gap. */
-START_TEST(apart)
+UNIT_LOOP(apart, 0, N_SHAPES)
 {
     struct contact_shape shape;
     struct phys_key keys[2];
@@ -274,10 +273,9 @@ START_TEST(apart)
     }
     ck_assert(!contact_kinds[_i]->apart || (n_apart > 0 && n_apart < POINTS));
 }
-END_TEST
 
 /* So near to the middle of a ball or a rod that squares of distances vanish. */
-START_TEST(normals_in_the_middle)
+UNIT_LOOP(normals_in_the_middle, 0, N_SHAPES)
 {
     struct contact_shape shape;
     struct phys_key keys[2];
@@ -292,10 +290,9 @@ START_TEST(normals_in_the_middle)
             ck_assert_double_eq_tol(length(&hit.normal), 1, 1e-12);
     }
 }
-END_TEST
 
 /* For pictures: points of the surface with their normals, triangles seen from outside. */
-START_TEST(surfaces)
+UNIT_LOOP(surfaces, 0, N_SHAPES)
 {
     struct contact_shape shape;
     struct phys_key keys[2];
@@ -323,21 +320,4 @@ START_TEST(surfaces)
     }
     free(vertex);
     free(triangle);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("shape");
-    TCase *cases = tcase_create("shape");
-    const int n = (int)contact_n_kinds - 1; /* the last are bodies: test_body.c */
-    tcase_add_loop_test(cases, nearest_of_all, 0, n);
-    tcase_add_loop_test(cases, the_slope_is_the_normal, 0, n);
-    tcase_add_loop_test(cases, the_surface_has_its_velocity, 0, n);
-    tcase_add_loop_test(cases, keys_say_the_velocity, 0, n);
-    tcase_add_loop_test(cases, apart, 0, n);
-    tcase_add_loop_test(cases, normals_in_the_middle, 0, n);
-    tcase_add_loop_test(cases, surfaces, 0, n);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -13,8 +13,11 @@ static int quick(int n)
     return unit_quick() ? n / 10 : n;
 }
 
+/* The last kind is bodies: test_body.c. */
+#define N_SHAPES ((int)contact_n_kinds - 1)
+
 /* At the end as at the begin, against the gaps of points. */
-START_TEST(nearest)
+UNIT_LOOP(nearest, 0, N_SHAPES)
 {
     for (int i = 0; i < quick(PAIRS); i++) {
         struct meeting m;
@@ -47,10 +50,9 @@ START_TEST(nearest)
         }
     }
 }
-END_TEST
 
 /* Corners, edges and insides are told from each other, and weights say the same. */
-START_TEST(features)
+UNIT_LOOP(features, 0, N_SHAPES)
 {
     int n[7] = {0};
     for (int i = 0; i < 10 * PAIRS; i++) {
@@ -71,9 +73,8 @@ START_TEST(features)
     for (int f = 0; f < 7; f++)
         ck_assert(n[f] > 0 || (contact_kinds[_i] == &contact_plane && f >= CONTACT_ON_EDGE));
 }
-END_TEST
 
-START_TEST(certified_never_touches)
+UNIT_LOOP(certified_never_touches, 0, N_SHAPES)
 {
     int certified = 0, hit = 0;
     for (int i = 0; i < quick(MANY); i++) {
@@ -91,10 +92,9 @@ START_TEST(certified_never_touches)
     ck_assert_int_gt(certified, quick(MANY) / 4);
     ck_assert_int_gt(hit, quick(MANY) / 20);
 }
-END_TEST
 
 /* Free flight is not held up: what never comes near is certified. */
-START_TEST(what_is_far_is_certified)
+UNIT_LOOP(what_is_far_is_certified, 0, N_SHAPES)
 {
     int n = 0;
     for (int i = 0; i < quick(MANY); i++) {
@@ -105,10 +105,9 @@ START_TEST(what_is_far_is_certified)
     }
     ck_assert_int_eq(n, quick(MANY));
 }
-END_TEST
 
 /* Of a shape that stays every triangle can be cut; of one that moves, those that it lets. */
-START_TEST(what_is_cut_is_certified)
+UNIT_LOOP(what_is_cut_is_certified, 0, N_SHAPES)
 {
     for (int still = 0; still < 2; still++) {
         int pinched = 0, cut = 0;
@@ -139,7 +138,6 @@ START_TEST(what_is_cut_is_certified)
         ck_assert_int_gt(cut, MANY / 20);
     }
 }
-END_TEST
 
 /* A ball of 0.1 m goes by `shift` past what begins 0.2 m from its centre. Ends are told from its
  * centre then, angles from the way to where the triangle was. */
@@ -171,7 +169,7 @@ static void pass_ball(const double shift[2], const double radius[3], double degr
  * mean of that and the one of the begin 0.96. On the far side the direction to the end divides
  * nothing. Along n what stays has 0.0281 m, what goes all its way -0.1937 m, and 1e-4 m, a tenth of
  * the thickness, is due. */
-START_TEST(cuts_along_what_cuts_least)
+UNIT_TEST(cuts_along_what_cuts_least)
 {
     const double shift[2] = {0.12, -0.1};
     double part[3];
@@ -183,21 +181,19 @@ START_TEST(cuts_along_what_cuts_least)
     for (int k = 0; k < 3; k++)
         ck_assert_double_eq_tol(part[k], 0.0280 / 0.2218, 1e-3);
 }
-END_TEST
 
 /* The direction of the begin is taken if it divides all that goes less: there 0.1 m of 0.4 m. That
  * of the end would leave 0.36. */
-START_TEST(cuts_along_that_of_the_begin)
+UNIT_TEST(cuts_along_that_of_the_begin)
 {
     double part[3];
     pass_ball((const double[2]){0, -0.15}, (const double[3]){0.2, 0.2, 0.2}, 180, part);
     for (int k = 0; k < 3; k++)
         ck_assert_double_eq_tol(part[k], (0.1 - 1e-4) / 0.4, 1e-6);
 }
-END_TEST
 
 /* Nothing is cut of a corner that is held. */
-START_TEST(held_corners_stay)
+UNIT_LOOP(held_corners_stay, 0, N_SHAPES)
 {
     int failed = 0;
     for (int i = 0; i < PAIRS; i++) {
@@ -212,10 +208,9 @@ START_TEST(held_corners_stay)
     ck_assert_int_gt(failed, 0);
     ck_assert_int_lt(failed, PAIRS * 2 / 3);
 }
-END_TEST
 
 /* Boxes that are told to be apart hold no point that is near, at any time. */
-START_TEST(apart)
+UNIT_LOOP(apart, 0, N_SHAPES)
 {
     int n = 0;
     for (int i = 0; i < quick(MANY); i++) {
@@ -244,10 +239,9 @@ START_TEST(apart)
     }
     ck_assert_int_gt(n, quick(MANY) / 8);
 }
-END_TEST
 
 /* What passes by is at no time within the reach; far triangles do pass by. */
-START_TEST(passing_by)
+UNIT_LOOP(passing_by, 0, N_SHAPES)
 {
     int by = 0, far = 0;
     for (int i = 0; i < quick(MANY); i++) {
@@ -267,9 +261,8 @@ START_TEST(passing_by)
     }
     ck_assert_int_gt(by, far / 4);
 }
-END_TEST
 
-START_TEST(what_is_not_a_number_is_not_certified)
+UNIT_LOOP(what_is_not_a_number_is_not_certified, 0, N_SHAPES)
 {
     for (int k = 0; k < 18; k++) {
         struct meeting m;
@@ -279,25 +272,4 @@ START_TEST(what_is_not_a_number_is_not_certified)
         (k < 9 ? m.x : m.y)[k % 9 / 3][k % 3] = NAN;
         ck_assert(!contact_solid_certify(&m.solid, m.x, m.y, THICKNESS));
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("solid");
-    TCase *cases = tcase_create("solid");
-    const int n = (int)contact_n_kinds - 1; /* bodies are not convex */
-    tcase_add_loop_test(cases, nearest, 0, n);
-    tcase_add_loop_test(cases, features, 0, n);
-    tcase_add_loop_test(cases, certified_never_touches, 0, n);
-    tcase_add_loop_test(cases, what_is_far_is_certified, 0, n);
-    tcase_add_loop_test(cases, what_is_cut_is_certified, 0, n);
-    tcase_add_test(cases, cuts_along_what_cuts_least);
-    tcase_add_test(cases, cuts_along_that_of_the_begin);
-    tcase_add_loop_test(cases, held_corners_stay, 0, n);
-    tcase_add_loop_test(cases, apart, 0, n);
-    tcase_add_loop_test(cases, passing_by, 0, n);
-    tcase_add_loop_test(cases, what_is_not_a_number_is_not_certified, 0, n);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -34,12 +34,11 @@ static const char *flaw_of(const struct element_kind *k)
     return NULL;
 }
 
-START_TEST(descriptors_are_whole)
+UNIT_LOOP(descriptors_are_whole, 0, ELEMENT_KINDS)
 {
     const char *flaw = flaw_of(element_kinds[_i]);
     ck_assert_msg(!flaw, "%s: %s", element_kinds[_i]->name, flaw);
 }
-END_TEST
 
 /* A descriptor without one of its parts: every byte of it is zeroed. */
 #define WITHOUT(kind, part)                                                                        \
@@ -50,7 +49,7 @@ END_TEST
             ck_assert_msg(flaw_of(&k), "%s without " #part " passes", (kind)->name);               \
     }
 
-START_TEST(missing_parts_are_found)
+UNIT_LOOP(missing_parts_are_found, 0, ELEMENT_KINDS)
 {
     const struct element_kind *kind = element_kinds[_i];
     WITHOUT(kind, name)
@@ -67,7 +66,6 @@ START_TEST(missing_parts_are_found)
     WITHOUT(kind, stiffness)
     WITHOUT(kind, energy)
 }
-END_TEST
 
 /* ---- Parts that belong together ---- */
 
@@ -101,26 +99,23 @@ static void check_rest(const struct sample *s)
     elements_check_rigid(&model, &state, 1e-12);
 }
 
-START_TEST(force_is_the_slope_of_the_energy)
+UNIT_LOOP(force_is_the_slope_of_the_energy, 0, ELEMENT_KINDS)
 {
     if (element_kinds[_i]->pairs)
         each_sample((uint32_t)_i, false, check_force);
 }
-END_TEST
 
-START_TEST(matrix_is_the_slope_of_the_force)
+UNIT_LOOP(matrix_is_the_slope_of_the_force, 0, ELEMENT_KINDS)
 {
     if (element_kinds[_i]->pairs)
         each_sample((uint32_t)_i, false, check_matrix);
 }
-END_TEST
 
-START_TEST(rigid_motion_gives_no_force)
+UNIT_LOOP(rigid_motion_gives_no_force, 0, ELEMENT_KINDS)
 {
     if (element_kinds[_i]->pairs)
         each_sample((uint32_t)_i, false, check_rest);
 }
-END_TEST
 
 /* The right side that comes with a matrix is push times the force less h^2 K v. */
 static void check_system(const struct sample *s)
@@ -143,12 +138,11 @@ static void check_system(const struct sample *s)
             ck_assert_double_eq_tol(b[i][c], push * f[i][c] + y[i][c], 1e-12);
 }
 
-START_TEST(right_side_comes_with_the_matrix)
+UNIT_LOOP(right_side_comes_with_the_matrix, 0, ELEMENT_KINDS)
 {
     if (element_kinds[_i]->system)
         each_sample((uint32_t)_i, false, check_system);
 }
-END_TEST
 
 /* ---- Lanes ---- */
 
@@ -199,11 +193,10 @@ static void check_lanes(const struct sample *s)
         check_alone(s, &all, e);
 }
 
-START_TEST(elements_do_not_know_their_neighbours)
+UNIT_LOOP(elements_do_not_know_their_neighbours, 0, ELEMENT_KINDS)
 {
     each_sample((uint32_t)_i, true, check_lanes);
 }
-END_TEST
 
 /* ---- Links ---- */
 
@@ -234,36 +227,17 @@ static void find_links(void *to, const struct element *element)
 }
 
 /* Neighbours, ghosts and entries of the matrix are found for springs alone. */
-START_TEST(corners_are_joined)
+UNIT_LOOP(corners_are_joined, 0, ELEMENT_KINDS)
 {
     struct scene scene;
     const struct flow_welds welds = {0};
     struct flow_springs springs;
-    struct cloth_error error = {0};
     struct links links = {.kind = (uint32_t)_i};
     make_scene(&scene);
-    ck_assert_msg(!flow_springs_make(&springs, &scene.model, &welds, &scene.cloths, &error), "%s",
-                  error.text);
+    UNIT_FINE(flow_springs_make(&springs, &scene.model, &welds, &scene.cloths, &error));
     flow_springs_each(&springs, join, &links);
     element_each(&scene.cloths, find_links, &links);
     ck_assert_uint_gt(links.elements, 0);
     flow_springs_free(&springs);
     free_scene(&scene);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("kinds");
-    TCase *kinds = tcase_create("kinds");
-    tcase_add_loop_test(kinds, descriptors_are_whole, 0, ELEMENT_KINDS);
-    tcase_add_loop_test(kinds, missing_parts_are_found, 0, ELEMENT_KINDS);
-    tcase_add_loop_test(kinds, force_is_the_slope_of_the_energy, 0, ELEMENT_KINDS);
-    tcase_add_loop_test(kinds, matrix_is_the_slope_of_the_force, 0, ELEMENT_KINDS);
-    tcase_add_loop_test(kinds, rigid_motion_gives_no_force, 0, ELEMENT_KINDS);
-    tcase_add_loop_test(kinds, right_side_comes_with_the_matrix, 0, ELEMENT_KINDS);
-    tcase_add_loop_test(kinds, elements_do_not_know_their_neighbours, 0, ELEMENT_KINDS);
-    tcase_add_loop_test(kinds, corners_are_joined, 0, ELEMENT_KINDS);
-    suite_add_tcase(suite, kinds);
-    return unit_run(suite);
 }

@@ -2,6 +2,7 @@
 #include "tests/cloth/flow/models.h"
 
 #include "tests/support/rank.h"
+#include "tests/support/unit.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -236,6 +237,12 @@ void record_run(struct record *r, const struct model *model)
     if (!r->code)
         run_prepared(r, flow);
     flow_free(flow);
+}
+
+void record_fine(struct record *r, const struct model *model)
+{
+    record_run(r, model);
+    ck_assert_msg(r->code == 0, "%s", r->error.text);
 }
 
 double record_at(const struct record *r, size_t frame, size_t vertex, size_t c)

@@ -61,10 +61,21 @@ struct record {
 /* Prepares, runs and frees; every rank has the whole record then. Starts MPI if it is not; it ends
  * with the process. Collective. */
 void record_run(struct record *record, const struct model *model);
+/* The same of a run that must not fail. */
+void record_fine(struct record *record, const struct model *model);
 /* Which rank this is, of how many. Starts MPI like record_run. */
 void record_mpi(int *rank, int *ranks);
 /* Component c of a vertex in a frame. */
 double record_at(const struct record *record, size_t frame, size_t vertex, size_t c);
 void record_free(struct record *record);
+
+/* In a unit test: `setup`, which the call makes; with a `record` of its run to come. Both are freed
+ * at the end of the scope. */
+#define SETUP(CALL)                                                                                \
+    UNIT_OWNED(setup_free) struct setup setup;                                                     \
+    CALL
+#define TRIAL(CALL)                                                                                \
+    UNIT_OWNED(record_free) struct record record = {0};                                            \
+    SETUP(CALL)
 
 #endif

@@ -2,7 +2,7 @@ if HAVE_CHECK
 FLOW_TEST_MODELS = tests/cloth/flow/models.c tests/cloth/flow/models.h
 LEAK_TESTS += tests/cloth/flow/test_failures tests/cloth/flow/test_run tests/cloth/flow/test_memory
 TSAN_TESTS += tests/cloth/flow/test_grid tests/cloth/flow/test_cut_run tests/cloth/flow/test_skins \
-    tests/cloth/flow/test_sliders tests/cloth/flow/test_contact_index tests/cloth/flow/test_warnings tests/cloth/flow/test_ties \
+    tests/cloth/flow/test_sliders tests/cloth/flow/test_ties \
     tests/cloth/flow/test_ties_runs tests/cloth/flow/test_levels
 ASAN_TESTS += tests/cloth/flow/test_motion tests/cloth/flow/test_halving tests/cloth/flow/test_limits tests/cloth/flow/test_strain_limit \
     tests/cloth/flow/test_checked tests/cloth/flow/test_fields
@@ -31,7 +31,6 @@ tests_cloth_flow_test_newton_SOURCES = tests/cloth/flow/test_newton.c $(FLOW_TES
 tests_cloth_flow_test_checked_SOURCES = tests/cloth/flow/test_checked.c tests/cloth/flow/checked_runs.h $(FLOW_TEST_MODELS) \
 	tests/cloth/scene/scene_file.c tests/cloth/scene/scene_file.h
 tests_cloth_flow_test_checked_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=check_call
-tests_cloth_flow_test_warnings_SOURCES = tests/cloth/flow/test_warnings.c $(FLOW_TEST_MODELS)
 FLOW_TEST_SESSION = tests/cloth/flow/session.c tests/cloth/flow/session.h $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_ties_SOURCES = tests/cloth/flow/test_ties.c tests/cloth/flow/random_ties.h $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_levels_SOURCES = tests/cloth/flow/test_levels.c $(FLOW_TEST_SESSION)

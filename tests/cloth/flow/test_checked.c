@@ -54,20 +54,22 @@ static bool paired(size_t i, size_t n, size_t k, size_t m)
     return whole || (n < m ? k % n == i : i % m == k);
 }
 
-START_TEST(materials)
+UNIT_FIXTURE(sample, sample_no_more)
+
+UNIT_TEST(materials)
 {
     static const char *const all[] = {
         "cloths[0].material=springs",   "cloths[0].material=undamped",
         "cloths[0].material=hinges",    "cloths[0].material=quadratic",
         "cloths[0].material=triangles", "cloths[0].material=uncorrected"};
+    sample_no_more();
     for (size_t i = 0; i < INTEGRATORS; i++)
         for (size_t k = 0; k < LENGTH(all); k++)
             if (paired(i, INTEGRATORS, k, LENGTH(all)))
                 run(SETS(integrators[i], all[k]));
 }
-END_TEST
 
-START_TEST(pins)
+UNIT_TEST(pins)
 {
     static const char *const all[] = {
         "cloths[0].pins=[]",
@@ -77,14 +79,14 @@ START_TEST(pins)
         ("cloths[0].pins=[{vertices: [0, 35], to: plane, normal: [1, 2, 0], motion: "
          "{times: [0, 1], rotate: [[1, 0, 0, 0], [0.8, 0, 0.6, 0]]}}]"),
     };
+    sample_no_more();
     for (size_t i = 0; i < INTEGRATORS; i++)
         for (size_t k = 0; k < LENGTH(all); k++)
             if (paired(i, INTEGRATORS, k, LENGTH(all)))
                 run(SETS(integrators[i], all[k]));
 }
-END_TEST
 
-START_TEST(contact)
+UNIT_TEST(contact)
 {
     for (size_t i = 0; i < IMPLICIT; i++)
         for (size_t k = 0; k < LENGTH(formats); k++)
@@ -93,7 +95,6 @@ START_TEST(contact)
                          k % 2 ? "cloths[0].material=triangles" : NULL));
     run(SETS("obstacles=[]"));
 }
-END_TEST
 
 static void solves(const char *of)
 {
@@ -107,19 +108,17 @@ static void solves(const char *of)
         }
 }
 
-START_TEST(solves_of_one_reduction)
+UNIT_TEST(solves_of_one_reduction)
 {
     solves(NULL);
 }
-END_TEST
 
-START_TEST(solves_of_newton_steps)
+UNIT_TEST(solves_of_newton_steps)
 {
     solves(newton);
 }
-END_TEST
 
-START_TEST(filtered_solves)
+UNIT_TEST(filtered_solves)
 {
     for (size_t i = 0; i < LENGTH(preconditioners); i++) {
         if (paired(i, LENGTH(preconditioners), 0, 2))
@@ -130,9 +129,8 @@ START_TEST(filtered_solves)
                      preconditioners[i]));
     }
 }
-END_TEST
 
-START_TEST(other_solves)
+UNIT_TEST(other_solves)
 {
     static const char *const all[] = {"solver.stop={mass_norm: 0.01}",
                                       "solver.patches=1",
@@ -149,9 +147,8 @@ START_TEST(other_solves)
                 run(SETS(all[i], k ? preconditioners[4] : preconditioners[0],
                          "cloths[0].mesh.grid.nx=7"));
 }
-END_TEST
 
-START_TEST(outside)
+UNIT_TEST(outside)
 {
     static const char *const load = "cloths[0].loads=[{vertices: [20], force: [0, 1, 0], curve: "
                                     "{sine: {frequency: 5}}}, {edges: [[0, 1]], force: [1, 0, 0], "
@@ -165,9 +162,8 @@ START_TEST(outside)
                      "cloths[0].material=triangles"));
     }
 }
-END_TEST
 
-START_TEST(cloths)
+UNIT_TEST(cloths)
 {
     static const char *const all[] = {
         "cloths[0].mesh={inline: {vertices: [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [9, 9, "
@@ -191,10 +187,9 @@ START_TEST(cloths)
                          small ? "cloths[0].mass_per_vertex=0.1" : NULL, "probes=[]"));
     }
 }
-END_TEST
 
 /* Joints that are there in the first step, that begin in the second one, and that end before it. */
-START_TEST(timed_joints)
+UNIT_TEST(timed_joints)
 {
     static const char *const joints =
         "joints=[{from: {vertices: [1, 2, 3]}, to: {vertices: [34, 33, 2]}, stiffness: 5, damping: "
@@ -210,10 +205,9 @@ START_TEST(timed_joints)
     run_how(&(struct how){.system = true}, SETS(joints));
     run_how(&(struct how){.system = true}, SETS(joints, "cloths[0].material=hinges"));
 }
-END_TEST
 
 /* What gives a step up, and begins it again with half the length. */
-START_TEST(halved_steps)
+UNIT_TEST(halved_steps)
 {
     for (size_t i = 0; i < INTEGRATORS; i++) {
         struct how how = {0};
@@ -224,38 +218,34 @@ START_TEST(halved_steps)
             ck_assert_uint_gt(how.report.steps_halved, 0);
     }
 }
-END_TEST
 
-START_TEST(cut_newton_steps)
+UNIT_TEST(cut_newton_steps)
 {
     for (size_t i = 0; i < (whole ? IMPLICIT : 1); i++)
         run(SETS(integrators[i], "newton={steps: 5, tolerance: 1e-9}", "time={h: 0.05, end: 0.1}",
                  "time.halving=off", "materials.springs={density: 0.2, stretch: 5000, shear: 10}",
                  "cloths[0].start=[{vertices: [20], velocity: [50, 0, 0]}]"));
 }
-END_TEST
 
-START_TEST(saved_systems)
+UNIT_TEST(saved_systems)
 {
     struct how how = {.system = true};
     for (size_t i = 0; i < LENGTH(formats); i++)
         run_how(&how, SETS(formats[i], i ? "cloths[0].material=hinges" : NULL));
 }
-END_TEST
 
-START_TEST(rests)
+UNIT_TEST(rests)
 {
     run(SETS("time.rest={speed: 0.1, hold: 0.001}", "gravity=[0, 0, 0]",
              "cloths[0].velocity=[0, 0, 0]", "time.end=0.01"));
 }
-END_TEST
 
 static const char box[] = "v -1 0 -1\nv 1 0 -1\nv -1 1 -1\nv 1 1 -1\nv -1 0 1\nv 1 0 1\n"
                           "v -1 1 1\nv 1 1 1\nf 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\n"
                           "f 1 3 4 2\nf 5 6 8 7\n";
 
 /* Bodies that are met by maps: one that moves, and one that changes its shape. */
-START_TEST(maps)
+UNIT_TEST(maps)
 {
     static const char wide[] = "v -1 0 -1\nv 2 0 -1\nv -1 1 -1\nv 1 2 -1\nv -1 0 1\nv 1 0 1\n"
                                "v -1 1 1\nv 1 1 1\nf 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\n"
@@ -272,11 +262,10 @@ START_TEST(maps)
         if (paired(i, INTEGRATORS, 0, 3))
             run(SETS(integrators[i], moves, changes, "contact.mode=project"));
 }
-END_TEST
 
 /* A plane, cloth on cloth, and a body that comes from below; a solve that ends early leaves ways to
  * cut. */
-START_TEST(certified_contact)
+UNIT_TEST(certified_contact)
 {
     static const char *const mode =
         "contact={mode: certified, self: on, force: on, thickness: 0.0005, friction: 0.3}";
@@ -292,10 +281,9 @@ START_TEST(certified_contact)
     for (size_t i = 0; i < IMPLICIT; i++)
         run(SETS(integrators[i], mode, body, above, probes, i ? "solver.stop={count: 1}" : NULL));
 }
-END_TEST
 
 /* A plane, and cloth on cloth. */
-START_TEST(repulsion)
+UNIT_TEST(repulsion)
 {
     static const char *const mode = "contact={mode: repulsion, self: on, thickness: 0.002, "
                                     "friction: 0.3}";
@@ -306,21 +294,19 @@ START_TEST(repulsion)
         if (whole || i % 2 == 0)
             run(SETS(integrators[i], mode, above, "probes=[]"));
 }
-END_TEST
 
 /* Rows on a slider and held ones, edges within blocks and between them. */
-START_TEST(velocity_correction)
+UNIT_TEST(velocity_correction)
 {
     for (size_t i = 0; i < INTEGRATORS; i++)
         if (whole || i % 2 == 0)
             run(SETS(integrators[i], "materials.springs.velocity_correction={at: 0, rounds: 5}",
                      "cloths[0].start=[{vertices: [20], velocity: [9, 0, 0]}]"));
 }
-END_TEST
 
 /* A run that makes checkpoints, and one that goes on from the last of them: plain, with contacts,
  * with ties. */
-START_TEST(checkpoints)
+UNIT_TEST(checkpoints)
 {
     static const char *const mode = "contact={mode: certified, self: on, thickness: 0.0005}";
     static const char *const joint =
@@ -337,28 +323,25 @@ START_TEST(checkpoints)
         free(first.saved.bytes);
     }
 }
-END_TEST
 
-START_TEST(pulled_seams)
+UNIT_TEST(pulled_seams)
 {
     for (size_t i = 0; i < INTEGRATORS; i++)
         run(SETS(integrators[i], "cloths[0].mesh={pattern: {garment: skirt, edge: 0.15}}",
                  "cloths[0].pins=[]", "cloths[0].material=triangles",
                  "cloths[0].seams={state: pulled, stiffness: 5, damping: 0.01}"));
 }
-END_TEST
 
 /* So many blocks that groups of them solve the coarse part. */
-START_TEST(groups)
+UNIT_TEST(groups)
 {
     run(SETS("cloths[0].mesh.grid.nx=30", "cloths[0].mesh.grid.ny=30", "grain=6",
              "solver.patches=2", "time.end=0.001", preconditioners[4]));
 }
-END_TEST
 
 /* ---- All kernels ---- */
 
-START_TEST(every_kernel_was_run)
+UNIT_TEST(every_kernel_was_run)
 {
     const duite_kernel *const *all = flow_kernels();
     char names[1024] = "";
@@ -373,41 +356,11 @@ START_TEST(every_kernel_was_run)
     }
     ck_assert_msg(!names[0], "no case has run the kernels%s", names);
 }
-END_TEST
 
 int main(int argc, char **argv)
 {
     whole = argc > 1 && !strcmp(argv[1], "long");
     quick = !whole && (argc > 1 || unit_quick());
     ran = mmap(NULL, MAX_KERNELS, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (ran == MAP_FAILED)
-        return 99;
-    Suite *suite = suite_create("checking mode");
-    TCase *integrations = tcase_create("integrators"), *cases = tcase_create("kernels");
-    tcase_add_test(integrations, materials);
-    tcase_add_test(integrations, pins);
-    tcase_add_checked_fixture(cases, sample, sample_no_more);
-    tcase_add_test(cases, contact);
-    tcase_add_test(cases, solves_of_one_reduction);
-    tcase_add_test(cases, solves_of_newton_steps);
-    tcase_add_test(cases, filtered_solves);
-    tcase_add_test(cases, other_solves);
-    tcase_add_test(cases, outside);
-    tcase_add_test(cases, cloths);
-    tcase_add_test(cases, timed_joints);
-    tcase_add_test(cases, halved_steps);
-    tcase_add_test(cases, cut_newton_steps);
-    tcase_add_test(cases, saved_systems);
-    tcase_add_test(cases, rests);
-    tcase_add_test(cases, certified_contact);
-    tcase_add_test(cases, repulsion);
-    tcase_add_test(cases, velocity_correction);
-    tcase_add_test(cases, checkpoints);
-    tcase_add_test(cases, pulled_seams);
-    tcase_add_test(cases, maps);
-    tcase_add_test(cases, groups);
-    tcase_add_test(cases, every_kernel_was_run);
-    suite_add_tcase(suite, integrations);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
+    return ran == MAP_FAILED ? 99 : unit_main();
 }

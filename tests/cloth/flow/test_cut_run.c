@@ -20,7 +20,7 @@ static uint32_t cut_in(const char *steps)
     return in_a_row;
 }
 
-START_TEST(steps_in_a_row_are_counted)
+UNIT_TEST(steps_in_a_row_are_counted)
 {
     ck_assert_uint_eq(cut_in("C"), 1);
     ck_assert_uint_eq(cut_in("NC"), 1);
@@ -28,9 +28,8 @@ START_TEST(steps_in_a_row_are_counted)
     ck_assert_uint_eq(cut_in("CCNC"), 1);
     ck_assert_uint_eq(cut_in("CCNCC"), 2);
 }
-END_TEST
 
-START_TEST(steps_given_up_do_not_count)
+UNIT_TEST(steps_given_up_do_not_count)
 {
     ck_assert_uint_eq(cut_in("cC"), 1);
     ck_assert_uint_eq(cut_in("cccC"), 1);
@@ -41,15 +40,4 @@ START_TEST(steps_given_up_do_not_count)
     ck_assert_uint_eq(cut_in("CNcC"), 1);
     ck_assert_uint_eq(cut_in("CnC"), 2);
     ck_assert_uint_eq(cut_in("CcCcCNcC"), 1);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("cut_run");
-    TCase *tcase = tcase_create("cut_run");
-    tcase_add_test(tcase, steps_in_a_row_are_counted);
-    tcase_add_test(tcase, steps_given_up_do_not_count);
-    suite_add_tcase(suite, tcase);
-    return unit_run(suite);
 }

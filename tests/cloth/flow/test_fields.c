@@ -55,7 +55,7 @@ static void check_last(const struct session *s, int field)
         ck_assert_msg(!is->exists(&s->state, b), "%s: in block %u", is->name, b);
 }
 
-START_TEST(what_exists_is_made)
+UNIT_LOOP(what_exists_is_made, 0, KINDS)
 {
     struct session s;
     kinds[_i](&s);
@@ -68,9 +68,8 @@ START_TEST(what_exists_is_made)
         check_last(&s, field);
     session_end(&s);
 }
-END_TEST
 
-START_TEST(all_is_freed)
+UNIT_LOOP(all_is_freed, 0, KINDS)
 {
     struct session s;
     kinds[_i](&s);
@@ -89,10 +88,9 @@ START_TEST(all_is_freed)
     flow_free(s.flow);
     setup_free(&s.setup);
 }
-END_TEST
 
 /* Every field exists in some kind of run, or is of what these runs do not have. */
-START_TEST(every_field_has_a_run)
+UNIT_TEST(every_field_has_a_run)
 {
     static const char *const others[] = {
         "filter",        "probe_force",        "probe_values",   "pieces",      "saved",
@@ -114,7 +112,6 @@ START_TEST(every_field_has_a_run)
         ck_assert_msg(exists[field] || other, "%s exists in no run", flow_fields[field].name);
     }
 }
-END_TEST
 
 /* ---- What lasts from step to step ---- */
 
@@ -205,17 +202,16 @@ static uint64_t run_changed(int kind, enum flow_life life, int only, change *how
     return hash;
 }
 
-START_TEST(work_is_written_before_it_is_read)
+UNIT_LOOP(work_is_written_before_it_is_read, 0, KINDS)
 {
     const uint64_t hash = run_changed(_i, FLOW_WORK, -1, NULL);
     ck_assert_uint_eq(run_changed(_i, FLOW_WORK, -1, to_nothing), hash);
 }
-END_TEST
 
 /* A body's pointers are counted on from the last object of the task's own: behind those come the
  * ones of neighbours, then those that may not be there; behind those of all blocks comes nothing.
  */
-START_TEST(parameters_stand_in_order)
+UNIT_LOOP(parameters_stand_in_order, 0, FLOW_KERNELS_OF_ALL)
 {
 #define ADDRESS(name) &flow_kernel_##name,
     const struct flow_kernel *const all[] = {FLOW_KERNELS(ADDRESS)};
@@ -227,10 +223,9 @@ START_TEST(parameters_stand_in_order)
                       (int)(p - all[_i]->parameter));
     }
 }
-END_TEST
 
 /* dv counts where steps begin with a guess. */
-START_TEST(state_lasts)
+UNIT_LOOP(state_lasts, 0, KINDS)
 {
     const uint64_t hash = run_changed(_i, FLOW_WORK, -1, NULL);
     struct session s;
@@ -248,7 +243,6 @@ START_TEST(state_lasts)
             ck_assert_msg(run_changed(_i, FLOW_STATE_FIELD, field, by_a_little) != hash,
                           "no step reads %s", flow_fields[field].name);
 }
-END_TEST
 
 /* ---- What a checkpoint has of the main program ---- */
 
@@ -258,7 +252,7 @@ static void take_checkpoint(void *context, struct flow_checkpoint state)
     *(struct flow_checkpoint *)context = state;
 }
 
-START_TEST(what_the_main_program_knows_lasts)
+UNIT_LOOP(what_the_main_program_knows_lasts, 0, KINDS)
 {
     struct session s;
     struct flow_checkpoint saved = {0};
@@ -290,20 +284,4 @@ START_TEST(what_the_main_program_knows_lasts)
     ck_assert_uint_eq(s.state.grid.length, lasting.grid.length);
     free(saved.bytes);
     session_end(&s);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("fields");
-    TCase *tcase = tcase_create("fields");
-    tcase_add_loop_test(tcase, what_exists_is_made, 0, KINDS);
-    tcase_add_loop_test(tcase, all_is_freed, 0, KINDS);
-    tcase_add_test(tcase, every_field_has_a_run);
-    tcase_add_loop_test(tcase, what_the_main_program_knows_lasts, 0, KINDS);
-    tcase_add_loop_test(tcase, work_is_written_before_it_is_read, 0, KINDS);
-    tcase_add_loop_test(tcase, parameters_stand_in_order, 0, FLOW_KERNELS_OF_ALL);
-    tcase_add_loop_test(tcase, state_lasts, 0, KINDS);
-    suite_add_tcase(suite, tcase);
-    return unit_run(suite);
 }

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-START_TEST(whole_steps)
+UNIT_TEST(whole_steps)
 {
     struct flow_grid grid;
     flow_grid_begin(&grid, 3);
@@ -18,9 +18,8 @@ START_TEST(whole_steps)
     ck_assert_uint_eq(grid.refused, 0);
     ck_assert_uint_eq(grid.least_done, FLOW_TICKS);
 }
-END_TEST
 
-START_TEST(halved_to_a_tick)
+UNIT_TEST(halved_to_a_tick)
 {
     struct flow_grid grid;
     flow_grid_begin(&grid, 4294967294);
@@ -33,10 +32,9 @@ START_TEST(halved_to_a_tick)
     ck_assert_uint_eq(grid.refused, 10);
     ck_assert_uint_eq(grid.least_done, FLOW_TICKS); /* none was made */
 }
-END_TEST
 
 /* Each step begins at a multiple of its length, whatever is refused, and the end is met. */
-START_TEST(steps_begin_at_multiples_of_their_length)
+UNIT_TEST(steps_begin_at_multiples_of_their_length)
 {
     struct flow_grid grid;
     uint32_t random = 1, longer = 0;
@@ -55,9 +53,8 @@ START_TEST(steps_begin_at_multiples_of_their_length)
     ck_assert_uint_eq(grid.now, grid.end);
     ck_assert_uint_gt(longer, 10);
 }
-END_TEST
 
-START_TEST(grown_only_when_calm)
+UNIT_TEST(grown_only_when_calm)
 {
     struct flow_grid grid;
     flow_grid_begin(&grid, 2);
@@ -71,9 +68,8 @@ START_TEST(grown_only_when_calm)
     ck_assert_uint_eq(grid.length, FLOW_TICKS);
     ck_assert_uint_eq(grid.least_done, 512);
 }
-END_TEST
 
-START_TEST(what_is_refused)
+UNIT_TEST(what_is_refused)
 {
     const struct flow_verdict fine = {.before = 1.2, .after = 1.25, .max = 1.4, .growth = 0.1};
     struct flow_verdict v = fine;
@@ -95,9 +91,8 @@ START_TEST(what_is_refused)
     v.before = 1;
     ck_assert(!flow_verdict_refuses(&v));
 }
-END_TEST
 
-START_TEST(what_is_calm)
+UNIT_TEST(what_is_calm)
 {
     struct flow_verdict v = {.before = 1.2, .after = 1.24, .growth = 0.1};
     ck_assert(flow_verdict_calm(&v));
@@ -109,19 +104,4 @@ START_TEST(what_is_calm)
     ck_assert(!flow_verdict_calm(&v));
     v.after = 1.1;
     ck_assert(flow_verdict_calm(&v));
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("grid");
-    TCase *cases = tcase_create("grid");
-    tcase_add_test(cases, whole_steps);
-    tcase_add_test(cases, halved_to_a_tick);
-    tcase_add_test(cases, steps_begin_at_multiples_of_their_length);
-    tcase_add_test(cases, grown_only_when_calm);
-    tcase_add_test(cases, what_is_refused);
-    tcase_add_test(cases, what_is_calm);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

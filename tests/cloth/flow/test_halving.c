@@ -10,8 +10,7 @@
 
 static void runs(struct record *record, const struct model *model)
 {
-    record_run(record, model);
-    ck_assert_msg(record->code == 0, "%s", record->error.text);
+    record_fine(record, model);
 }
 
 /* A weight that falls until its edge is taut. */
@@ -27,11 +26,10 @@ static void setup_jerk(struct setup *setup)
 
 /* Nothing is wrong: the same bits as without, also in frames, some of which show the begin of the
  * step that was accepted last. */
-START_TEST(steps_that_are_fine)
+UNIT_LOOP(steps_that_are_fine, 0, MODEL_INTEGRATORS)
 {
-    struct setup setup;
-    struct record plain = {0}, halving = {0};
-    setup_sheet(&setup, 8);
+    UNIT_OWNED(record_free) struct record plain = {0}, halving = {0};
+    SETUP(setup_sheet(&setup, 8));
     setup_pin(&setup, 1, (const uint32_t[]){0});
     setup.model.integrator = (enum model_integrator)_i;
     setup.model.fps = 300;
@@ -48,20 +46,15 @@ START_TEST(steps_that_are_fine)
     ck_assert_mem_eq(halving.time, plain.time, plain.frames * sizeof(double));
     ck_assert_mem_eq(halving.position, plain.position,
                      3 * plain.vertices * plain.frames * sizeof(double));
-    record_free(&plain);
-    record_free(&halving);
-    setup_free(&setup);
 }
-END_TEST
 
 /* All steps are of the same length h / 2^k in the end, and the result is bit for bit that of a run
  * with this h: a step that was given up has left nothing. */
-START_TEST(a_halved_run_is_one_with_a_smaller_h)
+UNIT_TEST(a_halved_run_is_one_with_a_smaller_h)
 {
     for (int i = 0; i <= MODEL_INTEGRATORS; i++) { /* the last: Newton steps */
-        struct setup setup;
-        struct record halved = {0}, small = {0};
-        setup_sheet(&setup, 8);
+        UNIT_OWNED(record_free) struct record halved = {0}, small = {0};
+        SETUP(setup_sheet(&setup, 8));
         setup.cloth.velocity[0] = 0.5;
         setup_pin(&setup, 1, (const uint32_t[]){0});
         const bool newton = i == MODEL_INTEGRATORS;
@@ -85,12 +78,8 @@ START_TEST(a_halved_run_is_one_with_a_smaller_h)
         ck_assert(halved.report.state_hash == small.report.state_hash);
         for (size_t c = 0; c < 3; c++)
             ck_assert_double_eq_tol(record_at(&halved, 1, 9, c), record_at(&small, 1, 9, c), 1e-5);
-        record_free(&halved);
-        record_free(&small);
-        setup_free(&setup);
     }
 }
-END_TEST
 
 /* In frame 1. */
 static double distance(const struct record *a, const struct record *b)
@@ -100,11 +89,10 @@ static double distance(const struct record *a, const struct record *b)
 
 /* Steps are short while the edge is jerked, and long again afterwards; until then the
  * run is nearer to one of short steps than one of long steps is. */
-START_TEST(an_edge_that_is_jerked)
+UNIT_TEST(an_edge_that_is_jerked)
 {
-    struct setup setup;
-    struct record plain = {0}, halved = {0}, small = {0};
-    setup_jerk(&setup);
+    UNIT_OWNED(record_free) struct record plain = {0}, halved = {0}, small = {0};
+    SETUP(setup_jerk(&setup));
     setup.model.halving = false;
     runs(&plain, &setup.model);
     setup.model.halving = true;
@@ -119,19 +107,12 @@ START_TEST(an_edge_that_is_jerked)
     ck_assert_uint_eq(plain.frames, small.frames);
     ck_assert_uint_eq(halved.frames, small.frames);
     ck_assert_double_lt(3 * distance(&halved, &small), distance(&plain, &small));
-    record_free(&plain);
-    record_free(&halved);
-    record_free(&small);
-    setup_free(&setup);
 }
-END_TEST
 
 /* Frame k is shown after the step whose end is nearest to k / fps, whatever the steps are. */
-START_TEST(frames_between_shorter_steps)
+UNIT_TEST(frames_between_shorter_steps)
 {
-    struct setup setup;
-    struct record record = {0};
-    setup_jerk(&setup);
+    TRIAL(setup_jerk(&setup));
     setup.model.stretch_growth = 0.02;
     setup.model.fps = 23;
     runs(&record, &setup.model);
@@ -147,17 +128,12 @@ START_TEST(frames_between_shorter_steps)
     /* The first jerk is at once: frame 1 lies among steps of less than h / 4. */
     ck_assert_double_le(fabs(record.time[1] - 1.0 / 23), setup.model.h / 8);
     ck_assert_double_gt(fabs(record.time[1] - setup.model.h), setup.model.h / 8);
-    record_free(&record);
-    setup_free(&setup);
 }
-END_TEST
 
 /* The solve needs fewer iterations in a shorter step. */
-START_TEST(a_solve_that_converges_in_a_shorter_step)
+UNIT_TEST(a_solve_that_converges_in_a_shorter_step)
 {
-    struct setup setup;
-    struct record record = {0};
-    setup_sheet(&setup, 10);
+    TRIAL(setup_sheet(&setup, 10));
     setup.model.h = 0.02;
     setup.model.end = 0.1;
     setup.model.fps = 50;
@@ -170,10 +146,7 @@ START_TEST(a_solve_that_converges_in_a_shorter_step)
     ck_assert_uint_le(record.report.cg_iterations_max, 6);
     ck_assert_uint_eq(record.report.halved_by[FLOW_CAUSE_SOLVE], record.report.steps_halved);
     ck_assert_uint_eq(record.frames, 6);
-    record_free(&record);
-    setup_free(&setup);
 }
-END_TEST
 
 /* One cause alone. */
 static void halved_by(const struct record *record, enum flow_cause cause)
@@ -197,11 +170,9 @@ static void fails(struct record *record, const struct model *model, const char *
 }
 
 /* At h / 1024 it stops, and says why. */
-START_TEST(no_step_is_short_enough)
+UNIT_TEST(no_step_is_short_enough)
 {
-    struct setup setup;
-    struct record record = {0};
-    setup_sheet(&setup, 4);
+    TRIAL(setup_sheet(&setup, 4));
     setup.model.halving = true;
     setup_load(&setup, 3, 1e200, 0, 0);
     fails(&record, &setup.model, "step 1: conjugate gradients broke down", "not positive definite");
@@ -226,17 +197,12 @@ START_TEST(no_step_is_short_enough)
     fails(&record, &setup.model, "step 1: the velocity of vertex 4, counted from 1,",
           "the run diverged");
     halved_by(&record, FLOW_CAUSE_BOUNDS);
-    record_free(&record);
-    setup_free(&setup);
 }
-END_TEST
 
 /* Explicit Euler is unstable at this h; it goes on with shorter steps, however small. */
-START_TEST(an_explicit_run_that_is_unstable)
+UNIT_TEST(an_explicit_run_that_is_unstable)
 {
-    struct setup setup;
-    struct record record = {0};
-    setup_sheet(&setup, 6);
+    TRIAL(setup_sheet(&setup, 6));
     setup.model.integrator = MODEL_EXPLICIT_EULER;
     setup.model.h = 0.05;
     setup.model.end = 0.5;
@@ -247,26 +213,21 @@ START_TEST(an_explicit_run_that_is_unstable)
     runs(&record, &setup.model);
     ck_assert_uint_gt(record.report.steps_halved, 0);
     ck_assert_double_lt(record.report.max_stretch, 3);
-    record_free(&record);
-    setup_free(&setup);
 }
-END_TEST
 
 /* Two weights fly apart until their spring holds them, in steps of several lengths, while others
  * fall freely. BDF2 has the right velocity after any of them, which the step before would spoil if
  * it were taken for one of the same length. */
-START_TEST(bdf2_begins_anew_after_another_length)
+UNIT_TEST(bdf2_begins_anew_after_another_length)
 {
     static const double vertices[] = {0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 1};
     static const uint32_t edges[] = {0, 1, 2, 3};
     const double h = 0.01;
     double start[24] = {0};
-    struct setup setup;
-    struct record r = {0};
-    struct cloth_error error = {0};
-    setup_weight(&setup);
+    UNIT_OWNED(record_free) struct record r = {0};
+    SETUP(setup_weight(&setup));
     mesh_free(&setup.cloth.mesh);
-    ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 4, vertices, 2, edges, 0, NULL, &error), 0);
+    UNIT_FINE(mesh_inline(&setup.cloth.mesh, 4, vertices, 2, edges, 0, NULL, &error));
     for (int i = 0; i < 12; i++)
         start[i / 3 * 6 + i % 3] = vertices[i];
     start[12 + 3] = -10;
@@ -289,18 +250,14 @@ START_TEST(bdf2_begins_anew_after_another_length)
     printf("# BDF2 in steps of %g to %g s: velocity of what falls off by %.2g m/s\n",
            r.report.shortest_step, h, v + 9.81 * 99.5 * h);
     ck_assert_double_eq_tol(v, -9.81 * 99.5 * h, 1e-9);
-    record_free(&r);
-    setup_free(&setup);
 }
-END_TEST
 
 /* A weight that falls into its spring and comes back up: the spring is longest on the way. */
-START_TEST(the_largest_stretch_of_a_run)
+UNIT_TEST(the_largest_stretch_of_a_run)
 {
     for (int judged = 0; judged < 2; judged++) {
-        struct setup setup;
-        struct record record = {0};
-        setup_weight(&setup);
+        UNIT_OWNED(record_free) struct record record = {0};
+        SETUP(setup_weight(&setup));
         setup.material.damping_stiffness = 0;
         setup.model.integrator = MODEL_VERLET;
         setup.model.stretch_limit = judged ? 1.1 : 0;
@@ -311,25 +268,5 @@ START_TEST(the_largest_stretch_of_a_run)
             ck_assert_double_eq_tol(record.report.stretch_highest, 1 + 2 * 0.981 / 40, 1e-5);
         else
             ck_assert_double_nan(record.report.stretch_highest);
-        record_free(&record);
-        setup_free(&setup);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("halving");
-    TCase *cases = tcase_create("halving");
-    tcase_add_loop_test(cases, steps_that_are_fine, 0, MODEL_INTEGRATORS);
-    tcase_add_test(cases, a_halved_run_is_one_with_a_smaller_h);
-    tcase_add_test(cases, an_edge_that_is_jerked);
-    tcase_add_test(cases, frames_between_shorter_steps);
-    tcase_add_test(cases, a_solve_that_converges_in_a_shorter_step);
-    tcase_add_test(cases, no_step_is_short_enough);
-    tcase_add_test(cases, an_explicit_run_that_is_unstable);
-    tcase_add_test(cases, bdf2_begins_anew_after_another_length);
-    tcase_add_test(cases, the_largest_stretch_of_a_run);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -23,32 +23,19 @@ void __wrap_flow_halo_make(struct flow_state *state)
 static uint64_t hash_of(const struct model *model, const char *balance)
 {
     struct record record = {.threads = 2, .balance = balance};
-    record_run(&record, model);
-    ck_assert_msg(record.code == 0, "%s", record.error.text);
+    record_fine(&record, model);
     const uint64_t hash = record.report.state_hash;
     record_free(&record);
     return hash;
 }
 
-START_TEST(late_ranks_run_what_they_are_sent)
+UNIT_LOOP(late_ranks_run_what_they_are_sent, 0, 2)
 {
     static const enum model_preconditioner KINDS[] = {MODEL_PLAIN, MODEL_COARSE};
-    struct setup setup;
-    setup_sheet(&setup, 30);
+    SETUP(setup_sheet(&setup, 30));
     setup_pin(&setup, 2, (const uint32_t[]){0, 29});
     setup.model.preconditioner = KINDS[_i];
     const uint64_t hash = hash_of(&setup.model, "none");
     for (int i = 0; i < 3; i++)
         ck_assert_uint_eq(hash_of(&setup.model, "scatter"), hash);
-    setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("late");
-    TCase *cases = tcase_create("late");
-    tcase_add_loop_test(cases, late_ranks_run_what_they_are_sent, 0, 2);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -28,7 +28,7 @@ static void setup_stiff(struct setup *setup, int kind)
     setup_pin(setup, 2, (const uint32_t[]){0, kinds[kind].side - 1});
 }
 
-START_TEST(groups_are_on_so_many_levels)
+UNIT_LOOP(groups_are_on_so_many_levels, 0, KINDS)
 {
     struct session s = {0};
     setup_stiff(&s.setup, _i);
@@ -37,7 +37,6 @@ START_TEST(groups_are_on_so_many_levels)
     ck_assert_uint_le(s.flow->pattern.n, 100);
     session_end(&s);
 }
-END_TEST
 
 static double farthest(const struct record *a, const struct record *b)
 {
@@ -51,8 +50,7 @@ static double farthest(const struct record *a, const struct record *b)
 static void run(struct setup *setup, bool exact, struct record *record)
 {
     setup->model.exact_coarse = exact;
-    record_run(record, &setup->model);
-    ck_assert_msg(record->code == 0, "%s", record->error.text);
+    record_fine(record, &setup->model);
 }
 
 /* Against the exact space, and two threads against one. */
@@ -72,16 +70,15 @@ static void compare(struct setup *setup, double more)
     setup_free(setup);
 }
 
-START_TEST(a_sheet_moves_as_by_one_factor)
+UNIT_LOOP(a_sheet_moves_as_by_one_factor, 0, unit_quick() ? 1 : KINDS)
 {
     struct setup setup;
     setup_stiff(&setup, _i);
     compare(&setup, kinds[_i].more);
 }
-END_TEST
 
 /* Whole groups are held, and have no column on any level. */
-START_TEST(groups_may_be_held)
+UNIT_LOOP(groups_may_be_held, 0, KINDS)
 {
     static uint32_t held[MOST_SIDE * MOST_SIDE];
     const uint32_t n = 15 * kinds[_i].side;
@@ -92,16 +89,4 @@ START_TEST(groups_may_be_held)
     setup.pin.pick.n_vertices = n;
     setup.pin.pick.vertices = held;
     compare(&setup, kinds[_i].more);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("levels");
-    TCase *cases = tcase_create("levels");
-    tcase_add_loop_test(cases, groups_are_on_so_many_levels, 0, KINDS);
-    tcase_add_loop_test(cases, a_sheet_moves_as_by_one_factor, 0, unit_quick() ? 1 : KINDS);
-    tcase_add_loop_test(cases, groups_may_be_held, 0, KINDS);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -24,7 +24,6 @@ static void chain(struct setup *s, double amplitude)
 {
     double vertices[3 * (LINKS + 1)] = {0};
     uint32_t edges[2 * LINKS];
-    struct cloth_error error = {0};
     setup_weight(s);
     mesh_free(&s->cloth.mesh);
     for (uint32_t i = 0; i <= LINKS; i++)
@@ -33,8 +32,7 @@ static void chain(struct setup *s, double amplitude)
         edges[2 * i] = i;
         edges[2 * i + 1] = i + 1;
     }
-    ck_assert_int_eq(
-        mesh_inline(&s->cloth.mesh, LINKS + 1, vertices, LINKS, edges, 0, NULL, &error), 0);
+    UNIT_FINE(mesh_inline(&s->cloth.mesh, LINKS + 1, vertices, LINKS, edges, 0, NULL, &error));
     s->cloth.mass_per_vertex = M;
     s->material.ea = K * 0.1; /* each link is 0.1 m long */
     s->material.damping_stiffness = 0;
@@ -59,16 +57,15 @@ static struct flow_limit limit_of(const struct setup *s)
 {
     struct flow_source source;
     struct flow_limit limit;
-    struct cloth_error error = {0};
-    ck_assert_msg(!flow_source_make(&source, &s->model, 1, &error), "%s", error.text);
-    ck_assert_int_eq(flow_limit_find(&source, &limit, &error), 0);
+    UNIT_FINE(flow_source_make(&source, &s->model, 1, &error));
+    UNIT_FINE(flow_limit_find(&source, &limit, &error));
     flow_source_free(&source);
     return limit;
 }
 
-START_TEST(bound_of_a_chain)
+UNIT_TEST(bound_of_a_chain)
 {
-    struct setup setup;
+    UNIT_OWNED(chain_free) struct setup setup;
     chain(&setup, 0);
     setup.material.damping_stiffness = 0.003;
     setup.material.damping_viscous = 0.02;
@@ -80,24 +77,19 @@ START_TEST(bound_of_a_chain)
     ck_assert_double_eq_tol(limit.drag, 0.02 / M + 0.5, 1e-12);
     ck_assert_double_eq_tol(limit.along, 0.003 * limit.omega * limit.omega, 1e-6);
     ck_assert_str_eq(limit.cloth->name, "test");
-    chain_free(&setup);
 }
-END_TEST
 
 /* Turned and at another place, and with masses that differ, it is the same kind of bound: never
  * below what the chain can do, here by its two-body vibrations. */
-START_TEST(bound_of_a_sheet)
+UNIT_TEST(bound_of_a_sheet)
 {
-    struct setup setup;
-    setup_sheet(&setup, 12);
+    SETUP(setup_sheet(&setup, 12));
     const struct flow_limit limit = limit_of(&setup);
     const double inner = 0.2 / (11 * 11); /* kg; a vertex on a border has half of it */
     /* Along x: 2 springs of 50, 4 diagonals of 25 by half. */
     ck_assert_double_ge(limit.omega * limit.omega, 4 * 50 / inner);
     ck_assert_double_le(limit.omega * limit.omega, 2 * (2 * 50 + 4 * 25) * 1.3 / inner);
-    setup_free(&setup);
 }
-END_TEST
 
 /* How far anything has moved along the chain after 4000 steps. */
 static double moved(enum model_integrator integrator, double stiffness, double h)
@@ -121,7 +113,7 @@ static double moved(enum model_integrator integrator, double stiffness, double h
     return max;
 }
 
-START_TEST(limits_are_where_runs_break)
+UNIT_LOOP(limits_are_where_runs_break, 0, 4)
 {
     static const struct {
         enum model_integrator integrator;
@@ -130,7 +122,7 @@ START_TEST(limits_are_where_runs_break)
                 {MODEL_SYMPLECTIC_EULER, 0.5, 1.2360679774997898}, /* 4 / (1 + sqrt 5) */
                 {MODEL_VERLET, 0, 2},
                 {MODEL_RK4, 0, 2.8284271247461903}};
-    struct setup setup;
+    UNIT_OWNED(chain_free) struct setup setup;
     chain(&setup, 0);
     const double stiffness = 2 * rows[_i].zeta / limit_of(&setup).omega;
     setup.material.damping_stiffness = stiffness;
@@ -139,99 +131,32 @@ START_TEST(limits_are_where_runs_break)
     ck_assert_double_eq_tol(h, rows[_i].number / limit.omega, 1e-12);
     ck_assert_double_lt(moved(rows[_i].integrator, stiffness, 0.99 * h), 1e-6);
     ck_assert_double_gt(moved(rows[_i].integrator, stiffness, 1.02 * h), 1e-3);
-    chain_free(&setup);
 }
-END_TEST
-
-/* The warning of a model, or the empty text. */
-static void warning(const struct setup *s, char *text, size_t size)
-{
-    struct flow *flow;
-    struct cloth_error error = {0};
-    ck_assert_msg(!flow_prepare(&flow, &s->model, 1, &error), "%s", error.text);
-    snprintf(text, size, "%s", flow_warning(flow, 0) ? flow_warning(flow, 0) : "");
-    ck_assert_ptr_null(flow_warning(flow, 1));
-    flow_free(flow);
-}
-
-START_TEST(warnings)
-{
-    struct setup setup;
-    char text[600], place[] = "scene.yaml:9:12";
-    chain(&setup, 0);
-    setup.model.h = 0.01;
-    setup.model.h_place = place;
-    warning(&setup, text, sizeof text);
-    ck_assert_str_eq(text, ""); /* implicit */
-    setup.model.integrator = MODEL_VERLET;
-    warning(&setup, text, sizeof text);
-    ck_assert_ptr_nonnull(strstr(text, "scene.yaml:9:12: steps of 0.01 s are beyond the limit of "
-                                       "verlet, 0.00632456 s: the fastest vibration (up to "
-                                       "316.228 rad/s, at vertex "));
-    setup.model.h = 0.0063;
-    warning(&setup, text, sizeof text);
-    ck_assert_str_eq(text, "");
-    setup.model.integrator = MODEL_RK4;
-    setup.model.h = 0.009;
-    warning(&setup, text, sizeof text);
-    ck_assert_ptr_nonnull(strstr(text, "limit of rk4, 0.00894427 s"));
-    setup.model.integrator = MODEL_EXPLICIT_EULER;
-    setup.model.h = 0.001;
-    warning(&setup, text, sizeof text);
-    ck_assert_ptr_nonnull(strstr(text, "no step is short enough for explicit_euler"));
-    ck_assert_ptr_nonnull(strstr(text, "can grow by 4.88088 %")); /* sqrt(1.1) - 1 */
-    setup.material.damping_stiffness = 0.0011;                    /* 2 zeta / omega */
-    warning(&setup, text, sizeof text);
-    ck_assert_str_eq(text, "");
-    setup.material.damping_stiffness = 0.0009;
-    warning(&setup, text, sizeof text);
-    ck_assert_ptr_nonnull(strstr(text, "limit of explicit_euler, 0.0009 s"));
-    chain_free(&setup);
-}
-END_TEST
 
 /* All vertices of a cloth are other names of a sheet's, which has their masses. */
-START_TEST(a_doubled_layer_has_a_scale_of_energy)
+UNIT_TEST(a_doubled_layer_has_a_scale_of_energy)
 {
     static const uint32_t edge[] = {0, 1};
     uint32_t names[] = {0, 1};
     struct model_weld weld = {.pairs = {.end = {{.cloth = 0, .n = 2, .vertices = names},
                                                 {.cloth = 1, .n = 2, .vertices = names}}},
                               .tolerance = 1e-6};
-    struct setup setup;
     struct flow_source source;
-    struct cloth_error error = {0};
     double release[2];
-    setup_sheet(&setup, 3);
+    SETUP(setup_sheet(&setup, 3));
     struct model_cloth cloths[2] = {setup.cloth, setup.cloth};
-    ck_assert_int_eq(
-        mesh_inline(&cloths[1].mesh, 2, cloths[0].mesh.position, 1, edge, 0, NULL, &error), 0);
+    UNIT_FINE(mesh_inline(&cloths[1].mesh, 2, cloths[0].mesh.position, 1, edge, 0, NULL, &error));
     cloths[1].mass_per_vertex = 1e-15;
     setup.model.cloths = cloths;
     setup.model.welds = &weld;
     for (uint32_t i = 0; i < 2; i++) {
         setup.model.n_cloths = 1 + i;
         setup.model.n_welds = i;
-        ck_assert_msg(!flow_source_make(&source, &setup.model, 1, &error), "%s", error.text);
+        UNIT_FINE(flow_source_make(&source, &setup.model, 1, &error));
         release[i] = flow_source_release(&source);
         flow_source_free(&source);
     }
     ck_assert_double_gt(release[0], 0);
     ck_assert_double_eq_tol(release[1], release[0], 1e-9 * release[0]);
     mesh_free(&cloths[1].mesh);
-    setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("limits");
-    TCase *cases = tcase_create("limits");
-    tcase_add_test(cases, bound_of_a_chain);
-    tcase_add_test(cases, bound_of_a_sheet);
-    tcase_add_test(cases, warnings);
-    tcase_add_test(cases, a_doubled_layer_has_a_scale_of_energy);
-    tcase_add_loop_test(cases, limits_are_where_runs_break, 0, 4);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

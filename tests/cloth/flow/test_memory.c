@@ -65,20 +65,17 @@ static long prepare_all(const struct model *model)
     }
 }
 
-START_TEST(each_fails_once_in_prepare)
+UNIT_TEST(each_fails_once_in_prepare)
 {
-    struct setup setup;
-    setup_sheet(&setup, 3);
+    SETUP(setup_sheet(&setup, 3));
     setup_pin(&setup, 1, (const uint32_t[]){0});
     ck_assert_int_gt(prepare_all(&setup.model), 20);
-    setup_free(&setup);
 }
-END_TEST
 
 /* A sheet that bends, two of whose border edges are welded, with a joint across and a timed one. */
-START_TEST(each_fails_once_with_welds)
+UNIT_TEST(each_fails_once_with_welds)
 {
-    struct setup setup;
+    UNIT_OWNED(setup_free) struct setup setup;
     uint32_t from[] = {0, 1}, to[] = {20, 21}, ends[] = {7, 17};
     struct model_weld weld = {.pairs = {.end = {{.cloth = 0, .n = 2, .vertices = from},
                                                 {.cloth = 0, .n = 2, .vertices = to}}},
@@ -102,9 +99,7 @@ START_TEST(each_fails_once_with_welds)
     setup.model.welds = &weld;
     setup.model.joints = joints;
     ck_assert_int_gt(prepare_all(&setup.model), without + 10);
-    setup_free(&setup);
 }
-END_TEST
 
 /* Memory that a run takes before its first object: on every rank, and on rank 0, which gathers. */
 enum { OF_A_RANK = 15, OF_RANK_0 = 17 };
@@ -137,7 +132,7 @@ int __wrap_flow_source_gather(struct flow_source *source, uint32_t from, uint32_
 
 static void ends_everywhere(const struct setup *setup, int where)
 {
-    struct record record = {0};
+    UNIT_OWNED(record_free) struct record record = {0};
     char text[64];
     record_run(&record, &setup->model);
     left = -1;
@@ -145,22 +140,18 @@ static void ends_everywhere(const struct setup *setup, int where)
     ck_assert_msg(record.code == CLOTH_E_MEMORY && strstr(record.error.text, text) &&
                       strstr(record.error.text, "; no frame was written"),
                   "%s", record.error.text);
-    record_free(&record);
 }
 
 static void runs(const struct setup *setup)
 {
-    struct record record = {0};
-    record_run(&record, &setup->model);
-    ck_assert_msg(record.code == 0, "%s", record.error.text);
-    record_free(&record);
+    UNIT_OWNED(record_free) struct record record = {0};
+    record_fine(&record, &setup->model);
 }
 
-START_TEST(each_fails_once_in_a_run)
+UNIT_TEST(each_fails_once_in_a_run)
 {
     int rank, ranks;
-    struct setup setup;
-    setup_sheet(&setup, 6);
+    SETUP(setup_sheet(&setup, 6));
     record_mpi(&rank, &ranks);
     for (int where = 0; where < ranks && where < 2; where++) {
         for (int i = 0; i < (where ? OF_A_RANK : OF_RANK_0); i++) {
@@ -170,31 +161,14 @@ START_TEST(each_fails_once_in_a_run)
     }
     next_run = -1;
     runs(&setup);
-    setup_free(&setup);
 }
-END_TEST
 
 /* Rank 0 has no room to gather what tables are made of. */
-START_TEST(each_fails_once_in_distributing)
+UNIT_TEST(each_fails_once_in_distributing)
 {
-    struct setup setup;
-    setup_sheet(&setup, 6);
+    SETUP(setup_sheet(&setup, 6));
     for (next_sides = 0; next_sides < 2; next_sides++)
         ends_everywhere(&setup, 0);
     next_sides = -1;
     runs(&setup);
-    setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("memory");
-    TCase *cases = tcase_create("memory");
-    tcase_add_test(cases, each_fails_once_in_prepare);
-    tcase_add_test(cases, each_fails_once_with_welds);
-    tcase_add_test(cases, each_fails_once_in_a_run);
-    tcase_add_test(cases, each_fails_once_in_distributing);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

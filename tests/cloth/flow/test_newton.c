@@ -24,12 +24,6 @@ static void chain(struct setup *s, double h, size_t steps)
     s->model.newton_tolerance = 1e-10;
 }
 
-static void run(struct record *record, const struct setup *setup)
-{
-    record_run(record, &setup->model);
-    ck_assert_msg(record->code == 0, "%s", record->error.text);
-}
-
 /* Force on component c of vertex i in a frame, N. */
 static double force(const struct record *r, size_t frame, size_t i, size_t c)
 {
@@ -66,15 +60,14 @@ static double missing_euler(const struct record *r, double h)
     return max;
 }
 
-START_TEST(euler_solves_its_equations)
+UNIT_TEST(euler_solves_its_equations)
 {
     const double h = 0.02;
-    struct setup setup;
-    struct record one = {0}, many = {0};
-    chain(&setup, h, 50);
-    run(&one, &setup);
+    UNIT_OWNED(record_free) struct record one = {0}, many = {0};
+    SETUP(chain(&setup, h, 50));
+    record_fine(&one, &setup.model);
     setup.model.newton_steps = 20;
-    run(&many, &setup);
+    record_fine(&many, &setup.model);
     printf("# chain, h = %g s: missing in the step's equations, of the weight: %.3e after one "
            "Newton step, %.3e after %.2f\n",
            h, missing_euler(&one, h), missing_euler(&many, h),
@@ -85,23 +78,18 @@ START_TEST(euler_solves_its_equations)
     ck_assert_uint_eq(many.report.newton_unconverged, 0);
     ck_assert_uint_gt(many.report.newton_steps, 100);
     ck_assert_double_lt(many.report.momentum_lost, 1e-9);
-    record_free(&one);
-    record_free(&many);
-    setup_free(&setup);
 }
-END_TEST
 
 /* BDF2 of positions, where v by them is (3 x2 - 4 x1 + x0) / 2 h: from its second step on. */
-START_TEST(bdf2_solves_its_equations)
+UNIT_TEST(bdf2_solves_its_equations)
 {
     const double h = 0.02;
-    struct setup setup;
-    struct record r = {0};
+    UNIT_OWNED(record_free) struct record r = {0};
     double max = 0;
-    chain(&setup, h, 50);
+    SETUP(chain(&setup, h, 50));
     setup.model.integrator = MODEL_BDF2;
     setup.model.newton_steps = 20;
-    run(&r, &setup);
+    record_fine(&r, &setup.model);
     for (size_t n = 4; n < r.frames; n++)
         for (size_t i = 1; i <= LINKS; i++)
             for (size_t c = 0; c < 3; c++) {
@@ -115,30 +103,25 @@ START_TEST(bdf2_solves_its_equations)
             }
     printf("# chain, h = %g s: missing in BDF2's equations, of the weight: %.3e\n", h, max);
     ck_assert_double_lt(max, 1e-7);
-    record_free(&r);
-    setup_free(&setup);
 }
-END_TEST
 
 /* Where the last vertex is after 0.24 s. */
 static void end_of(struct record *r, enum model_integrator integrator, uint32_t newton, double h,
                    double x[2])
 {
-    struct setup setup;
-    chain(&setup, h, (size_t)(0.24 / h + 0.5));
+    SETUP(chain(&setup, h, (size_t)(0.24 / h + 0.5)));
     setup.model.integrator = integrator;
     setup.model.energy_growth = 0.005; /* of no effect in steps so short */
     setup.model.newton_steps = newton;
     *r = (struct record){0};
-    run(r, &setup);
+    record_fine(r, &setup.model);
     for (size_t c = 0; c < 2; c++)
         x[c] = record_at(r, r->frames - 1, LINKS, c);
     record_free(r);
-    setup_free(&setup);
 }
 
 /* By Richardson: of three lengths of steps. */
-START_TEST(order_of_a_swing)
+UNIT_LOOP(order_of_a_swing, 0, unit_alone() ? 4 : 0)
 {
     static const struct {
         const char *name;
@@ -160,26 +143,23 @@ START_TEST(order_of_a_swing)
            rows[_i].order, measured);
     ck_assert_double_eq_tol(measured, rows[_i].order, 0.15);
 }
-END_TEST
 
 /* A weight in the middle of a wire without tension, which feels nothing of the wire where the step
  * is linearised: a whole Newton step takes it to where the wire holds it with a thousand times its
  * weight. Two Newton steps get near the solution because the first is cut. */
-START_TEST(line_search)
+UNIT_TEST(line_search)
 {
     const double h = 0.2, half = 0.5, k = 3e5, m = 0.02;
     static const double vertices[] = {-0.5, 0, 0, 0, 0, 0, 0.5, 0, 0};
     static const uint32_t edges[] = {0, 1, 1, 2};
-    struct cloth_error error = {0};
-    struct setup setup;
-    struct record r = {0};
-    chain(&setup, h, 1);
+    UNIT_OWNED(record_free) struct record r = {0};
+    SETUP(chain(&setup, h, 1));
     mesh_free(&setup.cloth.mesh);
-    ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 3, vertices, 2, edges, 0, NULL, &error), 0);
+    UNIT_FINE(mesh_inline(&setup.cloth.mesh, 3, vertices, 2, edges, 0, NULL, &error));
     setup_pin(&setup, 2, (const uint32_t[]){0, 2});
     setup.material.ea = k * half;
     setup.model.newton_steps = 2;
-    run(&r, &setup);
+    record_fine(&r, &setup.model);
     double low = 0, high = 1; /* m u / h^2 = m g - 2 k (l - L) u / l */
     for (int i = 0; i < 100; i++) {
         const double u = (low + high) / 2, l = hypot(half, u);
@@ -195,20 +175,16 @@ START_TEST(line_search)
     ck_assert_double_eq_tol(measured, low, 0.5 * low);
     ck_assert_double_gt(h * h * G, 20 * low);
     ck_assert_uint_eq(r.report.newton_unconverged, 1);
-    record_free(&r);
-    setup_free(&setup);
 }
-END_TEST
 
 /* Contact and BDF2: the chain falls on a floor and never through it; the step after a touch is the
  * same as of a run by implicit Euler that begins there, so it has no memory of the fall. */
-START_TEST(bdf2_after_contact)
+UNIT_TEST(bdf2_after_contact)
 {
     const double h = 0.01, floor = -0.1;
-    struct setup setup;
-    struct record r = {0};
+    UNIT_OWNED(record_free) struct record r = {0};
     double y = 0, v = 0, last_y = 0, last_v = 0;
-    setup_weight(&setup);
+    SETUP(setup_weight(&setup));
     setup.cloth.n_pins = 0;
     setup.material.ea = 0;
     setup.material.damping_stiffness = 0;
@@ -221,7 +197,7 @@ START_TEST(bdf2_after_contact)
     setup.model.end = 100 * h;
     setup.model.fps = 1 / h;
     setup.model.tolerance = 1e-13;
-    run(&r, &setup);
+    record_fine(&r, &setup.model);
     bool smooth = false; /* of the first vertex and the other one alike: one that touches counts */
     double z = 0.3, w = 0, last_z = 0, last_w = 0;
     for (size_t n = 1; n <= 100; n++) {
@@ -244,10 +220,7 @@ START_TEST(bdf2_after_contact)
         ck_assert_double_eq_tol(record_at(&r, n, 0, 1), y, 1e-12);
         ck_assert_double_eq_tol(record_at(&r, n, 1, 1), z, 1e-12);
     }
-    record_free(&r);
-    setup_free(&setup);
 }
-END_TEST
 
 /* ---- Energies ---- */
 
@@ -261,7 +234,7 @@ static double fall(void)
 }
 
 /* Undriven and without damping: what a run of the chain gains. */
-START_TEST(energy_is_not_gained)
+UNIT_LOOP(energy_is_not_gained, 0, 8)
 {
     static const struct {
         const char *name;
@@ -277,14 +250,13 @@ START_TEST(energy_is_not_gained)
                 {"BDF2, converged", MODEL_BDF2, 50, 0.001, 0.01, 0},
                 {"BDF2, one Newton step", MODEL_BDF2, 1, 0.02, 0.01, 2},
                 {"BDF2, converged", MODEL_BDF2, 50, 0.02, 0.01, 1}};
-    struct setup setup;
-    struct record r = {0};
-    chain(&setup, rows[_i].h, (size_t)(1 / rows[_i].h + 0.5));
+    UNIT_OWNED(record_free) struct record r = {0};
+    SETUP(chain(&setup, rows[_i].h, (size_t)(1 / rows[_i].h + 0.5)));
     setup.model.integrator = rows[_i].integrator;
     setup.model.newton_steps = rows[_i].newton;
     setup.model.energy_steps = true;
     setup.model.energy_growth = 0.005;
-    run(&r, &setup);
+    record_fine(&r, &setup.model);
     const double gained = r.report.energy_gained / fall();
     printf("# | a chain of five links falls from level, %s, h = %g s | %.0e | %.2g |\n",
            rows[_i].name, rows[_i].h, gained, (0 - r.report.energy_lowest) / fall());
@@ -293,10 +265,7 @@ START_TEST(energy_is_not_gained)
     ck_assert_uint_le(r.report.steps_retaken, rows[_i].retaken ? 8 : 0);
     ck_assert_uint_eq(r.report.steps_halved, 0);
     ck_assert_double_lt(r.report.energy_lowest, -1e-4 * fall());
-    record_free(&r);
-    setup_free(&setup);
 }
-END_TEST
 
 /* The weight on its spring without damping: how far the energy wavers in 2 s. */
 static double band(enum model_integrator integrator, double h)
@@ -310,7 +279,7 @@ static double band(enum model_integrator integrator, double h)
     setup.model.h = h;
     setup.model.end = 2;
     setup.model.fps = 1;
-    run(&r, &setup);
+    record_fine(&r, &setup.model);
     const double wide = r.report.energy_highest - r.report.energy_lowest;
     ck_assert_double_eq_tol(r.report.energy_gained, wide, 0.6 * wide);
     record_free(&r);
@@ -318,7 +287,7 @@ static double band(enum model_integrator integrator, double h)
     return wide;
 }
 
-START_TEST(energy_wavers_in_a_band)
+UNIT_LOOP(energy_wavers_in_a_band, 0, 2)
 {
     static const enum model_integrator all[] = {MODEL_VERLET, MODEL_SYMPLECTIC_EULER};
     const double wide = band(all[_i], 0.01), narrow = band(all[_i], 0.005);
@@ -326,36 +295,13 @@ START_TEST(energy_wavers_in_a_band)
            model_schemes[all[_i]].name, wide, narrow, log2(wide / narrow));
     ck_assert_double_eq_tol(log2(wide / narrow), 2, 0.1);
 }
-END_TEST
 
-START_TEST(energies_are_reported_when_asked)
+UNIT_TEST(energies_are_reported_when_asked)
 {
-    struct setup setup;
-    struct record r = {0};
-    chain(&setup, 0.01, 3);
-    run(&r, &setup);
+    UNIT_OWNED(record_free) struct record r = {0};
+    SETUP(chain(&setup, 0.01, 3));
+    record_fine(&r, &setup.model);
     ck_assert_double_nan(r.report.energy_lowest);
     ck_assert_double_nan(r.report.energy_highest);
     ck_assert_double_nan(r.report.energy_gained);
-    record_free(&r);
-    setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("newton");
-    TCase *cases = tcase_create("newton");
-    tcase_add_test(cases, euler_solves_its_equations);
-    tcase_add_test(cases, bdf2_solves_its_equations);
-    tcase_add_test(cases, line_search);
-    tcase_add_test(cases, bdf2_after_contact);
-    tcase_add_loop_test(cases, energy_is_not_gained, 0, 8);
-    tcase_add_loop_test(cases, energy_wavers_in_a_band, 0, 2);
-    tcase_add_test(cases, energies_are_reported_when_asked);
-    suite_add_tcase(suite, cases);
-    TCase *alone = tcase_create("alone");
-    tcase_add_loop_test(alone, order_of_a_swing, 0, 4);
-    suite_add_tcase(suite, alone);
-    return unit_run(suite);
 }

@@ -30,10 +30,9 @@ struct row {
 /* The only body of a model, at a place. */
 static void body_make(struct model *model, struct mesh *mesh, const struct mesh_transform *place)
 {
-    struct cloth_error error = {0};
     bool turned;
     mesh_apply(mesh, place);
-    ck_assert_msg(contact_bodies_add(&model->bodies, mesh, &turned, &error) == 0, "%s", error.text);
+    UNIT_FINE(contact_bodies_add(&model->bodies, mesh, &turned, &error));
     mesh_free(mesh);
 }
 
@@ -60,12 +59,10 @@ static void row_make(struct row *row, int shape)
 {
     static const double vertices[3 * MASSES] = {0, 0, 0, 0, 0.5, 0, 0, 1, 0, 0, 1.5, 0};
     static const uint32_t edges[] = {0, 1, 1, 2, 2, 3};
-    struct cloth_error error = {0};
     struct setup *s = &row->setup;
     setup_weight(s);
     mesh_free(&s->cloth.mesh);
-    ck_assert_int_eq(
-        mesh_inline(&s->cloth.mesh, MASSES, vertices, MASSES - 1, edges, 0, NULL, &error), 0);
+    UNIT_FINE(mesh_inline(&s->cloth.mesh, MASSES, vertices, MASSES - 1, edges, 0, NULL, &error));
     s->cloth.n_pins = 0;
     s->cloth.mass_per_vertex = MASS;
     s->material.ea = EA;
@@ -93,8 +90,7 @@ static double speed_of(const struct record *r, size_t frame, size_t vertex)
 
 static void runs(struct record *record, const struct model *model)
 {
-    record_run(record, model);
-    ck_assert_msg(record->code == 0, "%s", record->error.text);
+    record_fine(record, model);
 }
 
 static const struct way {
@@ -112,7 +108,7 @@ enum { N_WAYS = sizeof WAYS / sizeof *WAYS };
  * the weight of the masses above it, and the shape carries n m g. Where the solve does not know of
  * contact, n m g lets the lowest mass sink by s = n g h^2 in each step before it is put back, and
  * the spring above it carries (k + c / h) s more. */
-START_TEST(carries_a_row)
+UNIT_LOOP(carries_a_row, 0, N_WAYS *N_SHAPES)
 {
     const struct way *way = WAYS + _i / N_SHAPES;
     struct row row;
@@ -146,10 +142,9 @@ START_TEST(carries_a_row)
     record_free(&record);
     free_all(&row.setup);
 }
-END_TEST
 
 /* Without weight and springs the step in which the shape comes gives the lowest mass m v. */
-START_TEST(gives_momentum)
+UNIT_LOOP(gives_momentum, 0, N_SHAPES)
 {
     struct row row;
     struct record record = {0};
@@ -172,11 +167,10 @@ START_TEST(gives_momentum)
     record_free(&record);
     free_all(&row.setup);
 }
-END_TEST
 
 /* A step that is given up and made in parts sees the shape where it is at the end of each part: the
  * mass on it is exactly there at every time. */
-START_TEST(halved_steps_see_their_time)
+UNIT_TEST(halved_steps_see_their_time)
 {
     struct row row;
     struct record record = {0};
@@ -197,10 +191,9 @@ START_TEST(halved_steps_see_their_time)
     record_free(&record);
     free_all(&row.setup);
 }
-END_TEST
 
 /* What rests while a shape has yet to move does not end the run. */
-START_TEST(waits_for_a_shape)
+UNIT_TEST(waits_for_a_shape)
 {
     struct row row;
     struct record record = {0};
@@ -221,15 +214,14 @@ START_TEST(waits_for_a_shape)
     record_free(&record);
     free_all(&row.setup);
 }
-END_TEST
 
 /* A ball goes through where a sheet hangs: no vertex is in it, and the sheet is out of its way. */
-START_TEST(pushes_a_sheet)
+UNIT_TEST(pushes_a_sheet)
 {
     static struct phys_key keys[2] = {{0, {0, 0, 0}, {1, 0, 0, 0}}, {1, {0, 0, 0.6}, {1, 0, 0, 0}}};
     const double radius = 0.15;
     struct setup s;
-    struct record record = {0};
+    UNIT_OWNED(record_free) struct record record = {0};
     setup_sheet(&s, 21); /* in the x-z plane: its weight hangs along x */
     s.model.gravity[0] = -9.81;
     s.model.gravity[1] = 0;
@@ -259,10 +251,8 @@ START_TEST(pushes_a_sheet)
         }
     const size_t middle = 220;
     ck_assert_double_gt(record_at(&record, record.frames - 1, middle, 1), 0.3);
-    record_free(&record);
     free_all(&s);
 }
-END_TEST
 
 /* A sheet of n x n vertices that falls onto something, 0.2 s in 50 steps. */
 static void sheet_make(struct setup *s, uint32_t n, const struct contact_shape *shape)
@@ -280,7 +270,7 @@ static void sheet_make(struct setup *s, uint32_t n, const struct contact_shape *
 
 /* A ball of 1,280 triangles is a ball but for what its triangles are less: a sheet lies as on the
  * other, so much nearer to its middle. */
-START_TEST(a_ball_of_triangles)
+UNIT_TEST(a_ball_of_triangles)
 {
     static struct surface ball;
     const double radius = 0.3, less = 0.003;
@@ -326,16 +316,15 @@ START_TEST(a_ball_of_triangles)
     record_free(on);
     record_free(on + 1);
 }
-END_TEST
 
 /* What crumples on the floor is thrown about less where compressed springs resist being turned: it
  * gains less energy, and its systems are easier. */
-START_TEST(crumples_by_absolute_slopes)
+UNIT_TEST(crumples_by_absolute_slopes)
 {
     struct flow_report report[2];
     for (int absolute = 0; absolute < 2; absolute++) {
         struct setup s;
-        struct record record = {0};
+        UNIT_OWNED(record_free) struct record record = {0};
         sheet_make(&s, 24, &PLANE(0, 0, 0, 0, 1, 0));
         for (size_t v = 0; v < s.cloth.mesh.n_vertices; v++) {
             double *p = s.cloth.mesh.position + 3 * v, x = p[0];
@@ -352,25 +341,22 @@ START_TEST(crumples_by_absolute_slopes)
         s.model.energy_steps = true;
         runs(&record, &s.model);
         report[absolute] = record.report;
-        record_free(&record);
         free_all(&s);
     }
     ck_assert_double_lt(2 * report[1].energy_gained, report[0].energy_gained);
     ck_assert_uint_lt(report[1].cg_iterations_total, report[0].cg_iterations_total);
 }
-END_TEST
 
 /* No vertex of a sheet that falls onto the head and the shoulders of a body is in it after any
  * step. */
-START_TEST(a_real_body)
+UNIT_LOOP(a_real_body, 0, access(real_body_path(), R_OK) == 0)
 {
-    struct cloth_error error = {0};
     struct setup s;
-    struct record record = {0};
+    UNIT_OWNED(record_free) struct record record = {0};
     struct mesh mesh;
     sheet_make(&s, 41, &(const struct contact_shape){.kind = 5, .body = 1});
     struct mesh_transform place = {{0.1, 0.1, 0.1}, {1, 0, 0, 0}, {0, -0.8, 0}};
-    ck_assert_msg(mesh_read_surface(&mesh, real_body_path(), &error) == 0, "%s", error.text);
+    UNIT_FINE(mesh_read_surface(&mesh, real_body_path(), &error));
     body_make(&s.model, &mesh, &place);
     runs(&record, &s.model);
     struct contact_pose pose;
@@ -387,24 +373,5 @@ START_TEST(a_real_body)
             touched += hit.gap < 1e-7;
         }
     ck_assert_uint_gt(touched, 100);
-    record_free(&record);
     free_all(&s);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("obstacles");
-    TCase *cases = tcase_create("obstacles");
-    tcase_add_loop_test(cases, carries_a_row, 0, N_WAYS * N_SHAPES);
-    tcase_add_loop_test(cases, gives_momentum, 0, N_SHAPES);
-    tcase_add_test(cases, halved_steps_see_their_time);
-    tcase_add_test(cases, waits_for_a_shape);
-    tcase_add_test(cases, pushes_a_sheet);
-    tcase_add_test(cases, a_ball_of_triangles);
-    tcase_add_test(cases, crumples_by_absolute_slopes);
-    if (access(real_body_path(), R_OK) == 0)
-        tcase_add_test(cases, a_real_body);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -4,8 +4,8 @@
 # motion, too: that two ranks move a cloth like one, to the bit, is what test_same_hash.sh says.
 . "${srcdir:-.}/tests/support/tap.sh"
 programs="test_run test_failures test_memory"
-if test "${DUITE_LONG:-}" = 1; then programs="test_halving test_contact test_sliders test_solvers"; fi
-for program in $programs test_motion test_integrators test_checked test_late; do
+if test "${DUITE_LONG:-}" = 1; then programs="test_halving test_sliders test_solvers test_motion test_integrators"; fi
+for program in $programs test_checked test_late; do
     skip_unless "tests/cloth/flow/$program"
 done
 plan_later
@@ -13,11 +13,7 @@ plan_later
 for program in $programs; do
     ok "$program on 2 ranks" ranks 2 "tests/cloth/flow/$program"
 done
-if test "${DUITE_LONG:-}" = 1; then
-    for cases in motion integrators; do # their other cases are of one block, which is no work for two ranks
-        ok "test_$cases on 2 ranks" ranks 2 env CK_RUN_CASE=$cases "tests/cloth/flow/test_$cases"
-    done
-else
+if test "${DUITE_LONG:-}" != 1; then
     # As in run.sh.
     ok "test_checked on 2 ranks" ranks 2 env ASAN_OPTIONS="${ASAN_OPTIONS:-}:fast_unwind_on_malloc=1:detect_leaks=0" \
         tests/cloth/flow/test_checked quick

@@ -9,12 +9,6 @@
 
 static const double FALL = 9.81e-6 * 55; /* of ten steps of implicit Euler */
 
-static void runs(struct record *record, const struct model *model)
-{
-    record_run(record, model);
-    ck_assert_msg(record->code == 0, "%s", record->error.text);
-}
-
 static void pin_rows(struct setup *setup, uint32_t n)
 {
     static uint32_t all[64];
@@ -26,78 +20,62 @@ static void pin_rows(struct setup *setup, uint32_t n)
 }
 
 /* Blocks without a free vertex, all of them, or one block of everything. */
-START_TEST(held_blocks)
+UNIT_LOOP(held_blocks, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     const uint32_t held[] = {64, 24, 1}, grain[] = {8, 8, 1000};
     for (int i = 0; i < 3; i++) {
-        struct setup setup;
-        struct record record = {0};
-        setup_sheet(&setup, 8);
+        UNIT_OWNED(record_free) struct record record = {0};
+        SETUP(setup_sheet(&setup, 8));
         setup.model.preconditioner = (enum model_preconditioner)_i;
         setup.model.grain = grain[i];
         pin_rows(&setup, held[i]);
-        runs(&record, &setup.model);
+        record_fine(&record, &setup.model);
         for (uint32_t v = 0; v < held[i]; v++)
             ck_assert_double_eq(record_at(&record, 10, v, 1), 0);
         if (held[i] < 64)
             ck_assert_double_lt(record_at(&record, 10, 63, 1), -0.5 * FALL);
         ck_assert_double_ge(record_at(&record, 10, 63, 1), -1.01 * FALL);
-        record_free(&record);
-        setup_free(&setup);
     }
 }
-END_TEST
 
 /* Nothing is held, and nothing but mass is in the way: all falls, however many pieces it is. */
-START_TEST(pieces_that_fall)
+UNIT_LOOP(pieces_that_fall, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     static const double vertices[] = {0, 0, 0, 1, 0, 0, 0, 0, 1, 5, 0, 0, 6, 0, 0, 5, 0, 1};
     static const uint32_t triangles[] = {0, 1, 2, 3, 4, 5};
-    struct cloth_error error = {0};
-    struct setup setup;
-    struct record record = {0};
-    setup_sheet(&setup, 2);
+    TRIAL(setup_sheet(&setup, 2));
     mesh_free(&setup.cloth.mesh);
-    ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 6, vertices, 0, NULL, 2, triangles, &error), 0);
+    UNIT_FINE(mesh_inline(&setup.cloth.mesh, 6, vertices, 0, NULL, 2, triangles, &error));
     setup.model.preconditioner = (enum model_preconditioner)_i;
     setup.model.grain = 2;
-    runs(&record, &setup.model);
+    record_fine(&record, &setup.model);
     for (size_t v = 0; v < 6; v++)
         ck_assert_double_eq_tol(record_at(&record, 10, v, 1), -FALL, 1e-9);
-    record_free(&record);
-    setup_free(&setup);
 }
-END_TEST
 
 /* Moduli of 1e12 beside 1e-3. */
-START_TEST(stiff_beside_soft)
+UNIT_LOOP(stiff_beside_soft, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
-    struct setup setup;
-    struct record record = {0};
-    setup_sheet(&setup, 8);
+    TRIAL(setup_sheet(&setup, 8));
     setup.material.stretch = 1e12;
     setup.material.shear = setup.material.bend = 1e-3;
     setup.model.stop = MODEL_STOP_MASS_NORM; /* residuals mislead */
     setup.model.tolerance = 0.01;
     setup.model.preconditioner = (enum model_preconditioner)_i;
     setup_pin(&setup, 1, (const uint32_t[]){0});
-    runs(&record, &setup.model);
+    record_fine(&record, &setup.model);
     ck_assert_double_eq_tol(record.report.max_stretch, 1, 1e-3);
     ck_assert_double_lt(record_at(&record, 10, 63, 1), -0.4 * FALL);
-    record_free(&record);
-    setup_free(&setup);
 }
-END_TEST
 
 /* A matrix so stiff that rounding takes the recurrence away from the residual: the solve begins
  * again and gets what was asked for, or says that no solve can. */
-START_TEST(rounding_is_noticed)
+UNIT_LOOP(rounding_is_noticed, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     static const double tolerance[] = {3e-6, 1e-9};
     for (int i = 0; i < 2; i++) {
-        struct setup setup;
-        struct record record = {.threads = 2};
-        setup_sheet(&setup, 8);
+        UNIT_OWNED(record_free) struct record record = {.threads = 2};
+        SETUP(setup_sheet(&setup, 8));
         setup.material.stretch = 1e12;
         setup.material.shear = 2500;
         setup.material.bend = 0;
@@ -118,20 +96,16 @@ START_TEST(rounding_is_noticed)
             ck_assert_msg(strstr(record.error.text, "what rounding leaves") != NULL, "%s",
                           record.error.text);
         }
-        record_free(&record);
-        setup_free(&setup);
     }
 }
-END_TEST
 
 /* The whole slope of springs in compression: the matrix is indefinite. That is said, or a shorter
  * step, in which the masses prevail, goes on. */
-START_TEST(compressed_and_not_clamped)
+UNIT_LOOP(compressed_and_not_clamped, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     for (int halving = 0; halving < 2; halving++) {
-        struct setup setup;
         struct record record = {0};
-        setup_sheet(&setup, 6);
+        SETUP(setup_sheet(&setup, 6));
         double *start = calloc(36, 6 * sizeof *start);
         ck_assert(start != NULL);
         for (size_t v = 0; v < 36; v++)
@@ -159,20 +133,5 @@ START_TEST(compressed_and_not_clamped)
         record_free(&record);
         setup.cloth.start = NULL;
         free(start);
-        setup_free(&setup);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("singular");
-    TCase *cases = tcase_create("singular");
-    tcase_add_loop_test(cases, held_blocks, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
-    tcase_add_loop_test(cases, pieces_that_fall, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
-    tcase_add_loop_test(cases, stiff_beside_soft, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
-    tcase_add_loop_test(cases, rounding_is_noticed, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
-    tcase_add_loop_test(cases, compressed_and_not_clamped, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

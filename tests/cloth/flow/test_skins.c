@@ -1,6 +1,8 @@
 /* The skins of a run: every triangle is in the skin of the block of its lowest place, every vertex
  * and every edge is the feature of one skin, points are where the block finds them, also where a
- * cloth has no springs between the corners of its triangles, and across welds. */
+ * cloth has no springs between the corners of its triangles, and across welds. Of what skins find a
+ * contact stands once. */
+#include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/skin.h"
 #include "cloth/flow/state/flow.h"
 #include "tests/cloth/flow/models.h"
@@ -46,8 +48,7 @@ static void end(void)
 
 static void make(void)
 {
-    struct cloth_error error = {0};
-    ck_assert_msg(flow_prepare(&flow, &setup.model, 1, &error) == 0, "%s", error.text);
+    UNIT_FINE(flow_prepare(&flow, &setup.model, 1, &error));
     memory = calloc(n_blocks(), sizeof *memory);
     skins = calloc(n_blocks(), sizeof *skins);
     ck_assert(memory && skins);
@@ -56,7 +57,7 @@ static void make(void)
         memory[b] = aligned_alloc(64, bytes);
         ck_assert_ptr_nonnull(memory[b]);
         memset(memory[b], 0xff, bytes);
-        ck_assert_int_eq(flow_source_skin(&flow->source, b, memory[b], &error), 0);
+        UNIT_FINE(flow_source_skin(&flow->source, b, memory[b], &error));
         skins[b] = flow_skin_open(memory[b]);
     }
 }
@@ -167,52 +168,63 @@ static void check_all(uint32_t borders)
 
 /* ---- Tests ---- */
 
-START_TEST(springs)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(springs)
 {
     setup_pin(&setup, 2, (const uint32_t[]){0, SIDE - 1});
     make();
     check_all(4 * (SIDE - 1));
 }
-END_TEST
 
 /* Without shear springs nothing else joins the ends of diagonals. */
-START_TEST(no_shear)
+UNIT_TEST(no_shear)
 {
     setup.material.shear = setup.material.bend = 0;
     make();
     check_all(4 * (SIDE - 1));
 }
-END_TEST
 
-START_TEST(welded_sides)
+UNIT_TEST(welded_sides)
 {
     weld_sides();
     make();
     check_all(2 * (SIDE - 1));
     ck_assert_uint_eq(flow->source.blocks.n_places, SIDE * SIDE - SIDE);
 }
-END_TEST
 
 /* Other contact has no skins. */
-START_TEST(none)
+UNIT_TEST(none)
 {
-    struct cloth_error error = {0};
     setup.model.contact.mode = MODEL_CONTACT_PROJECT;
-    ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), 0);
+    UNIT_FINE(flow_prepare(&flow, &setup.model, 1, &error));
     ck_assert_ptr_null(flow->source.skins.start);
     ck_assert_uint_eq(flow->source.shape[0].skin.n_points, 0);
 }
-END_TEST
 
-int main(void)
+/* A vertex of the block, 2 mm off in a direction along y. */
+static struct flow_contact drawn(uint32_t kind, uint32_t vertex, double along)
 {
-    Suite *suite = suite_create("skins");
-    TCase *cases = tcase_create("skins");
-    tcase_add_checked_fixture(cases, start, end);
-    tcase_add_test(cases, springs);
-    tcase_add_test(cases, no_shear);
-    tcase_add_test(cases, welded_sides);
-    tcase_add_test(cases, none);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
+    return (struct flow_contact){
+        .kind = kind,
+        .feature = {vertex},
+        .row = {.normal = {0, along, 0, 0}, .gap = 0.002, .thickness = 0.002}};
+}
+
+/* Triangles with a common edge or corner have the nearest point of a vertex in common: it is one
+ * contact. Where the vertex lies between two layers there are two. */
+UNIT_TEST(a_point_is_met_once)
+{
+    struct flow_contact list[] = {
+        drawn(CONTACT_VT, 5, 1), drawn(CONTACT_VT, 5, 1), drawn(CONTACT_VT, 5, -1),
+        drawn(CONTACT_VT, 5, 1), drawn(CONTACT_VT, 6, 1), drawn(CONTACT_EE, 6, 1),
+        drawn(CONTACT_EE, 6, 1),
+    };
+    static const double along[] = {1, -1, 1, 1, 1};
+    static const uint32_t vertex[] = {5, 5, 6, 6, 6};
+    ck_assert_uint_eq(flow_contact_drop_repeated(list, sizeof list / sizeof *list), 5);
+    for (int i = 0; i < 5; i++) {
+        ck_assert_uint_eq(list[i].feature[0], vertex[i]);
+        ck_assert(list[i].row.normal[1] * along[i] > 0);
+    }
 }

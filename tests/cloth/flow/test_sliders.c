@@ -29,12 +29,6 @@ static void setup_sliding(struct sliding *g, int kind, double x, double y, doubl
     g->setup.model.tolerance = 1e-13;
 }
 
-static void runs(struct record *record, const struct model *model)
-{
-    record_run(record, model);
-    ck_assert_msg(record->code == 0, "%s", record->error.text);
-}
-
 /* How far a unit of acceleration leads in n steps, in h^2. */
 static double way(enum model_integrator integrator, double n)
 {
@@ -101,27 +95,25 @@ static void fall(int kind)
             g.setup.model.newton_steps = way == 5 ? 20 : 1;
             g.setup.model.newton_tolerance = 1e-10;
             setup_load(&g.setup, 5, 0.1, 0.05, 0); /* of 0.2 kg */
-            runs(&record, &g.setup.model);
+            record_fine(&record, &g.setup.model);
             check_fall(&g, &record, none);
             record_free(&record);
             setup_free(&g.setup);
         }
 }
 
-START_TEST(falls_along_a_line)
+UNIT_TEST(falls_along_a_line)
 {
     fall(MODEL_LINE);
 }
-END_TEST
 
-START_TEST(falls_in_a_plane)
+UNIT_TEST(falls_in_a_plane)
 {
     fall(MODEL_PLANE);
 }
-END_TEST
 
 /* Sliders that move by 0.3 m/s across themselves take their vertices along and do not slow them. */
-START_TEST(sliders_that_move)
+UNIT_TEST(sliders_that_move)
 {
     for (int i = 0; i < 2 * MODEL_INTEGRATORS; i++) {
         static struct phys_key keys[] = {{.rotate = {1}},
@@ -140,16 +132,15 @@ START_TEST(sliders_that_move)
         g.setup.model.n_keys = 2;
         g.setup.model.keys = keys;
         g.slider.motion = 1;
-        runs(&record, &g.setup.model);
+        record_fine(&record, &g.setup.model);
         check_fall(&g, &record, shift);
         record_free(&record);
         setup_free(&g.setup);
     }
 }
-END_TEST
 
 /* The side of the sheet that is on the floor cannot go on along its lines, the others do. */
-START_TEST(sliders_meet_the_floor)
+UNIT_TEST(sliders_meet_the_floor)
 {
     for (int i = 0; i < MODEL_INTEGRATORS; i++) {
         struct sliding g;
@@ -159,7 +150,7 @@ START_TEST(sliders_meet_the_floor)
         g.setup.model.n_obstacles = 1;
         g.setup.plane = PLANE(0.5, 0, 0, -0.8, 0.6, 0);
         g.setup.cloth.velocity[1] = -1; /* of which the lines leave 0.8 m/s */
-        runs(&record, &g.setup.model);
+        record_fine(&record, &g.setup.model);
         for (size_t v = 0; v < VERTICES; v++) {
             const double dx = record_at(&record, STEPS, v, 0) - record_at(&record, 0, v, 0);
             const double dy = record_at(&record, STEPS, v, 1) - record_at(&record, 0, v, 1);
@@ -175,7 +166,6 @@ START_TEST(sliders_meet_the_floor)
         setup_free(&g.setup);
     }
 }
-END_TEST
 
 /* A weight hangs from two links that mirror each other: their plane, and its upright line, hold
  * nothing that moves. */
@@ -185,8 +175,7 @@ static void hang(struct setup *setup, uint32_t links, double mass)
     static const uint32_t edges[] = {0, 1, 1, 2};
     setup_weight(setup);
     mesh_free(&setup->cloth.mesh);
-    ck_assert(!mesh_inline(&setup->cloth.mesh, links + 1, vertices, links, edges, 0, NULL,
-                           &(struct cloth_error){0}));
+    UNIT_FINE(mesh_inline(&setup->cloth.mesh, links + 1, vertices, links, edges, 0, NULL, &error));
     setup->cloth.mass_per_vertex = mass;
     setup->material.ea = 40;
     setup->model.tolerance = 1e-13;
@@ -195,11 +184,11 @@ static void hang(struct setup *setup, uint32_t links, double mass)
 
 /* So half of the weight, held there, moves on one link as all of it on both: if the solve knows
  * that it is held. By every preconditioner. */
-START_TEST(half_of_a_mirrored_weight)
+UNIT_LOOP(half_of_a_mirrored_weight, 2 * MODEL_PLAIN, 2 * (MODEL_IC0_COARSE + 1))
 {
     static uint32_t ends[] = {2, 1};
-    struct setup whole, half;
-    struct record of_whole = {0}, of_half = {0};
+    UNIT_OWNED(setup_free) struct setup whole, half;
+    UNIT_OWNED(record_free) struct record of_whole = {0}, of_half = {0};
     struct model_slider slider = {.kind = _i % 2 ? MODEL_LINE : MODEL_PLANE};
     slider.direction[_i % 2] = 1;
     hang(&whole, 2, 0.1);
@@ -214,59 +203,10 @@ START_TEST(half_of_a_mirrored_weight)
     half.model.sliders = &slider;
     half.model.n_sliders = 1;
     whole.model.preconditioner = half.model.preconditioner = (enum model_preconditioner)(_i / 2);
-    runs(&of_whole, &whole.model);
-    runs(&of_half, &half.model);
+    record_fine(&of_whole, &whole.model);
+    record_fine(&of_half, &half.model);
     ck_assert_double_lt(record_at(&of_whole, STEPS, 1, 1), -1e-4);
     for (size_t c = 0; c < 3; c++)
         ck_assert_double_eq_tol(record_at(&of_half, STEPS, 1, c), record_at(&of_whole, STEPS, 1, c),
                                 1e-15);
-    record_free(&of_whole);
-    record_free(&of_half);
-    setup_free(&whole);
-    setup_free(&half);
-}
-END_TEST
-
-/* Two pins may say the same of a vertex, and not two things. */
-START_TEST(two_pins_on_a_vertex)
-{
-    for (int i = 0; i < 4; i++) {
-        struct sliding g;
-        struct record record = {0};
-        struct model_slider sliders[2];
-        setup_sliding(&g, MODEL_LINE, 0, 1, 0);
-        struct model_pin pins[2] = {g.setup.pin, g.setup.pin};
-        sliders[0] = sliders[1] = g.slider;
-        pins[1].slider = i == 3 ? 0 : 2;
-        sliders[1].kind = i == 1 ? MODEL_PLANE : MODEL_LINE;
-        sliders[1].direction[2] = i == 2 ? 0.1 : 0;
-        g.setup.model.n_sliders = 2;
-        g.setup.model.sliders = sliders;
-        g.setup.cloth.pins = pins;
-        g.setup.cloth.n_pins = 2;
-        record_run(&record, &g.setup.model);
-        ck_assert_int_eq(record.code, i ? CLOTH_E_INPUT : CLOTH_OK);
-        if (i)
-            ck_assert_str_eq(record.error.text,
-                             "vertex 36 of cloth 'test' is held by two pins that do not hold and "
-                             "move alike; one is expected (vertices count from 1)");
-        record_free(&record);
-        setup_free(&g.setup);
-    }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("sliders");
-    TCase *cases = tcase_create("sliders");
-    tcase_add_test(cases, falls_along_a_line);
-    tcase_add_test(cases, falls_in_a_plane);
-    tcase_add_test(cases, sliders_that_move);
-    tcase_add_test(cases, sliders_meet_the_floor);
-    tcase_add_loop_test(cases, half_of_a_mirrored_weight, 2 * MODEL_PLAIN,
-                        2 * (MODEL_IC0_COARSE + 1));
-    tcase_add_test(cases, two_pins_on_a_vertex);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -1,6 +1,6 @@
 /* Runs with every preconditioner and stop: the same motion as without, few iterations, errors kept;
- * and cloths that leave a preconditioner nothing to hold on to: blocks that are held or have no
- * free vertex, one block, several pieces, chains, springs in compression. */
+ * also of a chain and of springs in compression. What leaves a preconditioner nothing to hold on to
+ * is in test_singular.c. */
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 
@@ -38,17 +38,14 @@ static uint64_t compare(struct setup *setup, uint64_t iterations[KINDS])
     struct record plain = {0};
     setup->model.tolerance = 1e-10;
     setup->model.preconditioner = MODEL_PLAIN;
-    record_run(&plain, &setup->model);
-    ck_assert_msg(plain.code == 0, "%s", plain.error.text);
+    record_fine(&plain, &setup->model);
     const uint64_t alone = plain.report.cg_iterations_total;
     for (int i = 0; i < KINDS; i++) {
-        struct record record = {.threads = 1 + (unsigned)i % 2};
+        UNIT_OWNED(record_free) struct record record = {.threads = 1 + (unsigned)i % 2};
         setup->model.preconditioner = kinds[i];
-        record_run(&record, &setup->model);
-        ck_assert_msg(record.code == 0, "%s", record.error.text);
+        record_fine(&record, &setup->model);
         ck_assert_double_le(farthest(&plain, &record), 1e-6);
         iterations[i] = record.report.cg_iterations_total;
-        record_free(&record);
     }
     record_free(&plain);
     setup_free(setup);
@@ -61,7 +58,7 @@ static void check(struct setup *setup)
     compare(setup, iterations);
 }
 
-START_TEST(a_sheet_moves_alike)
+UNIT_TEST(a_sheet_moves_alike)
 {
     struct setup setup;
     uint64_t iterations[KINDS];
@@ -73,63 +70,48 @@ START_TEST(a_sheet_moves_alike)
     ck_assert_uint_lt(iterations[3], iterations[2]);
     ck_assert_uint_lt(3 * iterations[3], alone);
 }
-END_TEST
 
 /* Whatever patches blocks are cut into, also where these have fewer rows than motions, or none. */
-START_TEST(patches_move_alike)
+UNIT_LOOP(patches_move_alike, 0, 2)
 {
-    struct record none = {0};
-    struct setup setup;
+    UNIT_OWNED(record_free) struct record none = {0};
     uint64_t before = UINT64_MAX;
-    setup_stiff(&setup, 20);
+    SETUP(setup_stiff(&setup, 20));
     setup.model.tolerance = 1e-10;
     setup.model.grain = _i ? 3 : 90;
     setup.model.preconditioner = MODEL_PLAIN;
-    record_run(&none, &setup.model);
-    ck_assert_msg(none.code == 0, "%s", none.error.text);
+    record_fine(&none, &setup.model);
     setup.model.preconditioner = MODEL_IC0_COARSE;
     for (uint32_t patches = 1; patches <= 4; patches++) {
-        struct record record = {.threads = 1 + patches % 2};
+        UNIT_OWNED(record_free) struct record record = {.threads = 1 + patches % 2};
         setup.model.patches = patches;
-        record_run(&record, &setup.model);
-        ck_assert_msg(record.code == 0, "%s", record.error.text);
+        record_fine(&record, &setup.model);
         ck_assert_double_le(farthest(&none, &record), 1e-6);
         if (!_i)
             ck_assert_uint_lt(record.report.cg_iterations_total, before);
         before = record.report.cg_iterations_total;
-        record_free(&record);
     }
-    record_free(&none);
-    setup_free(&setup);
 }
-END_TEST
 
 /* In half storage, too, with every preconditioner, of a sheet whose bend springs join vertices that
  * have others between them, and some twice. */
-START_TEST(formats_move_alike)
+UNIT_TEST(formats_move_alike)
 {
-    struct record springs = {0};
-    struct setup setup;
-    setup_stiff(&setup, 14);
+    UNIT_OWNED(record_free) struct record springs = {0};
+    SETUP(setup_stiff(&setup, 14));
     setup.material.bend = 50;
     setup.model.grain = 30;
     setup.model.tolerance = 1e-10;
-    record_run(&springs, &setup.model);
-    ck_assert_msg(springs.code == 0, "%s", springs.error.text);
+    record_fine(&springs, &setup.model);
     for (int i = 0; i < 2 * KINDS; i++) {
-        struct record record = {.threads = 1 + (unsigned)i % 2};
+        UNIT_OWNED(record_free) struct record record = {.threads = 1 + (unsigned)i % 2};
         setup.model.preconditioner = kinds[i / 2];
         setup.model.format = i % 2 ? SOLVE_HALF_FLOAT : SOLVE_HALF;
-        record_run(&record, &setup.model);
-        ck_assert_msg(record.code == 0, "%s", record.error.text);
+        record_fine(&record, &setup.model);
         ck_assert_double_le(farthest(&springs, &record), 1e-6);
         ck_assert_double_le(record.report.momentum_lost, 1e-9);
-        record_free(&record);
     }
-    record_free(&springs);
-    setup_free(&setup);
 }
-END_TEST
 
 static uint64_t iterations_of(struct setup *setup, enum model_guess guess, double h,
                               struct record *record)
@@ -138,18 +120,16 @@ static uint64_t iterations_of(struct setup *setup, enum model_guess guess, doubl
     setup->model.guess = guess;
     setup->model.h = h;
     setup->model.end = 10 * h;
-    record_run(record, &setup->model);
-    ck_assert_msg(record->code == 0, "%s", record->error.text);
+    record_fine(record, &setup->model);
     return record->report.cg_iterations_total;
 }
 
 /* A solve that begins where the last one ended moves alike in fewer iterations, held and driven
  * rows included; where steps are long it begins from nothing. */
-START_TEST(starts_move_alike)
+UNIT_LOOP(starts_move_alike, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
-    struct setup setup;
     struct record zero, previous, automatic;
-    setup_stiff(&setup, 14);
+    SETUP(setup_stiff(&setup, 14));
     setup.model.preconditioner = (enum model_preconditioner)_i;
     setup.model.tolerance = 1e-8;
     const uint64_t many = iterations_of(&setup, MODEL_GUESS_ZERO, 0.001, &zero);
@@ -166,43 +146,35 @@ START_TEST(starts_move_alike)
     ck_assert_uint_eq(automatic.report.state_hash, zero.report.state_hash);
     record_free(&zero);
     record_free(&automatic);
-    setup_free(&setup);
 }
-END_TEST
 
 /* By hand: flat and at rest all have b = h m g, so the residual is h g all over before the first
  * iteration and moves all by h h g, while neighbours along rows and columns are 0.25 m apart; a
  * vertex that is held has no part in it. */
-START_TEST(normalised_by_hand)
+UNIT_TEST(normalised_by_hand)
 {
     const double first = 0.001 * 0.001 * 9.81 / 0.25;
     for (int i = 0; i < 4; i++) {
-        struct setup setup;
-        struct record record = {0};
-        setup_sheet(&setup, 5);
+        UNIT_OWNED(record_free) struct record record = {0};
+        SETUP(setup_sheet(&setup, 5));
         setup.model.end = setup.model.h;
         setup.model.stop = MODEL_STOP_NORMALISED;
         setup.model.tolerance = first * (i % 2 ? 1 + 1e-12 : 1 - 1e-12);
         setup_pin(&setup, i < 2 ? 1 : 3, (const uint32_t[]){0, 7, 12});
-        record_run(&record, &setup.model);
-        ck_assert_msg(record.code == 0, "%s", record.error.text);
+        record_fine(&record, &setup.model);
         if (i % 2)
             ck_assert_uint_eq(record.report.cg_iterations_total, 0);
         else
             ck_assert_uint_gt(record.report.cg_iterations_total, 0);
-        record_free(&record);
-        setup_free(&setup);
     }
 }
-END_TEST
 
 /* A stiff sheet in units of mass, time and length that are so many times smaller. */
 static void run_in_units(double mass, double time, double length, double tolerance,
                          struct record *record)
 {
-    struct setup setup;
     struct cloth_error error = {0};
-    setup_stiff(&setup, 12);
+    SETUP(setup_stiff(&setup, 12));
     mesh_free(&setup.cloth.mesh);
     ck_assert_int_eq(mesh_grid(&setup.cloth.mesh, length, length, 12, 12, MESH_SAME, &error), 0);
     const double force = mass * length / (time * time);
@@ -220,101 +192,36 @@ static void run_in_units(double mass, double time, double length, double toleran
     setup.model.stop = MODEL_STOP_NORMALISED;
     setup.model.tolerance = tolerance;
     setup.model.preconditioner = MODEL_IC0_COARSE;
-    record_run(record, &setup.model);
-    ck_assert_msg(record->code == 0, "%s", record->error.text);
-    setup_free(&setup);
+    record_fine(record, &setup.model);
 }
 
 /* By powers of two, of masses by powers of four, since matrices hold roots, every number is the
  * same but for its exponent. */
-START_TEST(normalised_in_any_units)
+UNIT_TEST(normalised_in_any_units)
 {
     static const double units[][3] = {{16, 1, 1}, {1, 4, 1}, {1, 1, 2}, {0.25, 8, 0.5}};
-    struct record record = {0}, closer = {0};
+    UNIT_OWNED(record_free) struct record record = {0}, closer = {0};
     run_in_units(1, 1, 1, 1e-6, &record);
     run_in_units(1, 1, 1, 1e-7, &closer);
     ck_assert_uint_gt(closer.report.cg_iterations_total, record.report.cg_iterations_total);
     for (int i = 0; i < 4; i++) {
-        struct record other = {0};
+        UNIT_OWNED(record_free) struct record other = {0};
         run_in_units(units[i][0], units[i][1], units[i][2], 1e-6, &other);
         ck_assert_uint_eq(other.report.cg_iterations_total, record.report.cg_iterations_total);
         for (size_t k = 0; k < 3 * record.frames * record.vertices; k++)
             ck_assert_double_eq(other.position[k], units[i][2] * record.position[k]);
-        record_free(&other);
     }
-    record_free(&record);
-    record_free(&closer);
-}
-END_TEST
-
-START_TEST(one_block)
-{
-    struct setup setup;
-    int rank, ranks;
-    record_mpi(&rank, &ranks);
-    if (ranks > 1) /* more than there are blocks */
-        return;
-    setup_sheet(&setup, 10);
-    setup.model.grain = 1000;
-    check(&setup);
-}
-END_TEST
-
-/* A sheet in blocks of four vertices, the first of which are held. */
-static void check_held(uint32_t side, uint32_t n_held)
-{
-    struct setup setup;
-    uint32_t held[40];
-    for (uint32_t i = 0; i < n_held; i++)
-        held[i] = i;
-    setup_sheet(&setup, side);
-    setup.model.grain = 4;
-    setup_pin(&setup, n_held, held);
-    check(&setup);
 }
 
-/* Some blocks have no vertex that is free. */
-START_TEST(held_blocks)
-{
-    check_held(10, 40);
-}
-END_TEST
-
-/* Nothing is free at all. */
-START_TEST(all_held)
-{
-    check_held(4, 16);
-}
-END_TEST
-
-START_TEST(a_chain)
+UNIT_TEST(a_chain)
 {
     struct setup setup;
     setup_weight(&setup);
     check(&setup);
 }
-END_TEST
-
-/* Two sheets that nothing joins, each cut into blocks. */
-START_TEST(several_pieces)
-{
-    struct setup setup;
-    struct model_cloth cloths[2];
-    struct cloth_error error = {0};
-    setup_sheet(&setup, 8);
-    cloths[0] = cloths[1] = setup.cloth;
-    ck_assert_int_eq(mesh_grid(&cloths[1].mesh, 1, 2, 6, 9, MESH_SAME, &error), 0);
-    cloths[1].velocity[0] = 3;
-    setup.model.cloths = cloths;
-    setup.model.n_cloths = 2;
-    uint64_t iterations[KINDS];
-    compare(&setup, iterations);
-    mesh_free(&cloths[1].mesh);
-}
-END_TEST
 
 /* A sheet that is thrown into itself: springs in compression everywhere, stiff ones. */
-START_TEST(compressed_springs)
+UNIT_TEST(compressed_springs)
 {
     struct setup setup;
     setup_sheet(&setup, 12);
@@ -325,14 +232,13 @@ START_TEST(compressed_springs)
     setup_load(&setup, 140, 0, -1, -20);
     check(&setup);
 }
-END_TEST
 
 /* Whether the largest error of the run was told and kept. */
-START_TEST(stop_in_the_mass_norm)
+UNIT_TEST(stop_in_the_mass_norm)
 {
     struct setup setup;
     for (int i = -1; i < KINDS; i++) {
-        struct record loose = {0}, tight = {0};
+        UNIT_OWNED(record_free) struct record loose = {0}, tight = {0};
         setup_stiff(&setup, 20);
         setup.model.preconditioner = i < 0 ? MODEL_PLAIN : kinds[i];
         setup.model.stop = MODEL_STOP_MASS_NORM;
@@ -346,18 +252,13 @@ START_TEST(stop_in_the_mass_norm)
         ck_assert_double_gt(loose.report.mass_norm_error, 1e-9);
         ck_assert_double_le(tight.report.mass_norm_error, 1e-9);
         ck_assert_uint_lt(loose.report.cg_iterations_total, tight.report.cg_iterations_total);
-        record_free(&loose);
-        record_free(&tight);
         setup_free(&setup);
     }
 }
-END_TEST
 
-START_TEST(too_few_iterations)
+UNIT_TEST(too_few_iterations)
 {
-    struct setup setup;
-    struct record record = {0};
-    setup_stiff(&setup, 20);
+    TRIAL(setup_stiff(&setup, 20));
     setup.model.preconditioner = MODEL_IC0_COARSE;
     setup.model.stop = MODEL_STOP_MASS_NORM;
     setup.model.tolerance = 1e-9;
@@ -365,47 +266,4 @@ START_TEST(too_few_iterations)
     record_run(&record, &setup.model);
     ck_assert_int_eq(record.code, CLOTH_E_RUN);
     ck_assert_ptr_nonnull(strstr(record.error.text, "step 1: conjugate gradients stopped at"));
-    record_free(&record);
-    setup_free(&setup);
-}
-END_TEST
-
-/* Exactly so many iterations, under a preconditioner too. */
-START_TEST(count)
-{
-    struct setup setup;
-    struct record record = {0};
-    setup_sheet(&setup, 10);
-    setup.model.preconditioner = MODEL_IC0_COARSE;
-    setup.model.stop = MODEL_STOP_COUNT;
-    setup.model.max_iterations = 7;
-    record_run(&record, &setup.model);
-    ck_assert_msg(record.code == 0, "%s", record.error.text);
-    ck_assert_uint_eq(record.report.cg_iterations_total, 70);
-    record_free(&record);
-    setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("solvers");
-    TCase *cases = tcase_create("solvers");
-    tcase_add_test(cases, a_sheet_moves_alike);
-    tcase_add_loop_test(cases, patches_move_alike, 0, 2);
-    tcase_add_test(cases, formats_move_alike);
-    tcase_add_loop_test(cases, starts_move_alike, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
-    tcase_add_test(cases, normalised_by_hand);
-    tcase_add_test(cases, normalised_in_any_units);
-    tcase_add_test(cases, one_block);
-    tcase_add_test(cases, held_blocks);
-    tcase_add_test(cases, all_held);
-    tcase_add_test(cases, a_chain);
-    tcase_add_test(cases, several_pieces);
-    tcase_add_test(cases, compressed_springs);
-    tcase_add_test(cases, stop_in_the_mass_norm);
-    tcase_add_test(cases, too_few_iterations);
-    tcase_add_test(cases, count);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

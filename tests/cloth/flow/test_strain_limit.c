@@ -31,13 +31,11 @@ static double elongation(double tension)
 }
 
 /* _i: linear steps, Newton steps, Newton steps of BDF2. */
-START_TEST(a_chain_hangs_as_far_as_both_springs_let_it)
+UNIT_LOOP(a_chain_hangs_as_far_as_both_springs_let_it, 0, 3)
 {
-    struct setup setup;
-    struct record record = {0};
     double worst = 0;
     int beyond = 0;
-    chain(&setup);
+    TRIAL(chain(&setup));
     setup.material.damping_mass = 40;
     setup.model.h = 0.01;
     setup.model.end = 4;
@@ -57,17 +55,13 @@ START_TEST(a_chain_hangs_as_far_as_both_springs_let_it)
     ck_assert_int_gt(beyond, 2);
     ck_assert_int_lt(beyond, LINKS - 1);
     ck_assert_double_le(worst, 1e-9);
-    record_free(&record);
-    setup_free(&setup);
 }
-END_TEST
 
 /* What is not reached changes no bit. */
-START_TEST(below_its_limit_an_edge_is_free)
+UNIT_TEST(below_its_limit_an_edge_is_free)
 {
-    struct setup setup;
     struct record record[2] = {{0}};
-    setup_weight(&setup);
+    SETUP(setup_weight(&setup));
     setup.model.format = SOLVE_HALF;
     setup.model.end = 0.05;
     for (int i = 0; i < 2; i++) {
@@ -79,16 +73,12 @@ START_TEST(below_its_limit_an_edge_is_free)
     ck_assert_uint_eq(record[0].report.state_hash, record[1].report.state_hash);
     for (int i = 0; i < 2; i++)
         record_free(record + i);
-    setup_free(&setup);
 }
-END_TEST
 
-START_TEST(a_free_chain_keeps_its_momentum)
+UNIT_TEST(a_free_chain_keeps_its_momentum)
 {
-    struct setup setup;
-    struct record record = {0};
     double before = 0, after = 0, longest = 0;
-    chain(&setup);
+    TRIAL(chain(&setup));
     setup.cloth.n_pins = 0;
     setup.model.gravity[1] = 0;
     setup.model.end = 0.2;
@@ -110,38 +100,28 @@ START_TEST(a_free_chain_keeps_its_momentum)
     ck_assert_double_le(fabs(after - before) / (LINKS + 1), 1e-14);
     ck_assert_double_le(record.report.momentum_lost, 1e-14);
     free(setup.cloth.start);
-    record_free(&record);
-    setup_free(&setup);
 }
-END_TEST
 
 /* Explicit steps are told of limits as if they were reached: K + LIMIT of one link, one end of
  * which is held. */
-START_TEST(the_longest_step_counts_limits)
+UNIT_TEST(the_longest_step_counts_limits)
 {
-    struct setup setup;
-    struct flow_source source;
+    UNIT_OWNED(flow_source_free) struct flow_source source;
     struct flow_limit limit;
-    struct cloth_error error = {0};
-    setup_weight(&setup);
+    SETUP(setup_weight(&setup));
     setup.model.format = SOLVE_HALF;
     setup.material.limit_strain = 0.1;
     setup.material.limit_stiffness = LIMIT;
-    ck_assert_msg(!flow_source_make(&source, &setup.model, 1, &error), "%s", error.text);
-    ck_assert_int_eq(flow_limit_find(&source, &limit, &error), 0);
+    UNIT_FINE(flow_source_make(&source, &setup.model, 1, &error));
+    UNIT_FINE(flow_limit_find(&source, &limit, &error));
     ck_assert_double_eq_tol(limit.omega, sqrt((40 + LIMIT) / 0.1), 1e-9);
-    flow_source_free(&source);
-    setup_free(&setup);
 }
-END_TEST
 
 /* Thrown down at 5 m/s, the weight comes in one step of 20 ms far over a limit that the matrix of
  * this step has not: 100 times its energy. The step is made again until the matrix has it. */
-START_TEST(steps_far_over_a_limit_are_halved)
+UNIT_TEST(steps_far_over_a_limit_are_halved)
 {
-    struct setup setup;
-    struct record record = {0};
-    setup_weight(&setup);
+    TRIAL(setup_weight(&setup));
     setup.model.format = SOLVE_HALF;
     setup.model.h = 0.02;
     setup.model.end = 0.2;
@@ -162,10 +142,7 @@ START_TEST(steps_far_over_a_limit_are_halved)
     ck_assert_uint_gt(record.report.halved_by[FLOW_CAUSE_ENERGY], 0);
     ck_assert_double_gt(record.report.stretch_highest, 1.05);
     ck_assert_double_le(record.report.stretch_highest, 1 + 1.01 * max);
-    record_free(&record);
-    setup_free(&setup);
 }
-END_TEST
 
 static void count(void *to, const struct element *element)
 {
@@ -174,36 +151,17 @@ static void count(void *to, const struct element *element)
 }
 
 /* Those along its threads: diagonals of cells are no edges of the cloth. */
-START_TEST(edges_of_a_grid)
+UNIT_TEST(edges_of_a_grid)
 {
     for (int triangles = 0; triangles < 2; triangles++) {
-        struct setup setup;
-        struct element_cloths cloths;
-        struct cloth_error error = {0};
+        UNIT_OWNED(element_cloths_free) struct element_cloths cloths;
         uint32_t n = 0;
-        setup_sheet(&setup, 5);
+        SETUP(setup_sheet(&setup, 5));
         setup.model.format = SOLVE_HALF;
         setup.material.model = triangles ? MODEL_TRIANGLES : MODEL_SPRINGS;
         setup.material.limit_stiffness = 1;
-        ck_assert_msg(!element_cloths_make(&cloths, &setup.model, &error), "%s", error.text);
+        UNIT_FINE(element_cloths_make(&cloths, &setup.model, &error));
         element_each(&cloths, count, &n);
         ck_assert_uint_eq(n, 2 * 5 * 4 + (triangles ? 4 * 4 : 0));
-        element_cloths_free(&cloths);
-        setup_free(&setup);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("strain_limit");
-    TCase *cases = tcase_create("limits");
-    tcase_add_loop_test(cases, a_chain_hangs_as_far_as_both_springs_let_it, 0, 3);
-    tcase_add_test(cases, below_its_limit_an_edge_is_free);
-    tcase_add_test(cases, a_free_chain_keeps_its_momentum);
-    tcase_add_test(cases, the_longest_step_counts_limits);
-    tcase_add_test(cases, steps_far_over_a_limit_are_halved);
-    tcase_add_test(cases, edges_of_a_grid);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -1,5 +1,5 @@
-/* Ties of up to four weighted corners in up to four blocks: records and tables against the list
- * that they are made of, and what blocks make of them against a dense matrix. */
+/* Ties of up to four weighted corners in up to four blocks: what blocks make of them, through their
+ * tables, against the dense matrix that the list of ties is. */
 #include "cloth/flow/state/bodies.h"
 #include "cloth/flow/state/kernels.h"
 #include "cloth/solve/coarse.h"
@@ -7,121 +7,7 @@
 #include "tests/cloth/flow/models.h"
 #include "tests/cloth/flow/random_ties.h"
 
-/* ---- Tables ---- */
-
-static bool has_corner(uint32_t i, uint32_t block)
-{
-    const struct flow_tie_corners *tie = corners(i);
-    bool has = false;
-    for (uint32_t k = 0; k < tie->n; k++)
-        has = has || tie->block[k] == block;
-    return has && is_listed(i);
-}
-
-/* Of tie i of a table: the corners are those of the list. Returns whether all are in the block. */
-static bool check_corners(const struct flow_ties *t, uint32_t b, uint32_t i)
-{
-    const struct flow_tie_corners *tie = corners(t->of[i]);
-    bool inner = true;
-    ck_assert_uint_eq(t->held[i], tie->held);
-    for (uint32_t k = 0; k < SOLVE_TIE_CORNERS; k++) {
-        if (k >= tie->n) {
-            ck_assert(t->weight[i][k] == 0 && t->corner[i][k] == 0);
-            continue;
-        }
-        uint32_t block = b, row = t->corner[i][k];
-        if (row >= t->n_rows) {
-            const uint32_t ghost = row - t->n_rows;
-            ck_assert_uint_lt(ghost, t->n_ghosts);
-            block = t->other[t->ghost_other[ghost]];
-            row = t->ghost_row[ghost];
-            inner = false;
-        }
-        ck_assert(block == tie->block[k] && row == tie->row[k]);
-        ck_assert(t->weight[i][k] == tie->weight[k]);
-    }
-    return inner;
-}
-
-static uint32_t lowest_other(uint32_t i, uint32_t b)
-{
-    const struct flow_tie_corners *tie = corners(i);
-    uint32_t lowest = UINT32_MAX;
-    for (uint32_t k = 0; k < tie->n; k++)
-        if (tie->block[k] != b && tie->block[k] < lowest)
-            lowest = tie->block[k];
-    return lowest;
-}
-
-/* All ties of the block, each once, in their order. */
-static void check_ties(const struct flow_ties *t, uint32_t b)
-{
-    uint32_t n = 0;
-    for (uint32_t i = 0; i < 3 + TIES; i++)
-        n += has_corner(i, b);
-    ck_assert_uint_eq(t->n, n);
-    ck_assert_uint_eq(record[b].n_ties, n);
-    for (uint32_t i = 0; i < t->n; i++) {
-        ck_assert(has_corner(t->of[i], b));
-        ck_assert(check_corners(t, b, i) == (i < t->n_inner));
-        if (i == t->n_inner || i == 0)
-            continue;
-        const uint32_t before = lowest_other(t->of[i - 1], b), now = lowest_other(t->of[i], b);
-        ck_assert(i < t->n_inner || before <= now);
-        ck_assert((before == now) ? t->of[i - 1] < t->of[i] : true);
-    }
-}
-
-/* Ghosts are what their block shows, where it shows them. */
-static void check_ghosts(const struct flow_ties *t, uint32_t b)
-{
-    ck_assert_uint_eq(t->n_ghosts, record[b].n_ghosts);
-    ck_assert_uint_eq(t->n_shown, record[b].n_shown);
-    for (uint32_t k = 0; k < t->n_others; k++) {
-        const struct flow_ties there = flow_ties_open(table[t->other[k]]);
-        uint32_t l = 0;
-        while (there.other[l] != b)
-            l++;
-        ck_assert_uint_eq(t->place[k], there.shown_start[l]);
-        ck_assert_uint_eq(t->start[k + 1] - t->start[k],
-                          there.shown_start[l + 1] - there.shown_start[l]);
-        for (uint32_t i = t->start[k]; i < t->start[k + 1]; i++) {
-            ck_assert_uint_eq(t->ghost_other[i], k);
-            ck_assert_uint_eq(t->ghost_row[i], there.shown[t->place[k] + i - t->start[k]]);
-            ck_assert(i == t->start[k] || t->ghost_row[i - 1] < t->ghost_row[i]);
-        }
-    }
-}
-
-static void check_halo(const struct flow_ties *t)
-{
-    bool has[ROWS] = {true};
-    uint32_t n = 0;
-    for (uint32_t i = 0; i < t->n; i++)
-        for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
-            if (t->weight[i][k] != 0 && t->corner[i][k] < t->n_rows)
-                has[t->corner[i][k]] = true;
-    for (uint32_t row = 0; row < t->n_rows && t->n; row++)
-        if (has[row])
-            ck_assert_uint_eq(t->halo[n++], row);
-    ck_assert_uint_eq(t->n_halo, n);
-}
-
-START_TEST(tables_have_the_ties_of_their_blocks)
-{
-    make_all((unsigned)_i + 1);
-    for (uint32_t b = 0; b < BLOCKS; b++) {
-        const struct flow_ties t = flow_ties_open(table[b]);
-        check_ties(&t, b);
-        check_ghosts(&t, b);
-        check_halo(&t);
-    }
-    ck_assert_uint_eq(record[BLOCKS - 1].n_ties, 0);
-    free_all();
-}
-END_TEST
-
-START_TEST(room_that_does_not_do)
+UNIT_TEST(room_that_does_not_do)
 {
     uint32_t others[BLOCKS][2];
     make_all(1);
@@ -139,10 +25,9 @@ START_TEST(room_that_does_not_do)
     }
     free_all();
 }
-END_TEST
 
 /* Blocks may be among the others of each other though they share no tie. */
-START_TEST(others_that_show_nothing)
+UNIT_TEST(others_that_show_nothing)
 {
     uint32_t others[BLOCKS][2];
     make_all(2);
@@ -154,11 +39,9 @@ START_TEST(others_that_show_nothing)
     const uint32_t last = flow_ties_others(memory) - 1;
     ck_assert_uint_eq(t.other[last], BLOCKS - 1);
     ck_assert_uint_eq(t.start[last], t.start[last + 1]);
-    check_ties(&t, 1);
     free(memory);
     free_all();
 }
-END_TEST
 
 /* ---- What a block makes of them ---- */
 
@@ -200,7 +83,7 @@ static double dense_times(uint32_t b, uint32_t row, int c)
     return y;
 }
 
-START_TEST(product)
+UNIT_LOOP(product, 0, 6)
 {
     static const phys_vec none[2 * ROWS]; /* turns, too */
     repeats = _i > 2;
@@ -220,9 +103,8 @@ START_TEST(product)
     }
     free_all();
 }
-END_TEST
 
-START_TEST(local_preconditioners_have_the_diagonal)
+UNIT_LOOP(local_preconditioners_have_the_diagonal, 0, 4)
 {
     static const phys_vec none[2 * ROWS];
     static _Alignas(32) double factor[8 * ROWS];
@@ -244,32 +126,9 @@ START_TEST(local_preconditioners_have_the_diagonal)
     }
     free_all();
 }
-END_TEST
-
-START_TEST(a_solve_sees_what_adds_something)
-{
-    make_all(1);
-    for (uint32_t b = 0; b < BLOCKS; b++) {
-        struct seen s;
-        size_t n = 0;
-        see(b, SOLVE_SPRINGS, &s);
-        for (uint32_t i = 0; i < s.ties.n; i++) {
-            if (s.ties.of[i] % 3 == 0)
-                continue;
-            ck_assert_uint_lt(n, s.solved.n);
-            ck_assert_mem_eq(s.solved.value + n, values + s.ties.of[i], sizeof *values);
-            ck_assert_mem_eq(s.solved.weight[n], s.ties.weight[i], sizeof s.ties.weight[i]);
-            ck_assert_mem_eq(s.solved.corner[n], s.ties.corner[i], sizeof s.ties.corner[i]);
-            n++;
-        }
-        ck_assert_uint_eq(s.solved.n, n);
-    }
-    free_all();
-}
-END_TEST
 
 /* P' N P of rows with weights, some without axes. */
-START_TEST(coarse_block)
+UNIT_TEST(coarse_block)
 {
     enum { N = 4 };
     srand(5);
@@ -296,21 +155,4 @@ START_TEST(coarse_block)
             ck_assert_double_eq_tol(block[at], sum, 1e-13);
         }
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("ties");
-    TCase *tables = tcase_create("tables"), *blocks = tcase_create("blocks");
-    tcase_add_loop_test(tables, tables_have_the_ties_of_their_blocks, 0, 8);
-    tcase_add_test(tables, room_that_does_not_do);
-    tcase_add_test(tables, others_that_show_nothing);
-    tcase_add_loop_test(blocks, product, 0, 6);
-    tcase_add_test(blocks, a_solve_sees_what_adds_something);
-    tcase_add_loop_test(blocks, local_preconditioners_have_the_diagonal, 0, 4);
-    tcase_add_test(blocks, coarse_block);
-    suite_add_tcase(suite, tables);
-    suite_add_tcase(suite, blocks);
-    return unit_run(suite);
 }

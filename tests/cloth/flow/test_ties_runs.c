@@ -84,7 +84,7 @@ static const enum model_preconditioner preconditioners[] = {MODEL_PLAIN, MODEL_J
                                                             MODEL_COARSE, MODEL_IC0_COARSE};
 
 /* A joint whose ends are two corners each, at one place, is a joint. */
-START_TEST(corners_at_one_place)
+UNIT_LOOP(corners_at_one_place, 0, sizeof preconditioners / sizeof *preconditioners)
 {
     static double once[SIDE * SIDE][3], twice[SIDE * SIDE][3];
     struct flow_tie_corners tie = {0};
@@ -101,10 +101,9 @@ START_TEST(corners_at_one_place)
     session_end(&s);
     ck_assert_double_le(apart(once, twice), 1e-10);
 }
-END_TEST
 
 /* Between points of four blocks: as where all are one block. */
-START_TEST(corners_in_four_blocks)
+UNIT_LOOP(corners_in_four_blocks, 0, sizeof preconditioners / sizeof *preconditioners)
 {
     static double many[SIDE * SIDE][3], one[SIDE * SIDE][3], free[SIDE * SIDE][3];
     static const uint32_t grain[] = {4, SIDE * SIDE + 1};
@@ -131,14 +130,12 @@ START_TEST(corners_in_four_blocks)
     session_end(&s);
     ck_assert_double_ge(apart(one, free), 1e-4);
 }
-END_TEST
 
 /* Momentum of cloth that touches nothing is exact to rounding, however the solve stops. */
-START_TEST(free_until_it_touches)
+UNIT_TEST(free_until_it_touches)
 {
-    struct setup setup;
-    struct record made = {0};
-    setup_sheet(&setup, SIDE);
+    UNIT_OWNED(record_free) struct record made = {0};
+    SETUP(setup_sheet(&setup, SIDE));
     setup_load(&setup, 3, 0.1, 0.2, -0.3);
     setup.model.contact.mode = MODEL_CONTACT_CERTIFIED;
     setup.model.contact.self = true;
@@ -148,10 +145,7 @@ START_TEST(free_until_it_touches)
     record_run(&made, &setup.model);
     ck_assert_msg(!made.code, "%s", made.error.text);
     ck_assert_double_le(made.report.momentum_lost, 1e-15);
-    record_free(&made);
-    setup_free(&setup);
 }
-END_TEST
 
 /* ---- Rooms ---- */
 
@@ -203,7 +197,7 @@ static void check_links(const struct session *s, uint32_t b, uint32_t n, const u
     ck_assert(!n || !memcmp(is + 1, links, n * sizeof *links));
 }
 
-START_TEST(rooms_grow_and_shrink)
+UNIT_TEST(rooms_grow_and_shrink)
 {
     struct session s;
     tied_sheet(&s, MODEL_IC0_COARSE, 9);
@@ -223,9 +217,8 @@ START_TEST(rooms_grow_and_shrink)
     check_room(&s, 0, 0, 0);
     session_end(&s);
 }
-END_TEST
 
-START_TEST(others_stay_for_a_while)
+UNIT_TEST(others_stay_for_a_while)
 {
     struct session s;
     tied_sheet(&s, MODEL_IC0, 9);
@@ -243,20 +236,4 @@ START_TEST(others_stay_for_a_while)
     check_links(&s, 1, 0, NULL);
     check_links(&s, 3, 1, (const uint32_t[][2]){{2, 0}});
     session_end(&s);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("ties_runs");
-    TCase *runs = tcase_create("runs"), *rooms = tcase_create("rooms");
-    const int kinds = sizeof preconditioners / sizeof *preconditioners;
-    tcase_add_loop_test(runs, corners_at_one_place, 0, kinds);
-    tcase_add_loop_test(runs, corners_in_four_blocks, 0, kinds);
-    tcase_add_test(runs, free_until_it_touches);
-    tcase_add_test(rooms, rooms_grow_and_shrink);
-    tcase_add_test(rooms, others_stay_for_a_while);
-    suite_add_tcase(suite, runs);
-    suite_add_tcase(suite, rooms);
-    return unit_run(suite);
 }

@@ -17,48 +17,38 @@ static double parabola(double chord, double height)
     return chord * 0.5 * (sqrt(1 + m * m) + asinh(m) / m);
 }
 
-START_TEST(straight_edges)
+UNIT_TEST(straight_edges)
 {
-    struct garment_pattern pattern;
-    read_pattern(&pattern, "straight");
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("straight");
     expect(garment_panel_area(&pattern.panel[0]), 0.12, 1e-14);
     expect(garment_edge_length(&pattern.panel[0], 0), 0.4, 1e-14);
     expect(garment_edge_length(&pattern.panel[0], 3), 0.3, 1e-14);
-    garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* Under a parabola are two thirds of its height, which is half that of the control point. */
-START_TEST(quadratic_edges)
+UNIT_TEST(quadratic_edges)
 {
-    struct garment_pattern pattern;
-    read_pattern(&pattern, "quadratic");
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("quadratic");
     expect(garment_panel_area(&pattern.panel[0]), 0.24 + 0.36 * (0.2 - 0.1) / 3, 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 0), parabola(0.6, 0.2), 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 2), parabola(0.6, 0.1), 1e-13);
-    garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* A cubic curve whose controls are two thirds on the way to that of a quadratic one is that one:
  * the controls are at 8 cm and 4 cm, those of the parabolas at 12 and 6. */
-START_TEST(cubic_edges)
+UNIT_TEST(cubic_edges)
 {
-    struct garment_pattern pattern;
-    read_pattern(&pattern, "cubic");
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("cubic");
     expect(garment_panel_area(&pattern.panel[0]), 0.24 + 0.36 * (0.2 - 0.1) / 3, 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 0), parabola(0.6, 0.2), 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 2), parabola(0.6, 0.1), 1e-13);
-    garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* The radius of the disc's other half is a rounded one, less than half its chord: a half circle,
  * too. */
-START_TEST(circular_edges)
+UNIT_TEST(circular_edges)
 {
-    struct garment_pattern pattern;
-    read_pattern(&pattern, "circle");
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("circle");
     expect(garment_panel_area(&pattern.panel[0]), PI * 0.04, 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 0), PI * 0.2, 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 1), PI * 0.2, 1e-13);
@@ -67,18 +57,15 @@ START_TEST(circular_edges)
     expect(garment_panel_area(&pattern.panel[2]), 0.04 - 0.01 * (PI / 2 - 1), 1e-13);
     expect(garment_edge_length(&pattern.panel[2], 3), sqrt(0.02) * PI / 2, 1e-13);
     ck_assert_str_eq(pattern.panel[1].name, "three_quarters");
-    garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* Places at equal parts of the length: of an arc the chords between them are equal, and all are as
  * far from the centre; of a parabola the length up to each is its part of the whole. */
-START_TEST(equal_parts)
+UNIT_TEST(equal_parts)
 {
-    struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("circle");
     struct curve curve;
     double last[2] = {-0.2, 0}, now[2];
-    read_pattern(&pattern, "circle");
     curve_make(&curve, &pattern.panel[0], 0);
     for (int k = 1; k <= 7; k++) {
         curve_at_length(&curve, k / 7.0, now);
@@ -87,26 +74,11 @@ START_TEST(equal_parts)
         memcpy(last, now, sizeof last);
     }
     garment_pattern_free(&pattern);
-    read_pattern(&pattern, "quadratic");
+    pattern = read_pattern("quadratic");
     curve_make(&curve, &pattern.panel[0], 0);
     for (int k = 1; k < 10; k++) { /* x = 0.6 t; the length from the middle on is odd in 1 - 2 t */
         curve_at_length(&curve, k / 10.0, now);
         const double u = 0.4 * (1 - 2 * now[0] / 0.6), whole = 0.4 * sqrt(1.16) + asinh(0.4);
         expect(0.5 - 0.5 * (u * sqrt(1 + u * u) + asinh(u)) / whole, k / 10.0, 1e-12);
     }
-    garment_pattern_free(&pattern);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("curves");
-    TCase *forms = tcase_create("closed forms");
-    tcase_add_test(forms, straight_edges);
-    tcase_add_test(forms, quadratic_edges);
-    tcase_add_test(forms, cubic_edges);
-    tcase_add_test(forms, circular_edges);
-    tcase_add_test(forms, equal_parts);
-    suite_add_tcase(suite, forms);
-    return unit_run(suite);
 }

@@ -40,9 +40,9 @@ static void check(const struct delaunay *plane)
 }
 
 /* All of a square grid are on common circles and lines. */
-START_TEST(grids)
+UNIT_TEST(grids)
 {
-    struct delaunay plane;
+    UNIT_OWNED(delaunay_free) struct delaunay plane;
     make(&plane, 400);
     for (int i = 0; i < 400; i++) {
         const double place[2] = {(i % 20) / 19.0, (i / 20) / 19.0};
@@ -51,15 +51,13 @@ START_TEST(grids)
     check(&plane);
     ck_assert_uint_eq(plane.n_triangles, 2 + 2 * 400);
     ck_assert_uint_eq(delaunay_insert(&plane, LOW, plane.last), DELAUNAY_NONE);
-    delaunay_free(&plane);
 }
-END_TEST
 
 /* A comb: its edges cross many that Delaunay alone would have. */
-START_TEST(fixed_edges)
+UNIT_TEST(fixed_edges)
 {
     enum { TEETH = 40, N = 2 * TEETH + 2 };
-    struct delaunay plane;
+    UNIT_OWNED(delaunay_free) struct delaunay plane;
     make(&plane, N);
     for (int i = 0; i < 2 * TEETH; i++) {
         const double place[2] = {i / (2.0 * TEETH), i % 2 ? 0.9 : 0.1};
@@ -75,22 +73,18 @@ START_TEST(fixed_edges)
     check(&plane);
     ck_assert_uint_eq(plane.n, N);
     ck_assert_uint_eq(plane.n_triangles, N - 2); /* of any polygon without inner vertices */
-    delaunay_free(&plane);
 }
-END_TEST
 
-START_TEST(crossing_edges_are_refused)
+UNIT_TEST(crossing_edges_are_refused)
 {
     static const double place[4][2] = {{0.1, 0.1}, {0.9, 0.9}, {0.1, 0.9}, {0.9, 0.1}};
-    struct delaunay plane;
+    UNIT_OWNED(delaunay_free) struct delaunay plane;
     make(&plane, 4);
     for (int i = 0; i < 4; i++)
         ck_assert_uint_ne(delaunay_insert(&plane, place[i], plane.last), DELAUNAY_NONE);
     ck_assert(delaunay_fix(&plane, DELAUNAY_BOX, DELAUNAY_BOX + 1));
     ck_assert(!delaunay_fix(&plane, DELAUNAY_BOX + 2, DELAUNAY_BOX + 3));
-    delaunay_free(&plane);
 }
-END_TEST
 
 /* A pseudo-random number from 0 to 1. */
 static double draw(uint64_t *state)
@@ -106,9 +100,9 @@ static bool same(const struct delaunay_triangle *a, const struct delaunay_triang
 }
 
 /* What is undone is as it was, whatever was done. */
-START_TEST(changes_are_undone)
+UNIT_TEST(changes_are_undone)
 {
-    struct delaunay plane;
+    UNIT_OWNED(delaunay_free) struct delaunay plane;
     uint64_t state = 7;
     make(&plane, 300);
     for (int i = 0; i < 200; i++)
@@ -137,18 +131,4 @@ START_TEST(changes_are_undone)
     check(&plane);
     free(before);
     free(place);
-    delaunay_free(&plane);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("Delaunay");
-    TCase *all = tcase_create("all");
-    tcase_add_test(all, grids);
-    tcase_add_test(all, fixed_edges);
-    tcase_add_test(all, crossing_edges_are_refused);
-    tcase_add_test(all, changes_are_undone);
-    suite_add_tcase(suite, all);
-    return unit_run(suite);
 }

@@ -48,14 +48,13 @@ static struct girth_worst compare(const struct garment_pattern *pattern, uint32_
     struct garment garment;
     struct girth_seam seam[32];
     struct girth_worst worst;
-    struct cloth_error error = {0};
     make_garment(&garment, pattern, 0.03, 0);
     const struct girth_mesh mesh = {garment.n_triangles, (const double(*)[3])garment.position,
                                     (const uint32_t(*)[3])garment.triangle};
     for (uint32_t s = 0; s < n_seams; s++)
         seam[s] = (struct girth_seam){garment.seam[s].n_pairs,
                                       (const uint32_t(*)[2])garment.seam[s].pair};
-    ck_assert_int_eq(girth_compare(&worst, &mesh, n_seams, seam, body, &error), 0);
+    UNIT_FINE(girth_compare(&worst, &mesh, n_seams, seam, body, &error));
     garment_free(&garment);
     return worst;
 }
@@ -75,7 +74,7 @@ static void tube(struct garment_pattern *pattern, struct garment_panel panel[2],
     *pattern = (struct garment_pattern){2, 2, panel, stitch};
 }
 
-START_TEST(a_tube_around_a_prism)
+UNIT_TEST(a_tube_around_a_prism)
 {
     struct garment_pattern pattern;
     struct garment_panel panel[2];
@@ -94,10 +93,9 @@ START_TEST(a_tube_around_a_prism)
         ck_assert_int_eq(girth_too_small(&worst), radius > 0.162);
     }
 }
-END_TEST
 
 /* The hull around two prisms has straight ways between them. */
-START_TEST(a_tube_around_two_legs)
+UNIT_TEST(a_tube_around_two_legs)
 {
     struct garment_pattern pattern;
     struct garment_panel panel[2];
@@ -121,10 +119,9 @@ START_TEST(a_tube_around_two_legs)
     ck_assert(worst.found);
     ck_assert_double_eq_tol(worst.body, around(0.08) + 2 * 0.24, 1e-12);
 }
-END_TEST
 
 /* What is not surrounded, or only partly, is not compared; nor is a cut that does not close. */
-START_TEST(nothing_to_compare)
+UNIT_TEST(nothing_to_compare)
 {
     struct garment_pattern pattern;
     struct garment_panel panel[2];
@@ -145,22 +142,20 @@ START_TEST(nothing_to_compare)
     body.n_triangles = 0;
     ck_assert(!compare(&pattern, 2, &body).found);
 }
-END_TEST
 
 /* A skirt is narrowest at its waistband. */
-START_TEST(skirts_of_random_waists)
+UNIT_TEST(skirts_of_random_waists)
 {
     const struct garment_own *own = garment_own_find("skirt");
     const int waist = garment_own_measure(own, "waist");
     for (int i = 0; i < 20; i++) {
-        struct garment_pattern pattern;
-        struct cloth_error error = {0};
+        UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
         struct prism prism;
         double value[GARMENT_MEASURES];
         const double radius = 0.11 + 0.003 * (i * 7 % 20);
         garment_own_size(own, SIZE_M, value);
         value[waist] = 0.7 + 0.012 * (i * 11 % 20);
-        ck_assert_int_eq(garment_own_make(&pattern, own, value, &error), 0);
+        UNIT_FINE(garment_own_make(&pattern, own, value, &error));
         prism_make(&prism, radius, 0, 0);
         const struct girth_mesh body = body_of(&prism, 1);
         const struct girth_worst worst = compare(&pattern, pattern.n_stitches, &body);
@@ -168,19 +163,5 @@ START_TEST(skirts_of_random_waists)
         ck_assert_double_eq_tol(worst.garment, value[waist] + 0.02, 1e-12);
         ck_assert_double_eq_tol(worst.body, around(radius), 1e-12);
         ck_assert_int_eq(girth_too_small(&worst), around(radius) > 1.02 * (value[waist] + 0.02));
-        garment_pattern_free(&pattern);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("girths");
-    TCase *all = tcase_create("girths");
-    tcase_add_test(all, a_tube_around_a_prism);
-    tcase_add_test(all, a_tube_around_two_legs);
-    tcase_add_test(all, nothing_to_compare);
-    tcase_add_test(all, skirts_of_random_waists);
-    suite_add_tcase(suite, all);
-    return unit_run(suite);
 }

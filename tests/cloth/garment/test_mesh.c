@@ -113,11 +113,11 @@ static void check_piece(const struct garment *garment, const struct garment_patt
 
 /* "steep" gathers by 4, around a ring of stitches, and beside its partner: its triangles are not as
  * good. */
-START_TEST(panels_are_whole)
+UNIT_LOOP(panels_are_whole, 0, N_PATTERNS *N_EDGES)
 {
-    struct garment_pattern pattern;
-    struct garment garment;
-    read_pattern(&pattern, PATTERNS[_i / N_EDGES]);
+    UNIT_OWNED(garment_pattern_free)
+    struct garment_pattern pattern = read_pattern(PATTERNS[_i / N_EDGES]);
+    UNIT_OWNED(garment_free) struct garment garment;
     make_garment(&garment, &pattern, EDGES[_i % N_EDGES], 0);
     uint32_t n = 0, below;
     for (uint32_t p = 0; p < garment.n_pieces; p++) {
@@ -131,26 +131,20 @@ START_TEST(panels_are_whole)
            PATTERNS[_i / N_EDGES], EDGES[_i % N_EDGES], n, garment.n_triangles, least);
     ck_assert(least >= (pattern.n_stitches > 1 ? 20 : 28));
     ck_assert_uint_le(below, pattern.n_stitches > 1 ? 10 : 2);
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
-END_TEST
 
-START_TEST(as_many_as_wanted)
+UNIT_LOOP(as_many_as_wanted, 0, N_PATTERNS * 3)
 {
     static const uint32_t wanted[] = {500, 3000, 20000};
     static const double off[] = {0.05, 0.01, 0.01}; /* boundaries have whole divisions */
-    struct garment_pattern pattern;
-    struct garment garment;
+    UNIT_OWNED(garment_pattern_free)
+    struct garment_pattern pattern = read_pattern(PATTERNS[_i / 3]);
+    UNIT_OWNED(garment_free) struct garment garment;
     const uint32_t n = wanted[_i % 3];
-    read_pattern(&pattern, PATTERNS[_i / 3]);
     make_garment(&garment, &pattern, 0, n);
     ck_assert_msg(fabs((double)garment.n_vertices - n) <= off[_i % 3] * n, "%s: %u, not %u",
                   PATTERNS[_i / 3], garment.n_vertices, n);
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* On straight edges every part has the same length: each side has that of its own edge. */
 static void check_seam(const struct garment *garment, const struct garment_pattern *pattern,
@@ -169,45 +163,36 @@ static void check_seam(const struct garment *garment, const struct garment_patte
     }
 }
 
-START_TEST(seams_have_equal_sides)
+UNIT_LOOP(seams_have_equal_sides, 0, 3)
 {
     static const char *const sewn[3] = {"dart", "gather", "fold"};
-    struct garment_pattern pattern;
-    struct garment garment;
-    read_pattern(&pattern, sewn[_i]);
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern(sewn[_i]);
+    UNIT_OWNED(garment_free) struct garment garment;
     make_garment(&garment, &pattern, 0.007, 0);
     ck_assert_uint_eq(garment.n_seams, 1);
     check_seam(&garment, &pattern, 0);
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* A dart closes at the vertex that its edges share: edge 3 ends there, edge 4 begins there. */
-START_TEST(darts_close_at_their_tip)
+UNIT_TEST(darts_close_at_their_tip)
 {
-    struct garment_pattern pattern;
-    struct garment garment;
-    read_pattern(&pattern, "dart");
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("dart");
+    UNIT_OWNED(garment_free) struct garment garment;
     make_garment(&garment, &pattern, 0.01, 0);
     const struct garment_seam *seam = &garment.seam[0];
     const uint32_t *tip = seam->pair[seam->n_pairs - 1];
     ck_assert(seam->reversed);
     ck_assert_uint_eq(tip[0], tip[1]);
     ck_assert_uint_eq(tip[0], garment.piece[0].start[4]);
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* Panels that meet at a right angle along their seam: partners are at one place. The side's loop is
  * clockwise, so its front is on the side of its -z, which the rotation takes to the room's -x, and
  * its u is -x. */
-START_TEST(folds_meet)
+UNIT_TEST(folds_meet)
 {
-    struct garment_pattern pattern;
-    struct garment garment;
-    read_pattern(&pattern, "fold");
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("fold");
+    UNIT_OWNED(garment_free) struct garment garment;
     make_garment(&garment, &pattern, 0.01, 0);
     const struct garment_seam *seam = &garment.seam[0];
     ck_assert(!seam->reversed);
@@ -224,10 +209,7 @@ START_TEST(folds_meet)
     const double *a = garment.position[t[0]], *b = garment.position[t[1]],
                  *c = garment.position[t[2]];
     ck_assert((b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1]) < 0);
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* A front, a back, and beside their necks a panel of a hood, by its lower edge. */
 struct hood {
@@ -259,12 +241,11 @@ static void place_hood(struct garment_pattern *pattern, const struct hood *hood)
     stitch[1].right_wrong = hood->right_wrong;
 }
 
-START_TEST(fronts_are_on_one_side)
+UNIT_LOOP(fronts_are_on_one_side, 0, sizeof HOODS / sizeof *HOODS)
 {
     const struct hood *hood = HOODS + _i;
-    struct garment_pattern pattern;
-    struct garment garment;
-    read_pattern(&pattern, "hood");
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("hood");
+    UNIT_OWNED(garment_free) struct garment garment;
     place_hood(&pattern, hood);
     make_garment(&garment, &pattern, 0.02, 0);
     const struct garment_seam *seam = garment.seam;
@@ -275,58 +256,30 @@ START_TEST(fronts_are_on_one_side)
         ck_assert_int_eq(seam[2 + k].reversed, hood->reversed[k]);
         ck_assert_int_eq(seam[2 + k].unsure, hood->unsure[k]);
     }
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* About x first, then y: 90 and 90 degrees take (x, y) to (y, 0, -x). */
-START_TEST(rotations_are_in_order)
+UNIT_TEST(rotations_are_in_order)
 {
-    struct garment_pattern pattern;
-    struct garment garment;
-    read_pattern(&pattern, "straight");
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("straight");
+    UNIT_OWNED(garment_free) struct garment garment;
     make_garment(&garment, &pattern, 0.05, 0);
     for (uint32_t v = 0; v < garment.n_vertices; v++) {
         const double *uv = garment.uv[v], *x = garment.position[v];
         ck_assert(fabs(x[0] - (uv[1] + 0.1)) < 1e-15 && fabs(x[1] - 1) < 1e-15 &&
                   fabs(x[2] - (-uv[0] - 0.2)) < 1e-15);
     }
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* Twice the same bits, whatever lay in memory before. */
-START_TEST(the_same_again)
+UNIT_TEST(the_same_again)
 {
-    struct garment_pattern pattern;
-    struct garment one, two;
-    read_pattern(&pattern, "circle");
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("circle");
+    UNIT_OWNED(garment_free) struct garment one, two;
     make_garment(&one, &pattern, 0.011, 0);
     make_garment(&two, &pattern, 0.011, 0);
     ck_assert_uint_eq(one.n_vertices, two.n_vertices);
     ck_assert_uint_eq(one.n_triangles, two.n_triangles);
     ck_assert(memcmp(one.position, two.position, one.n_vertices * sizeof *one.position) == 0);
     ck_assert(memcmp(one.triangle, two.triangle, one.n_triangles * sizeof *one.triangle) == 0);
-    garment_free(&one);
-    garment_free(&two);
-    garment_pattern_free(&pattern);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("meshes of panels");
-    TCase *mesh = tcase_create("mesh");
-    tcase_add_loop_test(mesh, panels_are_whole, 0, N_PATTERNS * N_EDGES);
-    tcase_add_loop_test(mesh, as_many_as_wanted, 0, N_PATTERNS * 3);
-    tcase_add_loop_test(mesh, seams_have_equal_sides, 0, 3);
-    tcase_add_test(mesh, darts_close_at_their_tip);
-    tcase_add_test(mesh, folds_meet);
-    tcase_add_loop_test(mesh, fronts_are_on_one_side, 0, sizeof HOODS / sizeof *HOODS);
-    tcase_add_test(mesh, rotations_are_in_order);
-    tcase_add_test(mesh, the_same_again);
-    suite_add_tcase(suite, mesh);
-    return unit_run(suite);
 }

@@ -16,9 +16,8 @@ static const struct shape {
 
 static void own_of(struct garment_pattern *pattern, int which, const double *value)
 {
-    struct cloth_error error = {0};
     const struct garment_own *own = garment_own_find(SHAPES[which].name);
-    ck_assert_msg(garment_own_make(pattern, own, value, &error) == 0, "%s", error.text);
+    UNIT_FINE(garment_own_make(pattern, own, value, &error));
 }
 
 static void size_of(struct garment_pattern *pattern, int which, int size)
@@ -110,7 +109,7 @@ static int surface_of(const struct garment *garment, uint32_t *loops)
 
 static void check_mesh(const struct garment_pattern *pattern, int which, double fineness)
 {
-    struct garment garment;
+    UNIT_OWNED(garment_free) struct garment garment;
     uint32_t below, loops;
     make_garment(&garment, pattern, fineness, 0);
     ck_assert_double_ge(garment_least_angle(&garment, &below), 20);
@@ -119,10 +118,14 @@ static void check_mesh(const struct garment_pattern *pattern, int which, double 
                       SHAPES[which].name, s);
     ck_assert_int_eq(surface_of(&garment, &loops), SHAPES[which].euler);
     ck_assert_uint_eq(loops, SHAPES[which].loops);
-    garment_free(&garment);
 }
 
-START_TEST(sizes)
+UNIT_CASES(patience, cases)
+{
+    tcase_set_timeout(cases, 0);
+}
+
+UNIT_LOOP(sizes, 0, GARMENTS)
 {
     struct garment_pattern pattern;
     for (int size = 0; size < SIZES; size++) {
@@ -132,13 +135,12 @@ START_TEST(sizes)
         garment_pattern_free(&pattern);
     }
 }
-END_TEST
 
 /* Corners of all panels in space, those of the right mirrored: each corner has its image. */
-START_TEST(left_is_right)
+UNIT_LOOP(left_is_right, 0, GARMENTS)
 {
-    struct garment_pattern pattern;
-    struct garment garment;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_free) struct garment garment;
     size_of(&pattern, _i, MIDDLE);
     make_garment(&garment, &pattern, 0.03, 0);
     for (uint32_t p = 0; p < garment.n_pieces; p++)
@@ -150,10 +152,7 @@ START_TEST(left_is_right)
                 nearest = fmin(nearest, distance_of(garment.position[v], image, 3));
             ck_assert_double_le(nearest, 1e-12);
         }
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
-END_TEST
 
 static double part(uint64_t *state)
 {
@@ -162,14 +161,14 @@ static double part(uint64_t *state)
 }
 
 /* Measures anywhere in their ranges: what is not refused can be sewn. */
-START_TEST(random_measures)
+UNIT_LOOP(random_measures, 0, GARMENTS)
 {
     const struct garment_own *own = garment_own_find(SHAPES[_i].name);
     uint64_t state = 19;
     const int wanted = unit_quick() ? RANDOM / 10 : RANDOM;
     int made = 0, tried = 0;
     for (; made < wanted && tried < 100 * RANDOM; tried++) {
-        struct garment_pattern pattern;
+        UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
         struct cloth_error error = {0};
         double value[GARMENT_MEASURES] = {0};
         for (int k = 0; own->measure[k].name; k++)
@@ -185,16 +184,14 @@ START_TEST(random_measures)
             check_mesh(&pattern, _i, 0.03);
             made++;
         }
-        garment_pattern_free(&pattern);
     }
     ck_assert_msg(made == wanted, "%s: of %d only %d can be sewn", own->name, tried, made);
 }
-END_TEST
 
 /* Girths are what the measures say. */
-START_TEST(widths)
+UNIT_TEST(widths)
 {
-    struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
     double value[GARMENT_MEASURES];
     const struct garment_own *own = garment_own_find("tshirt");
     garment_own_size(own, MIDDLE, value);
@@ -211,24 +208,21 @@ START_TEST(widths)
         waist += !strncmp(name, "band", 4) && length > 0.1 ? length : 0;
     }
     ck_assert_double_eq_tol(waist, 0.862, 0.001); /* the back's rise makes it a little longer */
-    garment_pattern_free(&pattern);
 }
-END_TEST
 
 static void refuse(int which, const char *measure, double value, const char *sentence)
 {
     const struct garment_own *own = garment_own_find(SHAPES[which].name);
     double values[GARMENT_MEASURES];
-    struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
     struct cloth_error error = {0};
     garment_own_size(own, MIDDLE, values);
     values[garment_own_measure(own, measure)] = value;
     ck_assert_int_eq(garment_own_make(&pattern, own, values, &error), CLOTH_E_INPUT);
     ck_assert_msg(strstr(error.text, sentence) != NULL, "%s", error.text);
-    garment_pattern_free(&pattern);
 }
 
-START_TEST(refused)
+UNIT_TEST(refused)
 {
     refuse(TSHIRT, "chest", 3, "tshirt: the measure chest is 3; it has to be 0.5 to 1.8");
     refuse(TSHIRT, "chest", NAN, "it has to be 0.5 to 1.8");
@@ -250,19 +244,4 @@ START_TEST(refused)
     ck_assert_int_eq(garment_size_find("XXL"), -1);
     ck_assert_int_eq(garment_size_find("XL"), 4);
     ck_assert_int_eq(garment_own_measure(garment_own_find("skirt"), "sleeve"), -1);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("own garments");
-    TCase *all = tcase_create("all");
-    tcase_set_timeout(all, 0);
-    tcase_add_loop_test(all, sizes, 0, GARMENTS);
-    tcase_add_loop_test(all, left_is_right, 0, GARMENTS);
-    tcase_add_loop_test(all, random_measures, 0, GARMENTS);
-    tcase_add_test(all, widths);
-    tcase_add_test(all, refused);
-    suite_add_tcase(suite, all);
-    return unit_run(suite);
 }

@@ -11,21 +11,21 @@
 #include <string.h>
 
 /* Reads patterns/NAME.json, or ends the case. */
-static inline void read_pattern(struct garment_pattern *pattern, const char *name)
+static inline struct garment_pattern read_pattern(const char *name)
 {
+    struct garment_pattern pattern;
     const char *top = getenv("srcdir");
-    struct cloth_error error = {0};
     char path[4096];
     snprintf(path, sizeof path, "%s/tests/cloth/garment/patterns/%s.json", top ? top : ".", name);
-    ck_assert_msg(scene_read_pattern(pattern, path, &error) == 0, "%s", error.text);
+    UNIT_FINE(scene_read_pattern(&pattern, path, &error));
+    return pattern;
 }
 
 static inline void make_garment(struct garment *garment, const struct garment_pattern *pattern,
                                 double edge, uint32_t vertices)
 {
     const struct garment_fineness fineness = {edge, vertices};
-    struct cloth_error error = {0};
-    ck_assert_msg(garment_make(garment, pattern, &fineness, &error) == 0, "%s", error.text);
+    UNIT_FINE(garment_make(garment, pattern, &fineness, &error));
 }
 
 static inline double distance_of(const double *a, const double *b, int n)

@@ -66,7 +66,7 @@ static void expect_fail(size_t n, const char *why)
     ck_assert_msg(strstr(error.text, why), "%s, not %s", error.text, why);
 }
 
-START_TEST(requests_and_ends)
+UNIT_LOOP(requests_and_ends, 0, 2)
 {
     const struct live_message request = {
         .kind = _i ? LIVE_END : LIVE_REQUEST, .run = UINT64_MAX, .scene = 3, .number = 1ULL << 40};
@@ -78,9 +78,8 @@ START_TEST(requests_and_ends)
     ck_assert_uint_eq(said.number, request.number);
     ck_assert_uint_eq(said.version, LIVE_VERSION);
 }
-END_TEST
 
-START_TEST(frames)
+UNIT_TEST(frames)
 {
     ck_assert_int_eq(read_message(make_frame()), 0);
     ck_assert_int_eq(said.kind, LIVE_FRAME);
@@ -93,17 +92,15 @@ START_TEST(frames)
     ck_assert_float_eq(live_get_float(x + 4 * 14), 2.5F);
     ck_assert_float_eq(live_get_float(x + 4 * (3 * POINTS + 3)), 104.0F);
 }
-END_TEST
 
-START_TEST(frames_without_a_finite_place)
+UNIT_LOOP(frames_without_a_finite_place, 0, 3)
 {
     const double x[3] = {0, _i == 0 ? NAN : _i == 1 ? INFINITY : 1e39, 0};
     const struct live_message frame = {.n_vertices = 1};
     ck_assert(!live_frame_write(bytes, &frame, x));
 }
-END_TEST
 
-START_TEST(scenes)
+UNIT_TEST(scenes)
 {
     ck_assert_int_eq(read_message(make_scene()), 0);
     ck_assert_uint_eq(said.n_vertices, 3);
@@ -111,10 +108,9 @@ START_TEST(scenes)
     ck_assert_uint_eq(said.n_triangles, 1);
     ck_assert_uint_eq(said.n_bodies, 1);
 }
-END_TEST
 
 /* Whatever is cut off, or changed in any byte. */
-START_TEST(damaged)
+UNIT_LOOP(damaged, 0, 2)
 {
     const size_t n = _i ? make_scene() : make_frame();
     for (size_t i = 0; i < n; i++)
@@ -128,10 +124,9 @@ START_TEST(damaged)
         }
     ck_assert_int_eq(read_message(n), 0);
 }
-END_TEST
 
 /* The hash is right, and the sizes are not. */
-START_TEST(lies)
+UNIT_TEST(lies)
 {
     static const unsigned char most[4] = {255, 255, 255, 255};
     const size_t n = make_scene();
@@ -161,9 +156,8 @@ START_TEST(lies)
                           "%zu bytes of kind %u", i, kind);
         }
 }
-END_TEST
 
-START_TEST(other_versions)
+UNIT_TEST(other_versions)
 {
     const size_t n = make_frame();
     bytes[8] = LIVE_VERSION + 1;
@@ -173,9 +167,8 @@ START_TEST(other_versions)
     expect_fail(n, "no message of a live view");
     ck_assert_uint_eq(said.version, 0);
 }
-END_TEST
 
-START_TEST(addresses)
+UNIT_TEST(addresses)
 {
     static const char *const good[] = {"5555", "0",       "65535", "127.0.0.1:5555",
                                        "*:1",  "[::1]:0", NULL};
@@ -188,21 +181,4 @@ START_TEST(addresses)
     ck_assert(live_is_host("localhost:5555") && live_is_host("[::1]:1"));
     ck_assert(!live_is_host("5555") && !live_is_host("localhost:0") && !live_is_host(":5555"));
     ck_assert(!live_is_host("localhost") && !live_is_host("localhost:x"));
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("live messages");
-    TCase *c = tcase_create("messages");
-    tcase_add_loop_test(c, requests_and_ends, 0, 2);
-    tcase_add_test(c, frames);
-    tcase_add_loop_test(c, frames_without_a_finite_place, 0, 3);
-    tcase_add_test(c, scenes);
-    tcase_add_loop_test(c, damaged, 0, 2);
-    tcase_add_test(c, lies);
-    tcase_add_test(c, other_versions);
-    tcase_add_test(c, addresses);
-    suite_add_tcase(suite, c);
-    return unit_run(suite);
 }

@@ -7,7 +7,6 @@
 #include <string.h>
 #include <zmq.h>
 
-static struct sample sample;
 static struct live_publisher *publisher;
 static struct live_follower *follower;
 static struct cloth_error error;
@@ -21,23 +20,22 @@ static void warn(const char *text)
 
 static void open_run(const char *address)
 {
-    ck_assert_msg(!live_publish_open(&publisher, address, warn, &error), "%s", error.text);
-    ck_assert_msg(!live_publish_scene(publisher, &sample.setup, 0, &error), "%s", error.text);
+    UNIT_FINE(live_publish_open(&publisher, address, warn, &error));
+    UNIT_FINE(live_publish_scene(publisher, &sample.setup, 0, &error));
 }
 
 static void start(void)
 {
-    sample_make(&sample);
+    sample_make();
     open_run("0");
-    ck_assert_msg(!live_follow_open(&follower, live_publish_address(publisher), &error), "%s",
-                  error.text);
+    UNIT_FINE(live_follow_open(&follower, live_publish_address(publisher), &error));
 }
 
 static void end(void)
 {
     live_publish_close(&publisher);
     live_follow_close(&follower);
-    sample_free(&sample);
+    sample_free();
 }
 
 static void publish(uint64_t frame)
@@ -52,7 +50,7 @@ static void expect(enum live_news wanted, uint64_t frame)
 {
     double x[3 * SAMPLE_POINTS];
     enum live_news news;
-    ck_assert_msg(!live_follow(follower, wanted ? 60 : 0.2, &news, &error), "%s", error.text);
+    UNIT_FINE(live_follow(follower, wanted ? 60 : 0.2, &news, &error));
     ck_assert_int_eq(news, wanted);
     if (wanted == LIVE_NOTHING)
         return;
@@ -70,7 +68,7 @@ static void expect_state(const char *wanted, bool waiting)
     bool waits;
     const char *state = live_follow_state(follower, &waits);
     for (int i = 0; i < 600 && strncmp(state, wanted, strlen(wanted)) != 0; i++) {
-        ck_assert_msg(!live_follow(follower, 0.1, &news, &error), "%s", error.text);
+        UNIT_FINE(live_follow(follower, 0.1, &news, &error));
         ck_assert_int_eq(news, LIVE_NOTHING);
         state = live_follow_state(follower, &waits);
     }
@@ -78,7 +76,9 @@ static void expect_state(const char *wanted, bool waiting)
     ck_assert_int_eq(waits, waiting);
 }
 
-START_TEST(the_newest_frame)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(the_newest_frame)
 {
     expect_state("waits for a run at 127.0.0.1:", true);
     expect_state("connected to 127.0.0.1:", true);
@@ -91,22 +91,20 @@ START_TEST(the_newest_frame)
     expect(LIVE_NOTHING, 0);
     expect_state("frame 3, 0.12 s, live from ", false);
 }
-END_TEST
 
-START_TEST(another_scene_of_the_run)
+UNIT_TEST(another_scene_of_the_run)
 {
     publish(0);
     expect(LIVE_NEW_SCENE, 0);
     expect(LIVE_NOTHING, 0);
     sample.setup.n_obstacles = 1;
-    ck_assert_msg(!live_publish_scene(publisher, &sample.setup, 0, &error), "%s", error.text);
+    UNIT_FINE(live_publish_scene(publisher, &sample.setup, 0, &error));
     publish(1);
     expect(LIVE_NEW_SCENE, 1);
     ck_assert_uint_eq(live_follow_cache(follower)->n_obstacles, 1);
 }
-END_TEST
 
-START_TEST(the_end_and_another_run)
+UNIT_TEST(the_end_and_another_run)
 {
     char address[100];
     publish(7);
@@ -118,10 +116,9 @@ START_TEST(the_end_and_another_run)
     publish(2);
     expect(LIVE_NEW_SCENE, 2);
 }
-END_TEST
 
 /* Frames of a slow run come more than 2 s apart, and a viewer waits for each as long. */
-START_TEST(the_last_frame_of_a_slow_run)
+UNIT_TEST(the_last_frame_of_a_slow_run)
 {
     publish(0);
     expect(LIVE_NEW_SCENE, 0);
@@ -132,9 +129,8 @@ START_TEST(the_last_frame_of_a_slow_run)
     expect(LIVE_NEW_FRAME, 1);
     expect_state("the run has ended at frame 1; ", true);
 }
-END_TEST
 
-START_TEST(a_frame_that_is_not_finite)
+UNIT_TEST(a_frame_that_is_not_finite)
 {
     double x[3 * SAMPLE_POINTS];
     sample_positions(1, 1, x);
@@ -144,9 +140,8 @@ START_TEST(a_frame_that_is_not_finite)
     expect(LIVE_NEW_SCENE, 0);
     expect(LIVE_NOTHING, 0);
 }
-END_TEST
 
-START_TEST(an_address_that_is_taken)
+UNIT_TEST(an_address_that_is_taken)
 {
     struct live_publisher *other;
     ck_assert_int_eq(live_publish_open(&other, live_publish_address(publisher), warn, &error),
@@ -154,10 +149,9 @@ START_TEST(an_address_that_is_taken)
     ck_assert_msg(strstr(error.text, "the port is in use"), "%s", error.text);
     ck_assert_ptr_null(other);
 }
-END_TEST
 
 /* Any program can ask by a REQ socket, whose messages begin with an empty part. */
-START_TEST(a_viewer_of_another_kind)
+UNIT_TEST(a_viewer_of_another_kind)
 {
     static unsigned char bytes[10000];
     char endpoint[120];
@@ -173,28 +167,11 @@ START_TEST(a_viewer_of_another_kind)
         ck_assert_int_gt(zmq_send(socket, bytes, live_message_write(bytes, &message), 0), 0);
         const int n = zmq_recv(socket, bytes, sizeof bytes, 0);
         ck_assert_int_gt(n, 0);
-        ck_assert_msg(!live_message_read(bytes, (size_t)n, &message, &error), "%s", error.text);
+        UNIT_FINE(live_message_read(bytes, (size_t)n, &message, &error));
         ck_assert_int_eq(message.kind, i ? LIVE_FRAME : LIVE_SCENE);
         message.number = 0;
     }
     zmq_close(socket);
     zmq_ctx_term(zmq);
     ck_assert_int_eq(warnings, 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("live runs");
-    TCase *c = tcase_create("runs");
-    tcase_add_checked_fixture(c, start, end);
-    tcase_add_test(c, the_newest_frame);
-    tcase_add_test(c, another_scene_of_the_run);
-    tcase_add_test(c, the_end_and_another_run);
-    tcase_add_test(c, the_last_frame_of_a_slow_run);
-    tcase_add_test(c, a_frame_that_is_not_finite);
-    tcase_add_test(c, an_address_that_is_taken);
-    tcase_add_test(c, a_viewer_of_another_kind);
-    suite_add_tcase(suite, c);
-    return unit_run(suite);
 }

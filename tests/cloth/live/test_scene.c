@@ -6,7 +6,6 @@
 
 #include <string.h>
 
-static struct sample sample;
 static struct contact_bodies bodies;
 static bool posed[2] = {false, true};
 static struct contact_shape obstacles[3];
@@ -20,14 +19,13 @@ static struct cloth_error error;
 static void start(void)
 {
     static struct surface box;
-    sample_make(&sample);
+    sample_make();
     for (uint32_t i = 0; i < 2; i++) {
-        struct mesh mesh;
+        UNIT_OWNED(mesh_free) struct mesh mesh;
         bool turned;
         surface_box(&box, 1, 2, 3 + i);
         surface_mesh(&box, &mesh);
-        ck_assert_int_eq(contact_bodies_add(&bodies, &mesh, &turned, &error), 0);
-        mesh_free(&mesh);
+        UNIT_FINE(contact_bodies_add(&bodies, &mesh, &turned, &error));
     }
     uint32_t kind = 0;
     while (contact_kinds[kind] != &contact_body_kind)
@@ -39,13 +37,13 @@ static void start(void)
     sample.setup.obstacles = obstacles;
     sample.setup.bodies = &bodies;
     sample.setup.posed = posed;
-    ck_assert_int_eq(live_scene_write(&sample.setup, 9, 4, &bytes, &n, &error), 0);
+    UNIT_FINE(live_scene_write(&sample.setup, 9, 4, &bytes, &n, &error));
 }
 
 static void end(void)
 {
     output_cache_close(&cache);
-    sample_free(&sample);
+    sample_free();
     free(bodies.memory);
     free(bytes);
 }
@@ -54,11 +52,13 @@ static int open_scene(void)
 {
     live_message_seal(bytes, n, LIVE_SCENE);
     error = (struct cloth_error){0};
-    ck_assert_msg(!live_message_read(bytes, n, &said, &error), "%s", error.text);
+    UNIT_FINE(live_message_read(bytes, n, &said, &error));
     return live_scene_open(&said, &cache, &error);
 }
 
-START_TEST(meshes)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(meshes)
 {
     ck_assert_msg(!open_scene(), "%s", error.text);
     ck_assert_uint_eq(said.run, 9);
@@ -77,9 +77,8 @@ START_TEST(meshes)
     ck_assert_uint_eq(cache.mesh.lone_edge[1], 14);
     ck_assert_double_eq(cache.mesh.position[3 * 13], 3);
 }
-END_TEST
 
-START_TEST(obstacles_and_bodies)
+UNIT_TEST(obstacles_and_bodies)
 {
     ck_assert_msg(!open_scene(), "%s", error.text);
     ck_assert_double_eq(cache.fps, 25);
@@ -94,7 +93,6 @@ START_TEST(obstacles_and_bodies)
         ck_assert_mem_eq(here, there, there->bytes);
     }
 }
-END_TEST
 
 /* Positions as floats, and those of the second body. */
 static void make_frame(unsigned char *frame, uint32_t n_body_vertices)
@@ -125,15 +123,15 @@ static int show_frame(uint32_t n_body_vertices)
     return live_frame_show(&read, &cache, &error);
 }
 
-START_TEST(frames)
+UNIT_TEST(frames)
 {
     double wanted[3 * SAMPLE_POINTS], x[3 * SAMPLE_POINTS];
     ck_assert_msg(!open_scene(), "%s", error.text);
     ck_assert_msg(!show_frame(8), "%s", error.text);
     sample_positions(1, 3, wanted);
     ck_assert_uint_eq(cache.n_frames, 1);
-    ck_assert_int_eq(output_cache_frame(&cache, 0, x, &error), 0);
-    ck_assert_int_eq(output_cache_pose(&cache, 0, &error), 0);
+    UNIT_FINE(output_cache_frame(&cache, 0, x, &error));
+    UNIT_FINE(output_cache_pose(&cache, 0, &error));
     ck_assert_mem_eq(x, wanted, sizeof x);
     ck_assert_double_eq(cache.time[0], 0.12);
     const phys_vec *body = contact_body_vertices(contact_bodies_at(&cache.bodies, 2));
@@ -141,15 +139,13 @@ START_TEST(frames)
         ck_assert_double_eq(body[i / 3][i % 3],
                             2 * contact_body_vertices(contact_bodies_at(&bodies, 2))[i / 3][i % 3]);
 }
-END_TEST
 
-START_TEST(frames_of_another_mesh)
+UNIT_TEST(frames_of_another_mesh)
 {
     ck_assert_msg(!open_scene(), "%s", error.text);
     ck_assert_int_eq(show_frame(7), CLOTH_E_INPUT);
     ck_assert_msg(strstr(error.text, "16 and 7 vertices, its scene 16 and 8"), "%s", error.text);
 }
-END_TEST
 
 static void expect_fail(const char *why)
 {
@@ -157,7 +153,7 @@ static void expect_fail(const char *why)
     ck_assert_msg(strstr(error.text, why), "%s, not %s", error.text, why);
 }
 
-START_TEST(scenes_that_are_none)
+UNIT_TEST(scenes_that_are_none)
 {
     const size_t arrays = LIVE_HEADER + 32 + 12 * SAMPLE_POINTS;
     static const unsigned char far[4] = {SAMPLE_POINTS, 0, 0, 0}, nan[4] = {255, 255, 255, 255};
@@ -177,19 +173,4 @@ START_TEST(scenes_that_are_none)
     bytes[n - 2]--;
     bytes[LIVE_HEADER + 28] = 1; /* a body less: its bytes are taken for the text */
     expect_fail("the scene of the live view:");
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("live scenes");
-    TCase *c = tcase_create("scenes");
-    tcase_add_checked_fixture(c, start, end);
-    tcase_add_test(c, meshes);
-    tcase_add_test(c, obstacles_and_bodies);
-    tcase_add_test(c, frames);
-    tcase_add_test(c, frames_of_another_mesh);
-    tcase_add_test(c, scenes_that_are_none);
-    suite_add_tcase(suite, c);
-    return unit_run(suite);
 }

@@ -263,34 +263,30 @@ static void check_girths(const struct mesh *mesh, const struct mannequin *asked)
 
 static void check_all(const struct mannequin *mannequin)
 {
-    struct mesh mesh;
+    UNIT_OWNED(mesh_free) struct mesh mesh;
     make_mannequin(&mesh, mannequin);
     check_surface(&mesh);
     check_triangles(&mesh, mannequin->edge > 0 ? mannequin->edge : MANNEQUIN_EDGE);
     check_mirror(&mesh);
     check_girths(&mesh, mannequin);
-    mesh_free(&mesh);
 }
 
-START_TEST(default_figure)
+UNIT_TEST(default_figure)
 {
     struct mannequin mannequin = {0};
-    struct mesh mesh;
+    UNIT_OWNED(mesh_free) struct mesh mesh;
     make_mannequin(&mesh, &mannequin);
     ck_assert(mesh.n_triangles >= 8000 && mesh.n_triangles <= 15000);
-    mesh_free(&mesh);
     check_all(&mannequin);
 }
-END_TEST
 
-START_TEST(other_sizes)
+UNIT_TEST(other_sizes)
 {
     check_all(&(struct mannequin){.edge = unit_quick() ? 0.02 : 0.012});
     check_all(&(struct mannequin){.edge = 0.025});
     check_all(&(struct mannequin){.height = 1.2, .edge = 0.015});
     check_all(&(struct mannequin){.height = 2.0});
 }
-END_TEST
 
 static double random_part(uint64_t *state)
 {
@@ -299,14 +295,14 @@ static double random_part(uint64_t *state)
 }
 
 /* Measures that do not go together are refused before anything is made. */
-START_TEST(random_measures)
+UNIT_TEST(random_measures)
 {
     const int wanted = unit_quick() ? 5 : 50;
     uint64_t state = 1;
     for (int made = 0; made < wanted;) {
         struct mannequin mannequin = {.height = 1.5 + 0.5 * random_part(&state), .edge = 0.021};
         struct cloth_error error = {0};
-        struct mesh mesh;
+        UNIT_OWNED(mesh_free) struct mesh mesh;
         for (uint32_t i = 0; i < MANNEQUIN_GIRTHS; i++) {
             const struct mannequin_measure *m = &mannequin_measures[i];
             mannequin.girth[i] = (m->least + (m->most - m->least) * random_part(&state)) *
@@ -319,10 +315,8 @@ START_TEST(random_measures)
         made++;
         check_surface(&mesh);
         check_girths(&mesh, &mannequin);
-        mesh_free(&mesh);
     }
 }
-END_TEST
 
 static void check_refused(const struct mannequin *mannequin, const char *sentence)
 {
@@ -333,7 +327,7 @@ static void check_refused(const struct mannequin *mannequin, const char *sentenc
     ck_assert_ptr_null(mesh.position);
 }
 
-START_TEST(refused)
+UNIT_TEST(refused)
 {
     check_refused(&(struct mannequin){.height = 3}, "height is 3 m; figures have 1 to 2.3 m");
     check_refused(&(struct mannequin){.height = NAN}, "height is nan m");
@@ -346,25 +340,10 @@ START_TEST(refused)
                   "a hip of 0.85 m does not go with a thigh of 0.57 m");
     check_refused(&(struct mannequin){.girth[MANNEQUIN_WRIST] = -1}, "wrist is -1 m");
 }
-END_TEST
 
-START_TEST(names)
+UNIT_TEST(names)
 {
     for (uint32_t i = 0; i < MANNEQUIN_GIRTHS; i++)
         ck_assert_uint_eq(mannequin_find(mannequin_measures[i].name), i);
     ck_assert_uint_eq(mannequin_find("nose"), MANNEQUIN_GIRTHS);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("mannequin");
-    TCase *tcase = tcase_create("figures");
-    tcase_add_test(tcase, default_figure);
-    tcase_add_test(tcase, other_sizes);
-    tcase_add_test(tcase, random_measures);
-    tcase_add_test(tcase, refused);
-    tcase_add_test(tcase, names);
-    suite_add_tcase(suite, tcase);
-    return unit_run(suite);
 }

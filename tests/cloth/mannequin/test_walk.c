@@ -13,9 +13,7 @@ struct figure_at {
 
 static void make(struct figure_at *figure, const struct mannequin *mannequin)
 {
-    struct cloth_error error = {0};
-    ck_assert_msg(mannequin_make_rigged(&figure->mesh, &figure->rig, mannequin, NULL, &error) == 0,
-                  "%s", error.text);
+    UNIT_FINE(mannequin_make_rigged(&figure->mesh, &figure->rig, mannequin, NULL, &error));
     figure->x = calloc(figure->mesh.n_vertices, sizeof *figure->x);
 }
 
@@ -67,7 +65,7 @@ static double apart(const struct figure_at *figure, enum region one, enum region
 }
 
 /* Over the way into the walk and two periods of it. */
-START_TEST(walk_keeps_room)
+UNIT_TEST(walk_keeps_room)
 {
     const struct mannequin_walk walk = {0};
     struct figure_at figure;
@@ -86,10 +84,9 @@ START_TEST(walk_keeps_room)
     }
     release(&figure);
 }
-END_TEST
 
 /* Thick and thin figures do not go through themselves. */
-START_TEST(walk_of_others)
+UNIT_LOOP(walk_of_others, 0, 3)
 {
     static const struct mannequin other[] = {{.height = 1.55,
                                               .girth[MANNEQUIN_CHEST] = 1.05,
@@ -113,10 +110,9 @@ START_TEST(walk_of_others)
     }
     release(&figure);
 }
-END_TEST
 
 /* It stands still until it begins, and at the begin. */
-START_TEST(walk_begins_at_rest)
+UNIT_TEST(walk_begins_at_rest)
 {
     const struct mannequin_walk walk = {.begin = 0.5};
     struct figure_at figure;
@@ -128,11 +124,10 @@ START_TEST(walk_begins_at_rest)
     }
     release(&figure);
 }
-END_TEST
 
 /* Differences of angles over 1 ms change by no more than an acceleration that is finite allows,
  * also where the ramp begins and ends. */
-START_TEST(walk_has_no_jerk)
+UNIT_TEST(walk_has_no_jerk)
 {
     const struct mannequin_walk walk = {.speed = 1.5, .begin = 0.3};
     const double h = 0.001, most = 1500; /* s; degrees / s^2 */
@@ -146,10 +141,9 @@ START_TEST(walk_has_no_jerk)
         memmove(angle[0], angle[1], 2 * sizeof angle[0]);
     }
 }
-END_TEST
 
 /* Both sides do the same, half a period apart; after a period all is the same again. */
-START_TEST(walk_is_periodic)
+UNIT_TEST(walk_is_periodic)
 {
     const struct mannequin_walk walk = {.speed = 1.25};
     const double step = 1 / 1.25;
@@ -168,7 +162,6 @@ START_TEST(walk_is_periodic)
         }
     }
 }
-END_TEST
 
 static void rest_pose(struct mannequin_pose *pose)
 {
@@ -208,7 +201,7 @@ static const struct {
     {MANNEQUIN_SPINE_TURN, 3, 1, 10, {0, 0, -1}},
 };
 
-START_TEST(angles_move_their_parts)
+UNIT_LOOP(angles_move_their_parts, 0, sizeof MOVES / sizeof *MOVES)
 {
     struct mannequin_pose pose = {0};
     struct figure_at figure;
@@ -230,9 +223,8 @@ START_TEST(angles_move_their_parts)
     ck_assert_double_ge(distance_of(before, after), 0.5 * chord * distance_of(before, joint));
     release(&figure);
 }
-END_TEST
 
-START_TEST(poses_go_smoothly)
+UNIT_TEST(poses_go_smoothly)
 {
     struct mannequin_pose pose[3] = {{.time = 1}, {.time = 2}, {.time = 4}};
     double angle[MANNEQUIN_ANGLES];
@@ -247,20 +239,4 @@ START_TEST(poses_go_smoothly)
         ck_assert_double_eq_tol(angle[MANNEQUIN_KNEE_BEND], at[i][1], 1e-12);
         ck_assert_double_eq(angle[MANNEQUIN_ARM_ASIDE], 45);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("mannequins that move");
-    TCase *tcase = tcase_create("walk");
-    tcase_add_test(tcase, walk_keeps_room);
-    tcase_add_loop_test(tcase, walk_of_others, 0, 3);
-    tcase_add_test(tcase, walk_begins_at_rest);
-    tcase_add_test(tcase, walk_has_no_jerk);
-    tcase_add_test(tcase, walk_is_periodic);
-    tcase_add_loop_test(tcase, angles_move_their_parts, 0, sizeof MOVES / sizeof *MOVES);
-    tcase_add_test(tcase, poses_go_smoothly);
-    suite_add_tcase(suite, tcase);
-    return unit_run(suite);
 }

@@ -22,8 +22,7 @@ static inline double distance_of(const double *a, const double *b)
 
 static inline void make_mannequin(struct mesh *mesh, const struct mannequin *mannequin)
 {
-    struct cloth_error error = {0};
-    ck_assert_msg(mannequin_make(mesh, mannequin, NULL, &error) == 0, "%s", error.text);
+    UNIT_FINE(mannequin_make(mesh, mannequin, NULL, &error));
 }
 
 /* How many pairs of its triangles intersect, with its vertices at x. */
@@ -35,8 +34,7 @@ static inline size_t crossings(const struct mesh *mesh, const double *x)
                                      .x = (const double(*)[3])x,
                                      .corner = (const uint32_t(*)[3])mesh->triangle};
     struct cloth_list pairs = {0};
-    struct cloth_error error = {0};
-    ck_assert_msg(verify_pairs(&soup, &pairs, &error) == 0, "%s", error.text);
+    UNIT_FINE(verify_pairs(&soup, &pairs, &error));
     free(pairs.items);
     return pairs.n;
 }

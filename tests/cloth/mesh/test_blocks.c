@@ -100,7 +100,7 @@ static uint32_t n_cut(const struct mesh_blocks *blocks, const struct graph *grap
 
 /* As many as the grain asks for; from 16 on a multiple of four, where there is a vertex for each.
  */
-START_TEST(number_of_blocks)
+UNIT_TEST(number_of_blocks)
 {
     static const uint32_t wanted[][3] = {
         /* vertices, grain, blocks */
@@ -110,21 +110,21 @@ START_TEST(number_of_blocks)
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
         struct graph graph = graph_new(wanted[i][0], 0);
         uint32_t smallest, largest;
+        UNIT_OWNED(mesh_blocks_free)
         struct mesh_blocks blocks = cut(&graph, wanted[i][1], &smallest, &largest);
         ck_assert_msg(blocks.n_blocks == wanted[i][2], "%u blocks of %u vertices by %u",
                       blocks.n_blocks, wanted[i][0], wanted[i][1]);
-        mesh_blocks_free(&blocks);
         graph_free(&graph);
     }
 }
-END_TEST
 
-START_TEST(balance_of_the_sheet)
+UNIT_TEST(balance_of_the_sheet)
 {
     const uint32_t grains[] = {1000, 500, 250};
     struct graph graph = sheet(150, 150, 0);
     for (size_t i = 0; i < 3; i++) {
         uint32_t smallest, largest;
+        UNIT_OWNED(mesh_blocks_free)
         struct mesh_blocks blocks = cut(&graph, grains[i], &smallest, &largest);
         double mean = 22500.0 / blocks.n_blocks;
         ck_assert_double_lt(largest, 1.02 * mean);
@@ -133,53 +133,50 @@ START_TEST(balance_of_the_sheet)
          * again */
         double sides = 2 * 150 * sqrt(blocks.n_blocks);
         ck_assert_double_lt(n_cut(&blocks, &graph), 1.5 * 5 * sides);
-        mesh_blocks_free(&blocks);
     }
     graph_free(&graph);
 }
-END_TEST
 
-START_TEST(near_numbers_are_near)
+UNIT_TEST(near_numbers_are_near)
 {
     uint32_t smallest, largest;
     struct graph graph = sheet(64, 64, 0);
-    struct mesh_blocks blocks = cut(&graph, 64, &smallest, &largest);
+    UNIT_OWNED(mesh_blocks_free) struct mesh_blocks blocks = cut(&graph, 64, &smallest, &largest);
     uint32_t crossing = 0;
     for (size_t i = 0; i < graph.n_pairs; i++) /* between the two halves of the numbers */
         crossing += (blocks.place[graph.pairs[2 * i]] < 2048) !=
                     (blocks.place[graph.pairs[2 * i + 1]] < 2048);
     ck_assert_uint_lt(crossing, 64 * 5 * 3 / 2);
-    mesh_blocks_free(&blocks);
     graph_free(&graph);
 }
-END_TEST
 
-START_TEST(every_grain)
+UNIT_TEST(every_grain)
 {
     struct graph graph = sheet(23, 17, 0);
     uint32_t smallest, largest;
     for (uint32_t grain = 1; grain < 450; grain = grain < 30 ? grain + 1 : grain * 5 / 4) {
+        UNIT_OWNED(mesh_blocks_free)
         struct mesh_blocks blocks = cut(&graph, grain, &smallest, &largest);
         ck_assert(grain > 1 || largest == 1);
         ck_assert_uint_le(largest, 2 * grain + 2);
-        mesh_blocks_free(&blocks);
     }
+    UNIT_OWNED(mesh_blocks_free)
     struct mesh_blocks blocks = cut(&graph, UINT32_MAX, &smallest, &largest);
     ck_assert_uint_eq(blocks.n_blocks, 1);
-    mesh_blocks_free(&blocks);
     graph_free(&graph);
 }
-END_TEST
 
-START_TEST(same_every_time)
+UNIT_TEST(same_every_time)
 {
     struct graph graph = sheet(40, 40, 0);
     const uint32_t grains[] = {1, 7, 100, 1600};
     for (size_t g = 0; g < 4; g++) {
         uint32_t smallest, largest;
+        UNIT_OWNED(mesh_blocks_free)
         struct mesh_blocks first = cut(&graph, grains[g], &smallest, &largest);
         srand(12345 + (unsigned)g); /* METIS draws from the same numbers */
         (void)rand();
+        UNIT_OWNED(mesh_blocks_free)
         struct mesh_blocks again = cut(&graph, grains[g], &smallest, &largest);
         ck_assert(first.hash == again.hash);
         mesh_blocks_free(&again);
@@ -194,15 +191,12 @@ START_TEST(same_every_time)
         other.pairs[4 * graph.n_pairs] = other.pairs[4 * graph.n_pairs + 1] = 5;
         again = cut(&other, grains[g], &smallest, &largest);
         ck_assert(first.hash == again.hash);
-        mesh_blocks_free(&again);
-        mesh_blocks_free(&first);
         graph_free(&other);
     }
     graph_free(&graph);
 }
-END_TEST
 
-START_TEST(halves_of_a_chain)
+UNIT_TEST(halves_of_a_chain)
 {
     struct graph graph = graph_new(100, 99);
     for (uint32_t i = 0; i < 99; i++) { /* 37 and 100 share no factor: a chain in a wild order */
@@ -210,7 +204,7 @@ START_TEST(halves_of_a_chain)
         graph.pairs[2 * i + 1] = (i + 1) * 37 % 100;
     }
     uint32_t smallest, largest;
-    struct mesh_blocks blocks = cut(&graph, 50, &smallest, &largest);
+    UNIT_OWNED(mesh_blocks_free) struct mesh_blocks blocks = cut(&graph, 50, &smallest, &largest);
     ck_assert_uint_eq(smallest, 50);
     ck_assert_uint_eq(n_cut(&blocks, &graph), 1); /* both halves in one piece */
     mesh_blocks_free(&blocks);
@@ -219,19 +213,17 @@ START_TEST(halves_of_a_chain)
         ck_assert_int_eq(
             abs((int)blocks.place[graph.pairs[2 * i]] - (int)blocks.place[graph.pairs[2 * i + 1]]),
             1);
-    mesh_blocks_free(&blocks);
     graph_free(&graph);
 }
-END_TEST
 
 /* Reverse Cuthill-McKee of a 3 x 30 grid with diagonals and bends knows to walk along it: no pair
  * is farther apart than three levels of three. Two components follow each other by their lowest
  * vertex, each turned round by itself. */
-START_TEST(order_inside_a_block)
+UNIT_TEST(order_inside_a_block)
 {
     struct graph graph = sheet(30, 3, 0);
     uint32_t smallest, largest;
-    struct mesh_blocks blocks = cut(&graph, 90, &smallest, &largest);
+    UNIT_OWNED(mesh_blocks_free) struct mesh_blocks blocks = cut(&graph, 90, &smallest, &largest);
     for (size_t i = 0; i < graph.n_pairs; i++)
         ck_assert_int_lt(
             abs((int)blocks.place[graph.pairs[2 * i]] - (int)blocks.place[graph.pairs[2 * i + 1]]),
@@ -258,47 +250,42 @@ START_TEST(order_inside_a_block)
     memcpy(tree.pairs, branches, sizeof branches);
     blocks = cut(&tree, 6, &smallest, &largest);
     ck_assert_mem_eq(blocks.vertex, turned, sizeof turned);
-    mesh_blocks_free(&blocks);
     graph_free(&tree);
 }
-END_TEST
 
-START_TEST(free_particles)
+UNIT_TEST(free_particles)
 {
     struct graph graph = graph_new(103, 0);
     uint32_t smallest, largest;
-    struct mesh_blocks blocks = cut(&graph, 10, &smallest, &largest);
+    UNIT_OWNED(mesh_blocks_free) struct mesh_blocks blocks = cut(&graph, 10, &smallest, &largest);
     ck_assert_uint_ge(smallest, 9);
     ck_assert_uint_le(largest, 10);
     for (uint32_t v = 0; v < 103; v++)
         ck_assert_uint_eq(blocks.vertex[v], v);
-    mesh_blocks_free(&blocks);
     graph_free(&graph);
 }
-END_TEST
 
-START_TEST(isolated_vertices)
+UNIT_TEST(isolated_vertices)
 {
     const uint32_t more[] = {1, 50, 1000, 20000}, grains[] = {1, 3, 10, 100, 1000};
     for (size_t m = 0; m < 4; m++) {
         struct graph graph = sheet(8, 8, more[m]);
         for (size_t g = 0; g < 5; g++) {
             uint32_t smallest, largest;
+            UNIT_OWNED(mesh_blocks_free)
             struct mesh_blocks blocks = cut(&graph, grains[g], &smallest, &largest);
             ck_assert_uint_le(largest, 2 * grains[g] + 2);
-            mesh_blocks_free(&blocks);
         }
         graph_free(&graph);
     }
 }
-END_TEST
 
-START_TEST(unused_vertices)
+UNIT_TEST(unused_vertices)
 {
     struct graph graph = sheet(10, 10, 30);
     uint32_t smallest, largest;
     memset(graph.used + 100, 0, 30);
-    struct mesh_blocks blocks = cut(&graph, 25, &smallest, &largest);
+    UNIT_OWNED(mesh_blocks_free) struct mesh_blocks blocks = cut(&graph, 25, &smallest, &largest);
     ck_assert_uint_eq(blocks.n_blocks, 4);
     mesh_blocks_free(&blocks);
     graph.n_pairs = 0;
@@ -309,12 +296,10 @@ START_TEST(unused_vertices)
     graph.n_vertices = 0;
     blocks = cut(&graph, 1, &smallest, &largest);
     mesh_blocks_free(&blocks);
-    mesh_blocks_free(&blocks);
     graph_free(&graph);
 }
-END_TEST
 
-START_TEST(wrong_input)
+UNIT_TEST(wrong_input)
 {
     struct graph graph = sheet(3, 3, 0);
     struct mesh_blocks blocks;
@@ -333,9 +318,8 @@ START_TEST(wrong_input)
     ck_assert(!blocks.start && !blocks.vertex && !blocks.place);
     graph_free(&graph);
 }
-END_TEST
 
-START_TEST(pieces_of_full_parts)
+UNIT_TEST(pieces_of_full_parts)
 {
     const struct {
         uint32_t n, size[8], pieces[8];
@@ -353,8 +337,3 @@ START_TEST(pieces_of_full_parts)
         ck_assert_mem_eq(pieces, cases[i].pieces, cases[i].n * sizeof *pieces);
     }
 }
-END_TEST
-
-RUN("blocks", number_of_blocks, balance_of_the_sheet, near_numbers_are_near, every_grain,
-    same_every_time, halves_of_a_chain, order_inside_a_block, free_particles, isolated_vertices,
-    unused_vertices, wrong_input, pieces_of_full_parts)

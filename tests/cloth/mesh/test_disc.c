@@ -9,9 +9,8 @@ enum { RINGS = 40, N = 1 + 3 * RINGS * (RINGS + 1) };
 
 static struct mesh disc(double radius, uint32_t rings)
 {
-    struct cloth_error error = {0};
     struct mesh mesh;
-    ck_assert_msg(mesh_disc(&mesh, radius, rings, &error) == CLOTH_OK, "%s", error.text);
+    UNIT_FINE(mesh_disc(&mesh, radius, rings, &error));
     return mesh;
 }
 
@@ -21,9 +20,9 @@ static const double *place_of(const struct mesh *mesh, uint32_t ring, uint32_t j
 }
 
 /* Within rounding where the angle says, by the functions of the C library. */
-START_TEST(places)
+UNIT_TEST(places)
 {
-    struct mesh mesh = disc(0.15, RINGS);
+    UNIT_OWNED(mesh_free) struct mesh mesh = disc(0.15, RINGS);
     ck_assert_uint_eq(mesh.n_vertices, N);
     ck_assert_uint_eq(mesh.grid_nx, 0);
     for (uint32_t ring = 0; ring <= RINGS; ring++)
@@ -38,13 +37,11 @@ START_TEST(places)
             ck_assert_double_eq(uv[0], x[0] + 0.15);
             ck_assert_double_eq(uv[1], x[2] + 0.15);
         }
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(mirror_images)
+UNIT_TEST(mirror_images)
 {
-    struct mesh mesh = disc(0.15, RINGS);
+    UNIT_OWNED(mesh_free) struct mesh mesh = disc(0.15, RINGS);
     for (uint32_t ring = 1; ring <= RINGS; ring++)
         for (uint32_t j = 0; j < 6 * ring; j++) {
             const double *x = place_of(&mesh, ring, j);
@@ -53,16 +50,14 @@ START_TEST(mirror_images)
             ck_assert(x[0] == down[0] && x[2] == -down[2]);
             ck_assert(x[0] == -left[0] && x[2] == left[2]);
         }
-    mesh_free(&mesh);
 }
-END_TEST
 
 /* As mesh.h says; no triangle has less than three quarters of the area of another, and their sum is
  * that of a polygon of 6 rings corners. */
-START_TEST(almost_equal_triangles)
+UNIT_TEST(almost_equal_triangles)
 {
     for (uint32_t rings = 1; rings <= RINGS; rings += 3) {
-        struct mesh mesh = disc(rings, rings);
+        UNIT_OWNED(mesh_free) struct mesh mesh = disc(rings, rings);
         double shortest = INFINITY, longest = 0, least = INFINITY, most = 0, sum = 0;
         ck_assert_uint_eq(mesh.n_triangles, 6 * rings * rings);
         for (uint32_t t = 0; t < mesh.n_triangles; t++) {
@@ -90,12 +85,10 @@ START_TEST(almost_equal_triangles)
         ck_assert_double_ge(least, 0.75 * most);
         const double n = 6 * rings;
         ck_assert_double_eq_tol(sum, n / 2 * rings * rings * sin(2 * acos(-1) / n), 1e-9);
-        mesh_free(&mesh);
     }
 }
-END_TEST
 
-START_TEST(wrong_sizes)
+UNIT_TEST(wrong_sizes)
 {
     const struct {
         double radius;
@@ -109,6 +102,3 @@ START_TEST(wrong_sizes)
         ck_assert_ptr_nonnull(strstr(error.text, "a disc has 1 to 10000 rings"));
     }
 }
-END_TEST
-
-RUN("disc", places, mirror_images, almost_equal_triangles, wrong_sizes)

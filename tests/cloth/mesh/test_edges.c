@@ -5,9 +5,8 @@
 
 static struct mesh_edges edges_of(const struct mesh *mesh)
 {
-    struct cloth_error error = {0};
     struct mesh_edges edges;
-    ck_assert_msg(mesh_edges_find(&edges, mesh, &error) == CLOTH_OK, "%s", error.text);
+    UNIT_FINE(mesh_edges_find(&edges, mesh, &error));
     for (uint32_t e = 0; e < edges.n; e++) {
         ck_assert_uint_lt(edges.edge[e].a, edges.edge[e].b);
         ck_assert(
@@ -26,10 +25,10 @@ static const struct mesh_edge *find(const struct mesh_edges *edges, uint32_t a, 
     return NULL;
 }
 
-START_TEST(of_a_grid)
+UNIT_TEST(of_a_grid)
 {
-    struct mesh mesh = grid(2, 3, 3, 4);
-    struct mesh_edges edges = edges_of(&mesh);
+    UNIT_OWNED(mesh_free) struct mesh mesh = grid(2, 3, 3, 4);
+    UNIT_OWNED(mesh_edges_free) struct mesh_edges edges = edges_of(&mesh);
     uint32_t border = 0;
     ck_assert_uint_eq(edges.n, 2 * 4 + 3 * 3 + 2 * 3); /* rows, columns, diagonals */
     for (uint32_t e = 0; e < edges.n; e++)
@@ -42,66 +41,53 @@ START_TEST(of_a_grid)
     ck_assert_uint_eq(top->opposite[0], 4);
     ck_assert_uint_eq(top->opposite[1], UINT32_MAX);
     ck_assert_double_eq_tol(top->area, 0.5, 1e-15);
-    mesh_edges_free(&edges);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(area_as_positioned)
+UNIT_TEST(area_as_positioned)
 {
-    struct mesh mesh = grid(1, 1, 2, 2);
+    UNIT_OWNED(mesh_free) struct mesh mesh = grid(1, 1, 2, 2);
     struct mesh_transform larger = {{2, 7, 3}, {1, 1, 0, 0}, {1, 2, 3}};
     mesh_apply(&mesh, &larger);
-    struct mesh_edges edges = edges_of(&mesh);
+    UNIT_OWNED(mesh_edges_free) struct mesh_edges edges = edges_of(&mesh);
     ck_assert_double_eq_tol(find(&edges, 0, 3)->area, 6, 1e-14);
-    mesh_edges_free(&edges);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(lone_edges_join)
+UNIT_TEST(lone_edges_join)
 {
+    UNIT_OWNED(mesh_free)
     struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\n"
                                  "f 1 2 3\nl 5 4\nl 4 2\nl 2 1\n");
-    struct mesh_edges edges = edges_of(&mesh);
+    UNIT_OWNED(mesh_edges_free) struct mesh_edges edges = edges_of(&mesh);
     ck_assert_uint_eq(edges.n, 5); /* three sides, 3-4 once, 1-3 */
     const struct mesh_edge *lone = find(&edges, 3, 4), *shared = find(&edges, 0, 1);
     ck_assert_uint_eq(lone->opposite[0], UINT32_MAX);
     ck_assert(lone->area == 0);
     ck_assert_uint_eq(shared->opposite[0], 2); /* the triangle's, once */
     ck_assert_double_eq(shared->area, 0.5);
-    mesh_edges_free(&edges);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(either_winding_and_pillow)
+UNIT_TEST(either_winding_and_pillow)
 {
     /* two triangles over the same three vertices, and a neighbour wound the other way */
+    UNIT_OWNED(mesh_free)
     struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 5 1 0\nv 6 0 0\nv 6 1 0\n"
                                  "f 1 2 3\nf 1 3 2\nf 4 5 6\nf 5 6 7\n");
-    struct mesh_edges edges = edges_of(&mesh);
+    UNIT_OWNED(mesh_edges_free) struct mesh_edges edges = edges_of(&mesh);
     ck_assert_uint_eq(edges.n, 3 + 5);
     ck_assert_uint_eq(find(&edges, 0, 1)->opposite[0], 2);
     ck_assert_uint_eq(find(&edges, 0, 1)->opposite[1], 2);
     ck_assert_uint_eq(find(&edges, 4, 5)->opposite[0], 3);
     ck_assert_uint_eq(find(&edges, 4, 5)->opposite[1], 6);
-    mesh_edges_free(&edges);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(none_at_all)
+UNIT_TEST(none_at_all)
 {
-    struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\n");
-    struct mesh_edges edges = edges_of(&mesh);
+    UNIT_OWNED(mesh_free) struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\n");
+    UNIT_OWNED(mesh_edges_free) struct mesh_edges edges = edges_of(&mesh);
     ck_assert_uint_eq(edges.n, 0);
-    mesh_edges_free(&edges);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(non_manifold)
+UNIT_TEST(non_manifold)
 {
     double x[15] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 5, 5, 5};
     uint32_t triangles[] = {0, 1, 2, 2, 3, 0, 0, 2, 4};
@@ -112,10 +98,9 @@ START_TEST(non_manifold)
     ck_assert_ptr_nonnull(strstr(error.text, "triangle 3 is the third"));
     ck_assert_ptr_null(edges.edge);
 }
-END_TEST
 
 /* A hub with many spokes, and many vertices: counted by Euler's formula. */
-START_TEST(a_large_fan)
+UNIT_TEST(a_large_fan)
 {
     enum { N = 20000 };
     static double x[3 * (N + 1)];
@@ -127,14 +112,8 @@ START_TEST(a_large_fan)
         triangles[3 * i + 1] = (i + 1) % N;
         triangles[3 * i + 2] = i;
     }
-    struct mesh mesh;
+    UNIT_OWNED(mesh_free) struct mesh mesh;
     ck_assert_int_eq(mesh_inline(&mesh, N + 1, x, 0, NULL, N, triangles, NULL), CLOTH_OK);
-    struct mesh_edges edges = edges_of(&mesh);
+    UNIT_OWNED(mesh_edges_free) struct mesh_edges edges = edges_of(&mesh);
     ck_assert_int_eq((int)mesh.n_vertices - (int)edges.n + (int)mesh.n_triangles, 1); /* a disc */
-    mesh_edges_free(&edges);
-    mesh_free(&mesh);
 }
-END_TEST
-
-RUN("edges", of_a_grid, area_as_positioned, lone_edges_join, either_winding_and_pillow, none_at_all,
-    non_manifold, a_large_fan)

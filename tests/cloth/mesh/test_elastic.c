@@ -18,9 +18,8 @@ static struct mesh elastic_grid(double a, double b)
 static void stiffness(const struct mesh *mesh, const struct mesh_moduli *moduli, uint32_t middle,
                       double area, double c[3][3])
 {
-    struct cloth_error error = {0};
-    struct mesh_lattice lattice;
-    ck_assert_int_eq(mesh_lattice_build(&lattice, mesh, moduli, &error), CLOTH_OK);
+    UNIT_OWNED(mesh_lattice_free) struct mesh_lattice lattice;
+    UNIT_FINE(mesh_lattice_build(&lattice, mesh, moduli, &error));
     struct mesh_spring *spring = springs_of(&lattice);
     memset(c, 0, 9 * sizeof(double));
     for (uint32_t s = 0; s < lattice.n; s++) {
@@ -36,7 +35,6 @@ static void stiffness(const struct mesh *mesh, const struct mesh_moduli *moduli,
                            strain[i] * strain[j] / area;
     }
     free(spring);
-    mesh_lattice_free(&lattice);
 }
 
 static double minor(double c[3][3], int i, int j)
@@ -66,15 +64,14 @@ static void holds(double stretch, double weft, double shear, double bend, int bo
                   double b)
 {
     const struct mesh_moduli moduli = {stretch, shear, bend, both, weft - stretch, NULL, 0};
-    struct mesh mesh = elastic_grid(a, b);
+    UNIT_OWNED(mesh_free) struct mesh mesh = elastic_grid(a, b);
     const struct mesh_elastic found = mesh_elastic_of(&mesh, &moduli);
     double c[3][3];
     stiffness(&mesh, &moduli, MIDDLE, a * b, c);
     is_inverse(&found, c);
-    mesh_free(&mesh);
 }
 
-START_TEST(every_lattice)
+UNIT_TEST(every_lattice)
 {
     for (int both = 0; both < 2; both++) {
         holds(1000, 1000, 500, 0, both, 0.1, 0.1);
@@ -84,16 +81,14 @@ START_TEST(every_lattice)
         holds(1000, 300, 400, 60, both, 0.1, 0.25);
     }
 }
-END_TEST
 
 /* Cells by turns: half of the vertices have four diagonals, the others none; a pair of neighbours
  * has two cells. */
-START_TEST(cells_by_turns)
+UNIT_TEST(cells_by_turns)
 {
     const struct mesh_moduli moduli = {1000, 400, 60, 0, -700, NULL, 0};
-    struct cloth_error error = {0};
-    struct mesh mesh;
-    ck_assert_int_eq(mesh_grid(&mesh, 0.6, 1.5, SIDE, SIDE, MESH_ALTERNATE, &error), CLOTH_OK);
+    UNIT_OWNED(mesh_free) struct mesh mesh;
+    UNIT_FINE(mesh_grid(&mesh, 0.6, 1.5, SIDE, SIDE, MESH_ALTERNATE, &error));
     const struct mesh_elastic found = mesh_elastic_of(&mesh, &moduli);
     double c[3][3], other[3][3];
     stiffness(&mesh, &moduli, MIDDLE, 2 * 0.1 * 0.25, c);
@@ -102,17 +97,14 @@ START_TEST(cells_by_turns)
         for (int j = 0; j < 3; j++)
             c[i][j] += other[i][j];
     is_inverse(&found, c);
-    mesh_free(&mesh);
 }
-END_TEST
 
 /* Mirrored ones with one diagonal are no uniform lattice; with both, or without any, they are. */
-START_TEST(mirrored_cells)
+UNIT_TEST(mirrored_cells)
 {
     struct mesh_moduli moduli = {1000, 400, 0, 0, 0, NULL, 0};
-    struct cloth_error error = {0};
-    struct mesh mesh;
-    ck_assert_int_eq(mesh_grid(&mesh, 1, 1, SIDE, SIDE, MESH_MIRRORED, &error), CLOTH_OK);
+    UNIT_OWNED(mesh_free) struct mesh mesh;
+    UNIT_FINE(mesh_grid(&mesh, 1, 1, SIDE, SIDE, MESH_MIRRORED, &error));
     ck_assert(isnan(mesh_elastic_of(&mesh, &moduli).warp));
     moduli.both_diagonals = 1;
     near(mesh_elastic_of(&mesh, &moduli).shear, 400);
@@ -120,9 +112,7 @@ START_TEST(mirrored_cells)
     moduli.shear = 0;
     near(mesh_elastic_of(&mesh, &moduli).warp, 1000);
     near(mesh_elastic_of(&mesh, &moduli).shear, 0);
-    mesh_free(&mesh);
 }
-END_TEST
 
 static struct mesh_elastic of(double stretch, double shear, int both)
 {
@@ -134,7 +124,7 @@ static struct mesh_elastic of(double stretch, double shear, int both)
 }
 
 /* What docs/physics.md says of a mesh of equilateral triangles, threads of 1000 and 300 N/m. */
-START_TEST(equilateral_triangles)
+UNIT_TEST(equilateral_triangles)
 {
     char text[1024];
     size_t used = (size_t)snprintf(text, sizeof text, "v 0 0 0\nvt 0 0\n");
@@ -146,7 +136,7 @@ START_TEST(equilateral_triangles)
     for (int i = 0; i < 6; i++)
         used += (size_t)snprintf(text + used, sizeof text - used, "f 1/1 %d/%d %d/%d\n", i + 2,
                                  i + 2, (i + 1) % 6 + 2, (i + 1) % 6 + 2);
-    struct mesh mesh = read_text(text);
+    UNIT_OWNED(mesh_free) struct mesh mesh = read_text(text);
     const double side = 1000 / 4.0 + 300 * 3 / 4.0;
     const struct mesh_elastic expected = {1000, 9 * 1000 * side / (8 * 1000 + side), 3 * side / 8,
                                           1.0 / 3};
@@ -154,11 +144,9 @@ START_TEST(equilateral_triangles)
     stiffness(&mesh, &(struct mesh_moduli){.stretch = 1000, .weft_excess = -700}, 0, sqrt(3) / 2,
               c);
     is_inverse(&expected, c);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(square_cells)
+UNIT_TEST(square_cells)
 {
     const struct mesh_elastic isotropic = of(900, 450, 1); /* shear half of stretch */
     near(isotropic.warp, 1200);
@@ -171,18 +159,15 @@ START_TEST(square_cells)
     near(one.shear, 1000 / 7.0); /* 1 / G = 2 / kd + 2 / ks */
     near(one.poisson, 0);
 }
-END_TEST
 
-START_TEST(no_grid)
+UNIT_TEST(no_grid)
 {
-    struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    UNIT_OWNED(mesh_free) struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     const struct mesh_elastic found = mesh_elastic_of(&mesh, &(struct mesh_moduli){.stretch = 1});
     ck_assert(isnan(found.warp) && isnan(found.weft) && isnan(found.shear) && isnan(found.poisson));
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(without_shear_or_stretch)
+UNIT_TEST(without_shear_or_stretch)
 {
     for (int both = 0; both < 2; both++) {
         const struct mesh_elastic threads = of(1000, 0, both);
@@ -197,7 +182,3 @@ START_TEST(without_shear_or_stretch)
     near(of(0, 100, 1).warp, 0);
     near(of(0, 100, 1).poisson, 1);
 }
-END_TEST
-
-RUN("elastic", every_lattice, cells_by_turns, mirrored_cells, equilateral_triangles, square_cells,
-    no_grid, without_shear_or_stretch)

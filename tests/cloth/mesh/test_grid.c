@@ -5,9 +5,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-START_TEST(numbering)
+UNIT_TEST(numbering)
 {
-    struct mesh mesh = grid(2, 3, 3, 4);
+    UNIT_OWNED(mesh_free) struct mesh mesh = grid(2, 3, 3, 4);
     ck_assert_uint_eq(mesh.n_vertices, 12);
     ck_assert_uint_eq(mesh.grid_nx, 3);
     ck_assert_uint_eq(mesh.grid_ny, 4);
@@ -33,21 +33,18 @@ START_TEST(numbering)
         mesh_corners(&mesh, t, corner);
         ck_assert_mem_eq(corner, expected[t], sizeof corner);
     }
-    mesh_free(&mesh);
 }
-END_TEST
 
 /* Cells that are turned, row after row. */
 static void turns_are(enum mesh_cells cells, uint32_t nx, uint32_t ny, const char *turns)
 {
-    struct mesh mesh = grid_of(1, 1, nx, ny, cells);
+    UNIT_OWNED(mesh_free) struct mesh mesh = grid_of(1, 1, nx, ny, cells);
     for (uint32_t j = 0; j + 1 < ny; j++)
         for (uint32_t i = 0; i + 1 < nx; i++)
             ck_assert_int_eq(mesh_cell_turned(&mesh, i, j), *turns++ == '/');
-    mesh_free(&mesh);
 }
 
-START_TEST(diagonals)
+UNIT_TEST(diagonals)
 {
     turns_are(MESH_SAME, 4, 3, "\\\\\\\\\\\\");
     turns_are(MESH_ALTERNATE, 4, 3, "\\/\\/\\/");
@@ -56,41 +53,36 @@ START_TEST(diagonals)
     turns_are(MESH_MIRRORED, 5, 2, "\\/\\/");             /* the only row, too, from either end */
     turns_are(MESH_MIRRORED, 2, 2, "\\");
 }
-END_TEST
 
 /* Where counts of cells are even, the mirror image of a cell is turned the other way. */
-START_TEST(mirror_images)
+UNIT_TEST(mirror_images)
 {
     const enum mesh_cells symmetric[] = {MESH_ALTERNATE, MESH_MIRRORED};
     for (size_t k = 0; k < 2; k++) {
-        struct mesh mesh = grid_of(1, 1, 7, 9, symmetric[k]);
+        UNIT_OWNED(mesh_free) struct mesh mesh = grid_of(1, 1, 7, 9, symmetric[k]);
         for (uint32_t j = 0; j < 8; j++) {
             for (uint32_t i = 0; i < 6; i++) {
                 ck_assert(mesh_cell_turned(&mesh, i, j) != mesh_cell_turned(&mesh, 5 - i, j));
                 ck_assert(mesh_cell_turned(&mesh, i, j) != mesh_cell_turned(&mesh, i, 7 - j));
             }
         }
-        mesh_free(&mesh);
     }
 }
-END_TEST
 
-START_TEST(turned_triangles)
+UNIT_TEST(turned_triangles)
 {
-    struct mesh mesh = grid_of(1, 1, 3, 2, MESH_ALTERNATE);
+    UNIT_OWNED(mesh_free) struct mesh mesh = grid_of(1, 1, 3, 2, MESH_ALTERNATE);
     const uint32_t expected[][3] = {{0, 3, 4}, {0, 4, 1}, {2, 1, 4}, {2, 4, 5}};
     for (uint32_t t = 0; t < 4; t++) {
         uint32_t corner[3];
         mesh_corners(&mesh, t, corner);
         ck_assert_mem_eq(corner, expected[t], sizeof corner);
     }
-    mesh_free(&mesh);
 }
-END_TEST
 
 static void triangles_of(enum mesh_cells cells)
 {
-    struct mesh mesh = grid_of(1, 1, 150, 150, cells);
+    UNIT_OWNED(mesh_free) struct mesh mesh = grid_of(1, 1, 150, 150, cells);
     ck_assert_uint_eq(mesh.n_triangles, 44402);
     ck_assert_uint_eq(mesh.n_faces, 44402);
     for (uint32_t t = 0; t < mesh.n_triangles; t++) { /* y of (q - p) x (r - p) */
@@ -104,31 +96,27 @@ static void triangles_of(enum mesh_cells cells)
         const double *r = mesh.position + 3 * corner[2];
         ck_assert_double_gt((q[2] - p[2]) * (r[0] - p[0]) - (q[0] - p[0]) * (r[2] - p[2]), 0);
     }
-    mesh_free(&mesh);
 }
 
-START_TEST(triangles)
+UNIT_TEST(triangles)
 {
     triangles_of(MESH_SAME);
     triangles_of(MESH_ALTERNATE);
     triangles_of(MESH_MIRRORED);
 }
-END_TEST
 
-START_TEST(centred_to_the_bit)
+UNIT_TEST(centred_to_the_bit)
 {
-    struct mesh mesh = grid(0.7, 1.3, 37, 8);
+    UNIT_OWNED(mesh_free) struct mesh mesh = grid(0.7, 1.3, 37, 8);
     uint32_t n = mesh.n_vertices;
     for (uint32_t v = 0; v < n; v++) {
         ck_assert(mesh.position[3 * v] == -mesh.position[3 * (n - 1 - v)]);
         ck_assert(mesh.position[3 * v + 2] == -mesh.position[3 * (n - 1 - v) + 2]);
     }
     ck_assert(mesh.position[0] == -0.35);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(wrong_sizes)
+UNIT_TEST(wrong_sizes)
 {
     const struct {
         double width, height;
@@ -155,11 +143,10 @@ START_TEST(wrong_sizes)
         ck_assert_ptr_null(mesh.position);
     }
 }
-END_TEST
 
-START_TEST(mass_of_vertices)
+UNIT_TEST(mass_of_vertices)
 {
-    struct mesh mesh = grid(1.5, 0.8, 41, 23);
+    UNIT_OWNED(mesh_free) struct mesh mesh = grid(1.5, 0.8, 41, 23);
     double *mass = calloc(mesh.n_vertices, sizeof *mass), sum = 0;
     mass[0] = 1; /* is added to */
     mesh_add_mass(&mesh, 0.25, mass);
@@ -172,13 +159,11 @@ START_TEST(mass_of_vertices)
     ck_assert_double_eq_tol(mass[41 * 10 + 7], cell, 1e-15); /* six */
     ck_assert_double_eq_tol(mass[20], cell / 2, 1e-15);      /* three */
     free(mass);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(equilateral)
+UNIT_TEST(equilateral)
 {
-    struct mesh mesh = grid_of(2, 0, 5, 4, MESH_EQUILATERAL);
+    UNIT_OWNED(mesh_free) struct mesh mesh = grid_of(2, 0, 5, 4, MESH_EQUILATERAL);
     double mass[18] = {0}, uv[2];
     ck_assert_uint_eq(mesh.n_vertices, 18);
     ck_assert_uint_eq(mesh.n_triangles, 3 * 7);
@@ -206,15 +191,13 @@ START_TEST(equilateral)
     mesh_free(&mesh);
     mesh = grid_of(1, 0, 2, 2, MESH_EQUILATERAL);
     ck_assert_uint_eq(mesh.n_triangles, 1);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(mass_of_cells)
+UNIT_TEST(mass_of_cells)
 {
     const enum mesh_cells all[] = {MESH_SAME, MESH_ALTERNATE, MESH_MIRRORED};
     for (size_t k = 0; k < 3; k++) {
-        struct mesh mesh = grid_of(1.5, 0.8, 4, 3, all[k]);
+        UNIT_OWNED(mesh_free) struct mesh mesh = grid_of(1.5, 0.8, 4, 3, all[k]);
         double mass[12] = {1};
         for (uint32_t t = 0; t < mesh.n_triangles; t++)
             mesh_add_cell_mass_of(&mesh, t, 0.25, mass);
@@ -224,17 +207,15 @@ START_TEST(mass_of_cells)
         ck_assert_double_eq_tol(mass[2], cell / 2, 1e-15);
         ck_assert_double_eq_tol(mass[4], cell / 2, 1e-15);
         ck_assert_double_eq_tol(mass[5], cell, 1e-15);
-        mesh_free(&mesh);
     }
     double third[3] = {0};
+    UNIT_OWNED(mesh_free)
     struct mesh one = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"); /* has no cells */
     mesh_add_cell_mass_of(&one, 0, 6, third);
     ck_assert_double_eq_tol(third[0], 1, 1e-15);
-    mesh_free(&one);
 }
-END_TEST
 
-START_TEST(identity_keeps_bits)
+UNIT_TEST(identity_keeps_bits)
 {
     double x[6] = {-0.0, 5e-324, 0.1, -1e308, 3.0, -0.0}, before[6];
     struct mesh mesh = {.n_vertices = 2, .position = x};
@@ -250,9 +231,8 @@ START_TEST(identity_keeps_bits)
     mesh_apply(&mesh, &same);
     ck_assert_mem_eq(x, before, sizeof x);
 }
-END_TEST
 
-START_TEST(scale_then_rotate_then_translate)
+UNIT_TEST(scale_then_rotate_then_translate)
 {
     double x[6] = {1, 2, 3, 0, 0, 1};
     struct mesh mesh = {.n_vertices = 2, .position = x};
@@ -270,18 +250,16 @@ START_TEST(scale_then_rotate_then_translate)
     ck_assert_double_eq_tol(y[1], 0.5, 1e-15);
     ck_assert_double_eq_tol(y[2], sqrt(0.75), 1e-15);
 }
-END_TEST
 
-START_TEST(areas)
+UNIT_TEST(areas)
 {
     const double x[9] = {0, 0, 0, 3, 0, 0, 0, 0, 4};
     const uint32_t corner[3] = {0, 1, 2};
     ck_assert_double_eq(mesh_area(x, corner), 6);
     ck_assert_double_eq(mesh_distance(x, 1, 2), 5);
 }
-END_TEST
 
-START_TEST(free_twice)
+UNIT_TEST(free_twice)
 {
     struct mesh mesh = {0};
     mesh_free(&mesh);
@@ -290,8 +268,3 @@ START_TEST(free_twice)
     mesh_free(&mesh);
     ck_assert_uint_eq(mesh.n_vertices, 0);
 }
-END_TEST
-
-RUN("grid", numbering, equilateral, diagonals, mirror_images, turned_triangles, triangles,
-    mass_of_cells, centred_to_the_bit, wrong_sizes, mass_of_vertices, identity_keeps_bits,
-    scale_then_rotate_then_translate, areas, free_twice)

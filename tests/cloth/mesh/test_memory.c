@@ -88,7 +88,7 @@ static int all(struct cloth_error *error, const char *path)
     return code;
 }
 
-START_TEST(each_fails_once)
+UNIT_TEST(each_fails_once)
 {
     struct file file = strip();
     int failures = 0;
@@ -111,9 +111,8 @@ START_TEST(each_fails_once)
     ck_assert_int_gt(failures, 60);
     close(file.descriptor);
 }
-END_TEST
 
-START_TEST(lists)
+UNIT_TEST(lists)
 {
     struct cloth_list list = {0};
     for (uint32_t i = 0; i < 1000; i++) {
@@ -139,9 +138,8 @@ START_TEST(lists)
     ck_assert_ptr_nonnull(none);
     free(none);
 }
-END_TEST
 
-START_TEST(the_first_error_stays)
+UNIT_TEST(the_first_error_stays)
 {
     struct cloth_error error = {0};
     ck_assert_int_eq(cloth_fail(&error, CLOTH_E_IO, "first %d", 1), CLOTH_E_IO);
@@ -149,6 +147,3 @@ START_TEST(the_first_error_stays)
     ck_assert_str_eq(error.text, "first 1");
     ck_assert_int_eq(cloth_fail(NULL, CLOTH_E_INPUT, "third"), CLOTH_E_INPUT);
 }
-END_TEST
-
-RUN("memory", each_fails_once, lists, the_first_error_stays)

@@ -13,8 +13,9 @@ static void corners_are(const struct mesh *mesh, size_t n, const uint32_t *corne
     ck_assert_mem_eq(mesh->triangle, corners, n * sizeof *corners);
 }
 
-START_TEST(polygons_are_fanned)
+UNIT_TEST(polygons_are_fanned)
 {
+    UNIT_OWNED(mesh_free)
     struct mesh mesh =
         read_text(SQUARE "v 1 -1 0\nv 2 0 0\nv 0 -1 0\nf 3 4 1 2\nf 2 5 6\nf 6 5 7 4 3\n");
     const uint32_t start[] = {0, 4, 7, 12}, corner[] = {2, 3, 0, 1, 1, 4, 5, 5, 4, 6, 3, 2};
@@ -25,11 +26,9 @@ START_TEST(polygons_are_fanned)
     corners_are(&mesh, 18, fans);
     ck_assert_uint_eq(mesh.grid_nx, 0);
     ck_assert_ptr_null(mesh.uv);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(every_way_to_write_a_corner)
+UNIT_TEST(every_way_to_write_a_corner)
 {
     const uint32_t same[] = {0, 1, 2, 0, 2, 3};
     const char *faces[] = {
@@ -51,15 +50,14 @@ START_TEST(every_way_to_write_a_corner)
     for (size_t i = 0; i < sizeof faces / sizeof *faces; i++) {
         char text[256];
         snprintf(text, sizeof text, SQUARE "vn 0 0 1\nvt 0.5 0.5\n%s", faces[i]);
-        struct mesh mesh = read_text(text);
+        UNIT_OWNED(mesh_free) struct mesh mesh = read_text(text);
         corners_are(&mesh, 6, same);
-        mesh_free(&mesh);
     }
 }
-END_TEST
 
-START_TEST(numbers)
+UNIT_TEST(numbers)
 {
+    UNIT_OWNED(mesh_free)
     struct mesh mesh = read_text("\xef\xbb\xbfv 1e-3 -.5 +2. 0.1 0.2 0.3\n"
                                  "v 1 2 3 1.0\nv 4 5 6 red\nv 0.1 1E2 5e-324\n");
     const double x[] = {1e-3, -0.5, 2, 1, 2, 3, 4, 5, 6, 0.1, 100, 5e-324};
@@ -67,65 +65,57 @@ START_TEST(numbers)
     ck_assert_mem_eq(mesh.position, x, sizeof x);
     ck_assert_uint_eq(mesh.n_faces, 0);
     ck_assert_uint_eq(mesh.face_start[0], 0);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(the_locale_does_not_matter)
+UNIT_TEST(the_locale_does_not_matter)
 {
     setlocale(LC_ALL, "de_DE.UTF-8"); /* where it exists, strtod wants commas */
-    struct mesh mesh = read_text("v 1.5 0 0\n");
+    UNIT_OWNED(mesh_free) struct mesh mesh = read_text("v 1.5 0 0\n");
     ck_assert_double_eq(mesh.position[0], 1.5);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(all_else_is_skipped)
+UNIT_TEST(all_else_is_skipped)
 {
+    UNIT_OWNED(mesh_free)
     struct mesh mesh = read_text("# a comment that ends with C:\\\n" SQUARE
                                  "mtllib a.mtl\no thing\n\n   \ng a b\nusemtl x\ns off\n"
                                  "vp 0 0\nvertex 1\nfoo\nf 1 2 3\np 1\nfo 1 2 4\ncurv 0 1 1 2\n#");
     ck_assert_uint_eq(mesh.n_vertices, 4);
     ck_assert_uint_eq(mesh.n_triangles, 1);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(faces_may_come_first)
+UNIT_TEST(faces_may_come_first)
 {
+    UNIT_OWNED(mesh_free)
     struct mesh mesh = read_text("f 1/1 2/2 3/3\nvt 0 0\nvt 1 0\nvt 0 1\n" SQUARE);
     const uint32_t corner[] = {0, 1, 2};
     corners_are(&mesh, 3, corner);
     ck_assert_double_eq(mesh.uv[2], 1);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(lone_edges)
+UNIT_TEST(lone_edges)
 {
+    UNIT_OWNED(mesh_free)
     struct mesh mesh = read_text(SQUARE "l 1 2 3\nl -1/7 -4\nvt 0 0\nvt 0 0\nvt 0 0\nvt 0 0\n"
                                         "vt 0 0\nvt 0 0\nvt 0 0\n");
     const uint32_t edges[] = {0, 1, 1, 2, 3, 0};
     ck_assert_uint_eq(mesh.n_lone_edges, 3);
     ck_assert_mem_eq(mesh.lone_edge, edges, sizeof edges);
     ck_assert_uint_eq(mesh.n_triangles, 0);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(unused_vertices_are_kept)
+UNIT_TEST(unused_vertices_are_kept)
 {
+    UNIT_OWNED(mesh_free)
     struct mesh mesh = read_text("v 9 9 9\n" SQUARE "v 8 8 8\nv 7 7 7\nf 2 3 4\nl 5 6\n");
     unsigned char used[7] = {5, 5, 5, 5, 5, 5, 5};
     const unsigned char expected[7] = {0, 1, 1, 1, 1, 1, 0};
     ck_assert_uint_eq(mesh.n_vertices, 7);
     mesh_used(&mesh, used);
     ck_assert_mem_eq(used, expected, 7);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(uv_of_vertices)
+UNIT_TEST(uv_of_vertices)
 {
     const struct {
         const char *text;
@@ -141,22 +131,21 @@ START_TEST(uv_of_vertices)
         {SQUARE "vt 0\nvt 1 0 0.5\nvt 1 1\nvt 0 1\nvt 0 0\nf 1/1 2/2 3/3\nf 1/5 3/3 4/4\n", 1},
     };
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-        struct mesh mesh = read_text(files[i].text);
+        UNIT_OWNED(mesh_free) struct mesh mesh = read_text(files[i].text);
         const double uv[8] = {0, 0, 1, 0, 1, 1, 0, 1};
         ck_assert_msg((mesh.uv != NULL) == files[i].has, "file %zu", i);
         ck_assert_uint_eq(mesh.n_without_uv, i == 3);
         if (mesh.uv)
             ck_assert_mem_eq(mesh.uv, uv, sizeof uv);
-        mesh_free(&mesh);
     }
 }
-END_TEST
 
 /* Vertex 1 has three uv, one of them under two numbers; vertex 3 has two in one polygon and
  * another.
  */
-START_TEST(uv_of_corners)
+UNIT_TEST(uv_of_corners)
 {
+    UNIT_OWNED(mesh_free)
     struct mesh mesh = read_text(SQUARE "v 2 0 0\nv 2 1 0\nv -1 0 0\n"
                                         "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 7 7\nvt 5 5\nvt 7 7\n"
                                         "f 1/1 2/2 3/3 4/4\nf 2/2 5/5 6/6 3/5\nf 1/5 4/4 7/1\n"
@@ -173,11 +162,9 @@ START_TEST(uv_of_corners)
     ck_assert_uint_eq(mesh_uv_number(&mesh, 1, 2), 2);
     ck_assert_uint_eq(mesh_uv_number(&mesh, UINT32_MAX, 2), 2);
     ck_assert(mesh_uv(&mesh, 9, uv) && uv[0] == 7 && uv[1] == 7);
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(very_long_lines)
+UNIT_TEST(very_long_lines)
 {
     enum { N = 300000 }; /* corners of one face, over several of the reader's chunks */
     size_t room = (size_t)N * 80, n = 0;
@@ -188,18 +175,16 @@ START_TEST(very_long_lines)
     n += (size_t)snprintf(text + n, room - n, "f");
     for (int i = 0; i < N; i++)
         n += (size_t)snprintf(text + n, room - n, i % 1000 ? " %d" : " \\\n%d", i + 1);
-    struct mesh mesh = read_text(text);
+    UNIT_OWNED(mesh_free) struct mesh mesh = read_text(text);
     ck_assert_uint_eq(mesh.n_vertices, N);
     ck_assert_uint_eq(mesh.n_faces, 1);
     ck_assert_uint_eq(mesh.n_triangles, N - 2);
     ck_assert_uint_eq(mesh.face_corner[N - 1], N - 1);
-    mesh_free(&mesh);
     free(text);
 }
-END_TEST
 
 /* Chunks of the reader end anywhere, also between CR and LF and inside numbers. */
-START_TEST(lines_across_chunks)
+UNIT_TEST(lines_across_chunks)
 {
     enum { N = 40000 };
     char *text = malloc((size_t)N * 32);
@@ -207,15 +192,13 @@ START_TEST(lines_across_chunks)
         size_t n = (size_t)sprintf(text, "#%*s\r\n", shift, "");
         for (int i = 0; i < N; i++)
             n += (size_t)sprintf(text + n, "v %d 0.25 -1\r\n", i);
-        struct mesh mesh = read_text(text);
+        UNIT_OWNED(mesh_free) struct mesh mesh = read_text(text);
         ck_assert_uint_eq(mesh.n_vertices, N);
         for (int i = 0; i < N; i++)
             ck_assert(mesh.position[3 * i] == i && mesh.position[3 * i + 1] == 0.25);
-        mesh_free(&mesh);
     }
     free(text);
 }
-END_TEST
 
 /* The bytes of what a group has: "0110". */
 static void group_is(const struct mesh *mesh, const char *name, const char *vertices,
@@ -233,8 +216,9 @@ static void group_is(const struct mesh *mesh, const char *name, const char *vert
         ck_assert_msg(triangle[t] == triangles[t] - '0', "triangle %u of %s", t, name);
 }
 
-START_TEST(groups_of_faces)
+UNIT_TEST(groups_of_faces)
 {
+    UNIT_OWNED(mesh_free)
     struct mesh mesh =
         read_text(SQUARE "v 2 0 0\nv 2 1 0\nv 9 9 9\n"
                          "o  all of it # c\ng empty\n g b \ta # c\nf 1 2 3 4\ng\nf 2 5 3\n"
@@ -254,12 +238,11 @@ START_TEST(groups_of_faces)
     ck_assert_int_eq(mesh_group_add(&mesh, "both", 0, 2, NULL), CLOTH_OK);
     group_is(&mesh, "both", "1111", "11");
     group_is(&mesh, "last", "1011", "01");
-    mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(materials_of_faces)
+UNIT_TEST(materials_of_faces)
 {
+    UNIT_OWNED(mesh_free)
     struct mesh mesh = read_text(SQUARE "mtllib gone.mtl  other.mtl\nmtllib other.mtl\n"
                                         "usemtl unused\nusemtl dark red\nf 1 2 3\nusemtl blue\n"
                                         "f 1 3 4\nv 3 0 0\nusemtl dark red\nf 2 5 3\n");
@@ -273,10 +256,4 @@ START_TEST(materials_of_faces)
     ck_assert_str_eq(mesh.material[mesh.material_run[1].group], "blue");
     ck_assert_str_eq(mesh.material[mesh.material_run[2].group], "dark red");
     ck_assert_uint_eq(mesh.material_run[2].first, 2);
-    mesh_free(&mesh);
 }
-END_TEST
-
-RUN("obj", polygons_are_fanned, every_way_to_write_a_corner, numbers, the_locale_does_not_matter,
-    all_else_is_skipped, faces_may_come_first, lone_edges, unused_vertices_are_kept, uv_of_vertices,
-    uv_of_corners, very_long_lines, lines_across_chunks, groups_of_faces, materials_of_faces)

@@ -51,7 +51,7 @@ static uint32_t count_edges(const struct mesh *mesh)
 
 static void check_edges(const struct mesh *mesh, const struct garment *garment)
 {
-    struct mesh_edges edges;
+    UNIT_OWNED(mesh_edges_free) struct mesh_edges edges;
     ck_assert_int_eq(mesh_edges_find(&edges, mesh, NULL), CLOTH_OK);
     ck_assert_uint_eq(edges.n, garment->edges);
     ck_assert_uint_eq(edges.n, count_edges(mesh));
@@ -67,14 +67,13 @@ static void check_edges(const struct mesh *mesh, const struct garment *garment)
         mass += masses[v];
     ck_assert_double_eq_tol(mass, 0.2 * area, 1e-11 * mass);
     free(masses);
-    mesh_edges_free(&edges);
 }
 
 static void check_blocks(const struct mesh *mesh)
 {
     struct mesh_moduli moduli = {1000, 1000, 1, 1, 0, NULL, 0};
-    struct mesh_lattice lattice;
-    struct mesh_blocks blocks;
+    UNIT_OWNED(mesh_lattice_free) struct mesh_lattice lattice;
+    UNIT_OWNED(mesh_blocks_free) struct mesh_blocks blocks;
     unsigned char *used = malloc(mesh->n_vertices);
     mesh_used(mesh, used);
     ck_assert_int_eq(mesh_lattice_build(&lattice, mesh, &moduli, NULL), CLOTH_OK);
@@ -92,8 +91,6 @@ static void check_blocks(const struct mesh *mesh)
         ck_assert_double_lt(blocks.start[b + 1] - blocks.start[b], 1.02 * mean);
         ck_assert_double_gt(blocks.start[b + 1] - blocks.start[b], 0.98 * mean);
     }
-    mesh_blocks_free(&blocks);
-    mesh_lattice_free(&lattice);
     free(pairs);
     free(used);
 }
@@ -101,7 +98,7 @@ static void check_blocks(const struct mesh *mesh)
 static void check_garment(const struct garment *garment, const char *path)
 {
     struct cloth_error error = {0};
-    struct mesh mesh;
+    UNIT_OWNED(mesh_free) struct mesh mesh;
     int code = mesh_read_obj(&mesh, path, &error);
     ck_assert_msg(code == CLOTH_OK, "%s", error.text);
     ck_assert_uint_eq(mesh.n_vertices, garment->vertices);
@@ -111,10 +108,9 @@ static void check_garment(const struct garment *garment, const char *path)
     ck_assert_uint_eq(mesh.n_more_uv, garment->more_uv);
     check_edges(&mesh, garment);
     check_blocks(&mesh);
-    mesh_free(&mesh);
 }
 
-START_TEST(a_dress_that_is_made)
+UNIT_LOOP(a_dress_that_is_made, 0, sizeof MADE / sizeof *MADE)
 {
     char command[4400];
     const char *top = getenv("srcdir");
@@ -125,22 +121,9 @@ START_TEST(a_dress_that_is_made)
     check_garment(&MADE[_i], file.path);
     close(file.descriptor);
 }
-END_TEST
 
-START_TEST(a_garment_of_others)
+UNIT_LOOP(a_garment_of_others, 0, sizeof GARMENTS / sizeof *GARMENTS)
 {
-    check_garment(&GARMENTS[_i], path_of(GARMENTS[_i].name));
-}
-END_TEST
-
-int main(void)
-{
-    TCase *cases = tcase_create("garments");
-    tcase_add_loop_test(cases, a_dress_that_is_made, 0, sizeof MADE / sizeof *MADE);
-    for (int i = 0; i < (int)(sizeof GARMENTS / sizeof *GARMENTS); i++)
-        if (access(path_of(GARMENTS[i].name), R_OK) == 0)
-            tcase_add_loop_test(cases, a_garment_of_others, i, i + 1);
-    Suite *suite = suite_create("garments");
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
+    if (access(path_of(GARMENTS[_i].name), R_OK) == 0)
+        check_garment(&GARMENTS[_i], path_of(GARMENTS[_i].name));
 }

@@ -11,11 +11,10 @@ static const double up[3] = {0, 1, 0};
 
 static double shadow_of(const struct mesh *mesh, const double *position, const double axis[3])
 {
-    struct cloth_error error = {0};
     const struct mesh_shape shape = {mesh->n_vertices, mesh->n_triangles, position,
                                      (const uint32_t(*)[3])mesh->triangle};
     double area;
-    ck_assert_msg(mesh_shadow(&shape, axis, &area, &error) == CLOTH_OK, "%s", error.text);
+    UNIT_FINE(mesh_shadow(&shape, axis, &area, &error));
     return area;
 }
 
@@ -27,9 +26,8 @@ static double polygon(double radius, uint32_t rings)
 
 static struct mesh disc(void)
 {
-    struct cloth_error error = {0};
     struct mesh mesh;
-    ck_assert_msg(mesh_disc(&mesh, 0.15, RINGS, &error) == CLOTH_OK, "%s", error.text);
+    UNIT_FINE(mesh_disc(&mesh, 0.15, RINGS, &error));
     return mesh;
 }
 
@@ -47,11 +45,11 @@ static void hang(struct mesh *mesh, double angle)
 }
 
 /* 100 % of the border where it stands out, 0 % where it hangs straight down. */
-START_TEST(drape_coefficients)
+UNIT_TEST(drape_coefficients)
 {
     const double carried = acos(-1) * 0.09 * 0.09, quarter = acos(0);
     for (int i = 0; i <= 3; i++) {
-        struct mesh mesh = disc();
+        UNIT_OWNED(mesh_free) struct mesh mesh = disc();
         const double flat = mesh_surface(&mesh), part = cos(i * quarter / 3);
         ck_assert_double_eq_tol(flat, polygon(0.15, RINGS), 1e-15);
         hang(&mesh, i * quarter / 3);
@@ -61,16 +59,14 @@ START_TEST(drape_coefficients)
         ck_assert_double_eq_tol(coefficient, fmax(cone - carried, 0) / (flat - carried), 1e-5);
         if (i == 0 || i == 3)
             ck_assert_double_eq_tol(coefficient, i == 0, 1e-5);
-        mesh_free(&mesh);
     }
 }
-END_TEST
 
 /* Folded in two it shades half as much, but for triangles that lie across the fold, and nothing if
  * the fold points at the light. */
-START_TEST(folded)
+UNIT_TEST(folded)
 {
-    struct mesh mesh = disc();
+    UNIT_OWNED(mesh_free) struct mesh mesh = disc();
     double *x = mesh.position;
     const double whole = mesh_surface(&mesh);
     for (uint32_t v = 0; v < mesh.n_vertices; v++)
@@ -81,28 +77,25 @@ START_TEST(folded)
         x[3 * v] = 0.3 * x[3 * v + 2];
     }
     ck_assert_double_lt(shadow_of(&mesh, x, up), 1e-12);
-    mesh_free(&mesh);
 }
-END_TEST
 
 /* Any axis, of any length: turned with the cloth it shows the same, aslant the cosine of it. */
-START_TEST(any_axis)
+UNIT_TEST(any_axis)
 {
     static const double axes[][3] = {{2, 0, 0}, {0, -3, 0}, {0, 0, 1e-3}, {1, 2, 3}, {-3, 1, 1e-9}};
-    struct mesh mesh = disc();
+    UNIT_OWNED(mesh_free) struct mesh mesh = disc();
     const double whole = mesh_surface(&mesh);
     for (size_t i = 0; i < sizeof axes / sizeof *axes; i++) {
         const double *a = axes[i], size = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
         ck_assert_double_eq_tol(shadow_of(&mesh, mesh.position, a), whole * fabs(a[1]) / size,
                                 1e-5 * whole);
     }
-    mesh_free(&mesh);
 }
-END_TEST
 
 /* What lies above one another counts once, holes and single points count nothing. */
-START_TEST(stacked)
+UNIT_TEST(stacked)
 {
+    UNIT_OWNED(mesh_free)
     struct mesh mesh =
         read_text("v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0.5 1 0.5\nv 1.5 1 0.5\nv 1.5 1 1.5\n"
                   "v 0.5 1 1.5\nv 5 0 5\nv 6 0 5\nv 5 0 6\nv 9 9 9\n"
@@ -110,8 +103,4 @@ START_TEST(stacked)
     ck_assert_double_eq_tol(shadow_of(&mesh, mesh.position, up), 1.75 + 0.5, 0.01);
     mesh.n_triangles = 0;
     ck_assert_double_eq(shadow_of(&mesh, mesh.position, up), 0);
-    mesh_free(&mesh);
 }
-END_TEST
-
-RUN("shadow", drape_coefficients, folded, any_axis, stacked)

@@ -92,22 +92,4 @@ static inline int cut_list(struct mesh_blocks *blocks, uint32_t n_vertices,
     return mesh_blocks_cut(blocks, n_vertices, used, &pairs, grain, error);
 }
 
-static inline int run_cases(const char *name, const TTest *const *tests, size_t n)
-{
-    TCase *cases = tcase_create(name);
-    for (size_t i = 0; i < n; i++)
-        tcase_add_test(cases, tests[i]);
-    Suite *suite = suite_create(name);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
-}
-
-/* int main of a test program that runs the cases listed. */
-#define RUN(name, ...)                                                                             \
-    int main(void)                                                                                 \
-    {                                                                                              \
-        const TTest *const tests[] = {__VA_ARGS__};                                                \
-        return run_cases(name, tests, sizeof tests / sizeof *tests);                               \
-    }
-
 #endif

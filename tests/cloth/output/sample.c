@@ -16,29 +16,29 @@ static const struct phys_key KEYS[] = {{0, {0}, {1, 0, 0, 0}},
                                        {0.5, {-1, 0.1, 0}, {0.6, 0, 0.8, 0}}};
 static const char *const NAMES[2] = {"sheet", "a\npatch"};
 
-void sample_make(struct sample *sample)
+struct sample sample;
+
+void sample_make(void)
 {
-    struct cloth_error error = {0};
-    memset(sample, 0, sizeof *sample);
-    strcpy(sample->folder, "/tmp/duite-output.XXXXXX");
-    ck_assert_ptr_nonnull(mkdtemp(sample->folder));
-    snprintf(sample->frames, sizeof sample->frames, "%s/frames", sample->folder);
+    memset(&sample, 0, sizeof sample);
+    strcpy(sample.folder, "/tmp/duite-output.XXXXXX");
+    ck_assert_ptr_nonnull(mkdtemp(sample.folder));
+    snprintf(sample.frames, sizeof sample.frames, "%s/frames", sample.folder);
     char quad[96];
-    snprintf(quad, sizeof quad, "%s/quad.obj", sample->folder);
+    snprintf(quad, sizeof quad, "%s/quad.obj", sample.folder);
     sample_write(quad, QUAD, strlen(QUAD));
-    ck_assert_msg(mesh_grid(&sample->mesh[0], 1, 1, 4, 3, MESH_SAME, &error) == 0, "%s",
-                  error.text);
-    ck_assert_msg(mesh_read_obj(&sample->mesh[1], quad, &error) == 0, "%s", error.text);
-    sample->meshes[0] = &sample->mesh[0];
-    sample->meshes[1] = &sample->mesh[1];
-    sample->setup = (struct output_setup){.folder = sample->frames,
-                                          .n_meshes = 2,
-                                          .meshes = sample->meshes,
-                                          .names = NAMES,
-                                          .fps = 25,
-                                          .n_obstacles = 2,
-                                          .obstacles = OBSTACLES,
-                                          .keys = KEYS};
+    UNIT_FINE(mesh_grid(&sample.mesh[0], 1, 1, 4, 3, MESH_SAME, &error));
+    UNIT_FINE(mesh_read_obj(&sample.mesh[1], quad, &error));
+    sample.meshes[0] = &sample.mesh[0];
+    sample.meshes[1] = &sample.mesh[1];
+    sample.setup = (struct output_setup){.folder = sample.frames,
+                                         .n_meshes = 2,
+                                         .meshes = sample.meshes,
+                                         .names = NAMES,
+                                         .fps = 25,
+                                         .n_obstacles = 2,
+                                         .obstacles = OBSTACLES,
+                                         .keys = KEYS};
 }
 
 static int remove_one(const char *path, const struct stat *status, int kind, struct FTW *place)
@@ -49,11 +49,11 @@ static int remove_one(const char *path, const struct stat *status, int kind, str
     return remove(path);
 }
 
-void sample_free(struct sample *sample)
+void sample_free(void)
 {
-    mesh_free(&sample->mesh[0]);
-    mesh_free(&sample->mesh[1]);
-    nftw(sample->folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
+    mesh_free(&sample.mesh[0]);
+    mesh_free(&sample.mesh[1]);
+    nftw(sample.folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
 }
 
 void sample_positions(unsigned run, uint64_t frame, double *position)
@@ -62,10 +62,10 @@ void sample_positions(unsigned run, uint64_t frame, double *position)
         position[i] = 1000.0 * run + (double)frame + i / 64.0;
 }
 
-const char *sample_path(const struct sample *sample, const char *name)
+const char *sample_path(const char *name)
 {
     static char path[128];
-    snprintf(path, sizeof path, "%s/%s", sample->frames, name);
+    snprintf(path, sizeof path, "%s/%s", sample.frames, name);
     return path;
 }
 
@@ -87,21 +87,19 @@ void sample_write(const char *path, const char *bytes, size_t size)
     ck_assert_int_eq(fclose(file), 0);
 }
 
-void sample_run(struct sample *sample, unsigned run, uint64_t n)
+void sample_run(unsigned run, uint64_t n)
 {
-    struct cloth_error error = {0};
     struct output_frames *frames = NULL;
     double position[3 * SAMPLE_POINTS];
-    struct output_settler **settler = &sample->setup.settler;
-    if (sample->settles)
-        ck_assert_int_eq(output_settler_open(settler, &error), 0);
-    ck_assert_msg(output_open(&frames, &sample->setup, &error) == 0, "%s", error.text);
+    struct output_settler **settler = &sample.setup.settler;
+    if (sample.settles)
+        UNIT_FINE(output_settler_open(settler, &error));
+    UNIT_FINE(output_open(&frames, &sample.setup, &error));
     for (uint64_t i = 0; i < n; i++) {
         sample_positions(run, i, position);
-        ck_assert_msg(output_frame(frames, i, (double)i / 25, position, &error) == 0, "%s",
-                      error.text);
+        UNIT_FINE(output_frame(frames, i, (double)i / 25, position, &error));
     }
-    ck_assert_msg(output_settler_close(settler, &error) == 0, "%s", error.text);
-    ck_assert_msg(output_close(&frames, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_settler_close(settler, &error));
+    UNIT_FINE(output_close(&frames, &error));
     ck_assert_ptr_null(frames);
 }

@@ -7,27 +7,28 @@
 
 enum { SAMPLE_POINTS = 12 + 4 };
 
-struct sample {
+/* The test's own: one a program. */
+extern struct sample {
     char folder[64]; /* of the test's own */
     char frames[80]; /* a folder in it that is not there yet */
     struct mesh mesh[2];
     const struct mesh *meshes[2];
     struct output_setup setup;
     bool settles; /* sample_run has a settler */
-};
+} sample;
 
 /* A grid of 4 x 3 with uv, and a quadrilateral without; one plane. */
-void sample_make(struct sample *sample);
+void sample_make(void);
 /* Removes the folder with all in it. */
-void sample_free(struct sample *sample);
+void sample_free(void);
 /* `SAMPLE_POINTS` x 3 positions of a frame, exact as floats. */
 void sample_positions(unsigned run, uint64_t frame, double *position);
 /* The file in the frames folder; a static buffer. */
-const char *sample_path(const struct sample *sample, const char *name);
+const char *sample_path(const char *name);
 /* Reads up to size bytes of a file and ends them with '\0'; returns their number. */
 size_t sample_read(const char *path, char *bytes, size_t size);
 void sample_write(const char *path, const char *bytes, size_t size);
 /* Opens the folder, writes n frames of a run, closes. */
-void sample_run(struct sample *sample, unsigned run, uint64_t n);
+void sample_run(unsigned run, uint64_t n);
 
 #endif

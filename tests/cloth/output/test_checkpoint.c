@@ -10,7 +10,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static struct sample sample;
 static struct cloth_error error, note;
 static struct output_checkpoints *checkpoints;
 static struct output_checkpoint read_back;
@@ -19,8 +18,8 @@ static void start(void)
 {
     memset(&error, 0, sizeof error);
     memset(&note, 0, sizeof note);
-    sample_make(&sample);
-    ck_assert_msg(!output_checkpoints_open(&checkpoints, sample.folder, &error), "%s", error.text);
+    sample_make();
+    UNIT_FINE(output_checkpoints_open(&checkpoints, sample.folder, &error));
 }
 
 static void end(void)
@@ -28,7 +27,7 @@ static void end(void)
     output_checkpoint_free(&read_back);
     output_checkpoints_close(&checkpoints);
     output_checkpoints_forget(sample.folder, &error);
-    sample_free(&sample);
+    sample_free();
 }
 
 /* Three parts, of which the second has no whole number of words: `mark` and what follows. */
@@ -39,7 +38,7 @@ static void write_one(unsigned char mark)
     memset(bytes, mark, sizeof bytes);
     const struct output_part part[OUTPUT_CHECKPOINT_PARTS] = {
         {"key: value\n", 11}, {bytes, sizeof bytes}, {numbers, sizeof numbers}};
-    ck_assert_msg(!output_checkpoints_write(checkpoints, part, &error), "%s", error.text);
+    UNIT_FINE(output_checkpoints_write(checkpoints, part, &error));
 }
 
 static void path_of(unsigned number, char path[160])
@@ -74,15 +73,16 @@ static void check_mark(unsigned char mark)
     ck_assert_uint_eq(*(const uint64_t *)read_back.part[2].bytes, mark);
 }
 
-START_TEST(reads_back)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(reads_back)
 {
     write_one(7);
     check_mark(7);
     ck_assert_int_eq(note.code, 0);
 }
-END_TEST
 
-START_TEST(three_are_kept)
+UNIT_TEST(three_are_kept)
 {
     for (unsigned char i = 1; i <= 5; i++)
         write_one(i);
@@ -90,10 +90,9 @@ START_TEST(three_are_kept)
         ck_assert_int_eq(is_there(number), number > 2);
     check_mark(5);
 }
-END_TEST
 
 /* That is killed when the next one is there, and the oldest is not gone yet. */
-START_TEST(three_are_kept_after_a_run_that_was_killed)
+UNIT_TEST(three_are_kept_after_a_run_that_was_killed)
 {
     char first[160], second[160];
     for (unsigned char i = 1; i <= 4; i++)
@@ -102,7 +101,7 @@ START_TEST(three_are_kept_after_a_run_that_was_killed)
     path_of(1, first);
     path_of(2, second);
     ck_assert_int_eq(link(second, first), 0);
-    ck_assert_msg(!output_checkpoints_open(&checkpoints, sample.folder, &error), "%s", error.text);
+    UNIT_FINE(output_checkpoints_open(&checkpoints, sample.folder, &error));
     for (unsigned number = 1; number <= 4; number++)
         ck_assert(is_there(number));
     write_one(5);
@@ -110,7 +109,6 @@ START_TEST(three_are_kept_after_a_run_that_was_killed)
         ck_assert_int_eq(is_there(number), number > 2);
     check_mark(5);
 }
-END_TEST
 
 static void part_of(unsigned number, char path[160])
 {
@@ -130,14 +128,14 @@ static void write_long(size_t length)
 {
     static char bytes[5000];
     const struct output_part part[OUTPUT_CHECKPOINT_PARTS] = {{bytes, length}, {"b", 1}, {"c", 1}};
-    ck_assert_msg(!output_checkpoints_write(checkpoints, part, &error), "%s", error.text);
+    UNIT_FINE(output_checkpoints_write(checkpoints, part, &error));
     ck_assert_msg(!read_newest(), "%s", error.text);
     ck_assert_uint_eq(read_back.part[0].n, length);
     ck_assert_int_eq(note.code, 0);
 }
 
 /* Longer or shorter, whichever was there; and nothing is left of it at the end. */
-START_TEST(the_oldest_gives_its_room)
+UNIT_TEST(the_oldest_gives_its_room)
 {
     char path[160], part[160], fifth[160];
     write_long(4000);
@@ -157,9 +155,8 @@ START_TEST(the_oldest_gives_its_room)
     output_checkpoints_close(&checkpoints);
     ck_assert_int_ne(access(part, F_OK), 0);
 }
-END_TEST
 
-START_TEST(what_has_another_name_stays)
+UNIT_TEST(what_has_another_name_stays)
 {
     char path[160], other[160];
     write_one(1);
@@ -169,27 +166,25 @@ START_TEST(what_has_another_name_stays)
     for (unsigned char i = 2; i <= 6; i++)
         write_one(i);
     ck_assert(!is_there(1));
-    ck_assert_int_eq(output_checkpoint_read(&read_back, other, &error), 0);
+    UNIT_FINE(output_checkpoint_read(&read_back, other, &error));
     ck_assert_uint_eq(*(const uint64_t *)read_back.part[2].bytes, 1);
     ck_assert_int_eq(unlink(other), 0);
 }
-END_TEST
 
 /* A run that goes on counts on, and still three are kept. */
-START_TEST(counts_on)
+UNIT_TEST(counts_on)
 {
     for (unsigned char i = 1; i <= 3; i++)
         write_one(i);
     output_checkpoints_close(&checkpoints);
-    ck_assert_int_eq(output_checkpoints_open(&checkpoints, sample.folder, &error), 0);
+    UNIT_FINE(output_checkpoints_open(&checkpoints, sample.folder, &error));
     write_one(4);
     ck_assert(!is_there(1) && is_there(2) && is_there(4));
     check_mark(4);
 }
-END_TEST
 
 /* A file that a run would not have named so is none of its. */
-START_TEST(other_numbers_are_nobodys)
+UNIT_TEST(other_numbers_are_nobodys)
 {
     static const char *const names[] = {"0000009", "9", "18446744073709551616", "+00009", "000000"};
     char path[160];
@@ -201,7 +196,7 @@ START_TEST(other_numbers_are_nobodys)
     check_mark(1);
     ck_assert_int_eq(note.code, 0);
     output_checkpoints_close(&checkpoints);
-    ck_assert_int_eq(output_checkpoints_open(&checkpoints, sample.folder, &error), 0);
+    UNIT_FINE(output_checkpoints_open(&checkpoints, sample.folder, &error));
     write_one(2);
     ck_assert(is_there(2));
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
@@ -209,10 +204,9 @@ START_TEST(other_numbers_are_nobodys)
         ck_assert_int_eq(unlink(path), 0);
     }
 }
-END_TEST
 
 /* Numbers end somewhere: a run that could not count on does not begin. */
-START_TEST(the_last_number)
+UNIT_TEST(the_last_number)
 {
     char path[160];
     write_one(1);
@@ -225,10 +219,9 @@ START_TEST(the_last_number)
     ck_assert_ptr_nonnull(strstr(note.text, "is no checkpoint of duite-cloth"));
     ck_assert_int_eq(unlink(path), 0);
 }
-END_TEST
 
 /* A pipe has nobody at its other end, and is not waited for. */
-START_TEST(only_plain_files_are_read)
+UNIT_TEST(only_plain_files_are_read)
 {
     char path[160];
     write_one(1);
@@ -237,7 +230,6 @@ START_TEST(only_plain_files_are_read)
     check_mark(1);
     ck_assert_ptr_nonnull(strstr(note.text, "000002.checkpoint: it is no plain file"));
 }
-END_TEST
 
 /* ---- Damage ---- */
 
@@ -276,7 +268,7 @@ static void falls_back(const char *what, size_t at)
     ck_assert_uint_eq(*(const uint64_t *)read_back.part[2].bytes, 1);
 }
 
-START_TEST(every_length)
+UNIT_TEST(every_length)
 {
     unsigned char bytes[512];
     write_one(1);
@@ -293,9 +285,8 @@ START_TEST(every_length)
     put_file(2, bytes, n + 1); /* a byte of what lies behind it in memory */
     falls_back("length", n + 1);
 }
-END_TEST
 
-START_TEST(every_bit)
+UNIT_TEST(every_bit)
 {
     unsigned char bytes[512];
     write_one(1);
@@ -308,9 +299,8 @@ START_TEST(every_bit)
         bytes[bit / 8] ^= (unsigned char)(1 << bit % 8);
     }
 }
-END_TEST
 
-START_TEST(none_is_said)
+UNIT_TEST(none_is_said)
 {
     ck_assert_int_eq(read_newest(), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "holds no checkpoint: a run writes them"));
@@ -319,11 +309,10 @@ START_TEST(none_is_said)
     ck_assert_int_eq(read_newest(), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "no checkpoint that is whole"));
 }
-END_TEST
 
 /* ---- What is in the way ---- */
 
-START_TEST(failed_write_keeps_others)
+UNIT_TEST(failed_write_keeps_others)
 {
     char path[200];
     write_one(1);
@@ -338,10 +327,9 @@ START_TEST(failed_write_keeps_others)
     write_one(2);
     check_mark(2);
 }
-END_TEST
 
 /* Half a file of a run that was killed goes, what is not ours stays. */
-START_TEST(cleans_up)
+UNIT_TEST(cleans_up)
 {
     char half[200], other[200];
     write_one(1);
@@ -354,33 +342,9 @@ START_TEST(cleans_up)
         ck_assert_ptr_nonnull(file);
         fclose(file);
     }
-    ck_assert_int_eq(output_checkpoints_open(&checkpoints, sample.folder, &error), 0);
+    UNIT_FINE(output_checkpoints_open(&checkpoints, sample.folder, &error));
     ck_assert(access(half, F_OK) != 0 && access(other, F_OK) == 0);
-    ck_assert_int_eq(output_checkpoints_forget(sample.folder, &error), 0);
+    UNIT_FINE(output_checkpoints_forget(sample.folder, &error));
     ck_assert(!is_there(1) && access(other, F_OK) == 0);
     ck_assert_int_eq(unlink(other), 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("checkpoint");
-    TCase *tcase = tcase_create("checkpoint");
-    tcase_add_checked_fixture(tcase, start, end);
-    tcase_add_test(tcase, reads_back);
-    tcase_add_test(tcase, three_are_kept);
-    tcase_add_test(tcase, three_are_kept_after_a_run_that_was_killed);
-    tcase_add_test(tcase, the_oldest_gives_its_room);
-    tcase_add_test(tcase, what_has_another_name_stays);
-    tcase_add_test(tcase, counts_on);
-    tcase_add_test(tcase, other_numbers_are_nobodys);
-    tcase_add_test(tcase, the_last_number);
-    tcase_add_test(tcase, only_plain_files_are_read);
-    tcase_add_test(tcase, every_length);
-    tcase_add_test(tcase, every_bit);
-    tcase_add_test(tcase, none_is_said);
-    tcase_add_test(tcase, failed_write_keeps_others);
-    tcase_add_test(tcase, cleans_up);
-    suite_add_tcase(suite, tcase);
-    return unit_run(suite);
 }

@@ -13,7 +13,6 @@
 enum { N = 5, BLOCKS = 2 };
 static const int32_t BLOCK[N] = {0, 1, -1, 1, 0};
 
-static struct sample sample;
 static struct output_colours *writer;
 static struct output_colours_read *reader;
 static struct cloth_error error;
@@ -21,32 +20,31 @@ static char path[200];
 
 static void make(void)
 {
-    sample_make(&sample);
+    sample_make();
     snprintf(path, sizeof path, "%s/colours.bin", sample.folder);
 }
 
 static void end(void)
 {
     output_colours_unload(reader);
-    sample_free(&sample);
+    sample_free();
 }
 
 static void begins(const uint64_t *n_frames)
 {
-    ck_assert_msg(!output_colours_open(&writer, sample.folder, N, n_frames, &error), "%s",
-                  error.text);
+    UNIT_FINE(output_colours_open(&writer, sample.folder, N, n_frames, &error));
 }
 
 static void ends(void)
 {
-    ck_assert_int_eq(output_colours_close(&writer, &error), 0);
+    UNIT_FINE(output_colours_close(&writer, &error));
     ck_assert_ptr_null(writer);
 }
 
 static void places(uint64_t frame, int32_t first, int32_t second)
 {
     const int32_t rank[BLOCKS] = {first, second};
-    ck_assert_int_eq(output_colours_places(writer, frame, BLOCK, BLOCKS, rank, &error), 0);
+    UNIT_FINE(output_colours_places(writer, frame, BLOCK, BLOCKS, rank, &error));
 }
 
 static long size_of(void)
@@ -62,32 +60,33 @@ static long size_of(void)
 static void opens(void)
 {
     output_colours_unload(reader);
-    ck_assert_msg(!output_colours_load(&reader, sample.folder, N, &error), "%s", error.text);
+    UNIT_FINE(output_colours_load(&reader, sample.folder, N, &error));
 }
 
 static void has_ranks(uint64_t frame, int32_t first, int32_t second)
 {
     int32_t rank[N];
     const int32_t expected[N] = {first, second, -1, second, first};
-    ck_assert_msg(!output_colours_ranks(reader, frame, rank, &error), "%s", error.text);
+    UNIT_FINE(output_colours_ranks(reader, frame, rank, &error));
     ck_assert_mem_eq(rank, expected, sizeof rank);
 }
 
-START_TEST(places_are_read_again)
+UNIT_FIXTURE(make, end)
+
+UNIT_TEST(places_are_read_again)
 {
     int32_t block[N];
     begins(NULL);
     places(0, 0, 3);
     ends();
     opens();
-    ck_assert_int_eq(output_colours_blocks(reader, 7, block, &error), 0);
+    UNIT_FINE(output_colours_blocks(reader, 7, block, &error));
     ck_assert_mem_eq(block, BLOCK, sizeof block);
     has_ranks(0, 0, 3);
     has_ranks(7, 0, 3);
 }
-END_TEST
 
-START_TEST(only_what_changes_is_written_again)
+UNIT_TEST(only_what_changes_is_written_again)
 {
     begins(NULL);
     places(0, 0, 1);
@@ -102,9 +101,8 @@ START_TEST(only_what_changes_is_written_again)
     has_ranks(2, 1, 1);
     has_ranks(1, 0, 1);
 }
-END_TEST
 
-START_TEST(a_run_that_goes_on_keeps_what_came_before)
+UNIT_TEST(a_run_that_goes_on_keeps_what_came_before)
 {
     const uint64_t two = 2;
     begins(NULL);
@@ -121,9 +119,8 @@ START_TEST(a_run_that_goes_on_keeps_what_came_before)
     ends();
     ck_assert_int_eq(size_of(), 16);
 }
-END_TEST
 
-START_TEST(what_is_not_whole_was_not_written)
+UNIT_TEST(what_is_not_whole_was_not_written)
 {
     begins(NULL);
     places(0, 0, 1);
@@ -141,13 +138,12 @@ START_TEST(what_is_not_whole_was_not_written)
     ck_assert_int_eq(output_colours_blocks(reader, 0, block, &error), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "does not say the blocks of frame 0"));
 }
-END_TEST
 
 /* A triangle, an edge, two materials. */
 static void fill(struct output_rest *rest)
 {
     *rest = (struct output_rest){.n_triangles = 1, .n_edges = 1, .n_materials = 2};
-    ck_assert_int_eq(output_rest_make(rest, &error), 0);
+    UNIT_FINE(output_rest_make(rest, &error));
     memcpy(rest->corner[0], (uint32_t[]){2, 0, 4, 1}, sizeof *rest->corner);
     memcpy(rest->gradient[0], (double[]){1, -2, 0.5, 4}, sizeof *rest->gradient);
     rest->area[0] = 0.125;
@@ -159,28 +155,25 @@ static void fill(struct output_rest *rest)
 
 static void write_rest(uint64_t frame)
 {
-    struct output_rest rest;
+    UNIT_OWNED(output_rest_free) struct output_rest rest;
     fill(&rest);
-    ck_assert_int_eq(output_colours_rest(writer, frame, &rest, &error), 0);
-    output_rest_free(&rest);
+    UNIT_FINE(output_colours_rest(writer, frame, &rest, &error));
 }
 
-START_TEST(the_size_is_known_before)
+UNIT_TEST(the_size_is_known_before)
 {
-    struct output_rest rest;
+    UNIT_OWNED(output_rest_free) struct output_rest rest;
     begins(NULL);
     write_rest(0);
     places(0, 0, 1);
     ends();
     fill(&rest);
     ck_assert_int_eq(size_of(), (long)output_colours_bytes(N, BLOCKS, &rest));
-    output_rest_free(&rest);
 }
-END_TEST
 
-START_TEST(shapes_are_read_again)
+UNIT_TEST(shapes_are_read_again)
 {
-    struct output_rest rest, read;
+    UNIT_OWNED(output_rest_free) struct output_rest rest, read;
     begins(NULL);
     write_rest(0);
     write_rest(3);
@@ -189,7 +182,7 @@ START_TEST(shapes_are_read_again)
     fill(&rest);
     ck_assert_uint_eq(output_colours_rest_since(reader, 2), 0);
     ck_assert_uint_eq(output_colours_rest_since(reader, 9), 3);
-    ck_assert_int_eq(output_colours_rest_at(reader, 2, &read, &error), 0);
+    UNIT_FINE(output_colours_rest_at(reader, 2, &read, &error));
     ck_assert_uint_eq(read.n_triangles, 1);
     ck_assert_mem_eq(read.corner, rest.corner, sizeof *rest.corner);
     ck_assert_mem_eq(read.gradient, rest.gradient, sizeof *rest.gradient);
@@ -198,10 +191,7 @@ START_TEST(shapes_are_read_again)
     ck_assert_double_eq(read.length[0], rest.length[0]);
     ck_assert_mem_eq(read.modulus, rest.modulus, 2 * sizeof *rest.modulus);
     ck_assert(!read.has_stress[0] && read.has_stress[1]);
-    output_rest_free(&rest);
-    output_rest_free(&read);
 }
-END_TEST
 
 static void put(long at, unsigned char byte)
 {
@@ -213,7 +203,7 @@ static void put(long at, unsigned char byte)
 }
 
 /* Any byte may be any other: what is read then is in range, or refused. */
-START_TEST(damage_does_no_harm)
+UNIT_TEST(damage_does_no_harm)
 {
     begins(NULL);
     places(0, 0, 1);
@@ -250,9 +240,8 @@ START_TEST(damage_does_no_harm)
     ck_assert_int_eq(output_colours_load(&reader, sample.folder, N + 1, &error), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "of another mesh than cloth.obj"));
 }
-END_TEST
 
-START_TEST(a_file_of_somebody_else_stays)
+UNIT_TEST(a_file_of_somebody_else_stays)
 {
     FILE *file = fopen(path, "w");
     ck_assert_ptr_nonnull(file);
@@ -263,29 +252,9 @@ START_TEST(a_file_of_somebody_else_stays)
     output_colours_close(&writer, &error);
     ck_assert_int_eq(size_of(), 5);
 }
-END_TEST
 
-START_TEST(without_a_file_it_says_who_writes_it)
+UNIT_TEST(without_a_file_it_says_who_writes_it)
 {
     ck_assert_int_eq(output_colours_load(&reader, sample.folder, N, &error), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "duite-cloth --output writes it"));
-}
-END_TEST
-
-int main(void)
-{
-    TCase *tests = tcase_create("colours");
-    tcase_add_checked_fixture(tests, make, end);
-    tcase_add_test(tests, places_are_read_again);
-    tcase_add_test(tests, only_what_changes_is_written_again);
-    tcase_add_test(tests, a_run_that_goes_on_keeps_what_came_before);
-    tcase_add_test(tests, what_is_not_whole_was_not_written);
-    tcase_add_test(tests, the_size_is_known_before);
-    tcase_add_test(tests, shapes_are_read_again);
-    tcase_add_test(tests, damage_does_no_harm);
-    tcase_add_test(tests, a_file_of_somebody_else_stays);
-    tcase_add_test(tests, without_a_file_it_says_who_writes_it);
-    Suite *suite = suite_create("colours");
-    suite_add_tcase(suite, tests);
-    return unit_run(suite);
 }

@@ -56,18 +56,6 @@ int rename(const char *from, const char *to)
     return strikes() ? -1 : (int)syscall(SYS_rename, from, to);
 }
 
-static struct sample sample;
-
-static void start(void)
-{
-    sample_make(&sample);
-}
-
-static void end(void)
-{
-    sample_free(&sample);
-}
-
 /* Runs 3 frames of run 2, to die at call n. settles: a thread brings them to the disk. Returns
  * whether it got through. */
 static int survives(long n, bool settles)
@@ -79,7 +67,7 @@ static int survives(long n, bool settles)
         sample.settles = settles;
         mode = DIE;
         calls_left = n;
-        sample_run(&sample, 2, 3);
+        sample_run(2, 3);
         _exit(0);
     }
     int status = 0;
@@ -92,58 +80,57 @@ static int survives(long n, bool settles)
  * cache. */
 static int check_folder(void)
 {
-    struct cloth_error error = {0};
     struct output_cache cache;
-    if (access(sample_path(&sample, "cloth.pc2"), F_OK) != 0)
+    if (access(sample_path("cloth.pc2"), F_OK) != 0)
         return -1;
-    ck_assert_msg(output_cache_open(&cache, sample.frames, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_cache_open(&cache, sample.frames, &error));
     int n = (int)cache.n_frames;
     unsigned run = n == 4 ? 1 : 2;
     double want[3 * SAMPLE_POINTS], got[3 * SAMPLE_POINTS];
     for (int i = 0; i < n; i++) {
         sample_positions(run, (uint64_t)i, want);
-        ck_assert_int_eq(output_cache_frame(&cache, (uint64_t)i, got, &error), 0);
+        UNIT_FINE(output_cache_frame(&cache, (uint64_t)i, got, &error));
         ck_assert_mem_eq(got, want, sizeof want);
     }
     output_cache_close(&cache);
     return n;
 }
 
-START_TEST(dies_anywhere)
+UNIT_FIXTURE(sample_make, sample_free)
+
+UNIT_TEST(dies_anywhere)
 {
     int seen[6] = {0}, through = 0;
     for (long n = 0; !through; n++) {
         ck_assert_int_lt(n, 200);
-        sample_run(&sample, 1, 4);
+        sample_run(1, 4);
         through = survives(n, false);
         seen[check_folder() + 1]++;
     }
     for (int i = 0; i < 6; i++) /* none, 0 .. 3 of the new run, 4 of the old one */
         ck_assert_msg(seen[i] > 0, "never ended with %d frames", i - 1);
 }
-END_TEST
 
-START_TEST(dies_anywhere_with_a_thread)
+UNIT_TEST(dies_anywhere_with_a_thread)
 {
     int through = 0;
     for (long n = 0; !through; n++) {
         ck_assert_int_lt(n, 200);
-        sample_run(&sample, 1, 4);
+        sample_run(1, 4);
         through = survives(n, true);
         check_folder();
     }
     ck_assert_int_eq(check_folder(), 3);
 }
-END_TEST
 
-START_TEST(fails_to_open_whole)
+UNIT_TEST(fails_to_open_whole)
 {
     int opened = 0;
     for (long n = 0; !opened; n++) {
         ck_assert_int_lt(n, 200);
         struct cloth_error error = {0};
         struct output_frames *frames = NULL;
-        sample_run(&sample, 1, 4);
+        sample_run(1, 4);
         mode = FULL;
         calls_left = n;
         int code = output_open(&frames, &sample.setup, &error);
@@ -154,13 +141,12 @@ START_TEST(fails_to_open_whole)
         int left = check_folder();
         ck_assert(code == 0 ? left == 0 : left == 4 || left == -1);
         output_close(&frames, &error);
-        ck_assert_int_ne(access(sample_path(&sample, "cloth.pc2.part"), F_OK), 0);
+        ck_assert_int_ne(access(sample_path("cloth.pc2.part"), F_OK), 0);
     }
 }
-END_TEST
 
 /* A disk that fails is no mistake of the user; a folder that may not be written to is. */
-START_TEST(tells_whose_fault)
+UNIT_TEST(tells_whose_fault)
 {
     static const struct {
         int reason, code;
@@ -169,7 +155,7 @@ START_TEST(tells_whose_fault)
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         struct cloth_error error = {0};
         struct output_frames *frames = NULL;
-        sample_run(&sample, 1, 1);
+        sample_run(1, 1);
         reason = all[i].reason;
         mode = FULL;
         calls_left = 4; /* after four files: the old cache is not to be removed */
@@ -181,10 +167,9 @@ START_TEST(tells_whose_fault)
     }
     reason = ENOSPC;
 }
-END_TEST
 
 /* A frame that fails takes its own bytes away, and the next try succeeds. */
-START_TEST(full_disk_keeps_whole_frames)
+UNIT_TEST(full_disk_keeps_whole_frames)
 {
     int through = 0;
     for (long n = 0; !through; n++) {
@@ -193,9 +178,9 @@ START_TEST(full_disk_keeps_whole_frames)
         struct output_frames *frames = NULL;
         double position[3 * SAMPLE_POINTS];
         struct stat status;
-        ck_assert_int_eq(output_open(&frames, &sample.setup, &error), 0);
+        UNIT_FINE(output_open(&frames, &sample.setup, &error));
         sample_positions(2, 0, position);
-        ck_assert_int_eq(output_frame(frames, 0, 0, position, &error), 0);
+        UNIT_FINE(output_frame(frames, 0, 0, position, &error));
         sample_positions(2, 1, position);
         mode = FULL;
         calls_left = n;
@@ -203,24 +188,23 @@ START_TEST(full_disk_keeps_whole_frames)
         through = calls_left >= 0;
         mode = OFF;
         ck_assert_int_eq(check_folder(), through ? 2 : 1);
-        stat(sample_path(&sample, "cloth.pc2"), &status);
+        stat(sample_path("cloth.pc2"), &status);
         ck_assert_int_eq(status.st_size, 32 + (through ? 2 : 1) * 12 * SAMPLE_POINTS);
-        stat(sample_path(&sample, "frames.csv"), &status);
+        stat(sample_path("frames.csv"), &status);
         ck_assert_int_eq(status.st_size, through ? 38 : 15);
         if (!through) {
             ck_assert_int_eq(code, CLOTH_E_IO);
             ck_assert_ptr_nonnull(strstr(error.text, "No space left"));
             error.code = 0;
-            ck_assert_int_eq(output_frame(frames, 1, 0.04, position, &error), 0);
+            UNIT_FINE(output_frame(frames, 1, 0.04, position, &error));
             ck_assert_int_eq(check_folder(), 2);
         }
         output_close(&frames, &error);
     }
 }
-END_TEST
 
 /* What a thread cannot bring to the disk is said by what follows, which is taken away, too. */
-START_TEST(full_disk_is_said_later)
+UNIT_TEST(full_disk_is_said_later)
 {
     int through = 0;
     for (long n = 0; !through; n++) {
@@ -228,11 +212,11 @@ START_TEST(full_disk_is_said_later)
         struct cloth_error error = {0};
         struct output_frames *frames = NULL;
         double position[3 * SAMPLE_POINTS];
-        ck_assert_int_eq(output_settler_open(&sample.setup.settler, &error), 0);
-        ck_assert_int_eq(output_open(&frames, &sample.setup, &error), 0);
+        UNIT_FINE(output_settler_open(&sample.setup.settler, &error));
+        UNIT_FINE(output_open(&frames, &sample.setup, &error));
         sample_positions(2, 0, position);
-        ck_assert_int_eq(output_frame(frames, 0, 0, position, &error), 0);
-        ck_assert_int_eq(output_settler_wait(sample.setup.settler, &error), 0);
+        UNIT_FINE(output_frame(frames, 0, 0, position, &error));
+        UNIT_FINE(output_settler_wait(sample.setup.settler, &error));
         sample_positions(2, 1, position);
         mode = FULL;
         calls_left = n;
@@ -251,14 +235,13 @@ START_TEST(full_disk_is_said_later)
         ck_assert_int_eq(output_settler_close(&sample.setup.settler, &error), settled);
         output_close(&frames, &error);
         struct stat status;
-        stat(sample_path(&sample, "frames.csv"), &status);
+        stat(sample_path("frames.csv"), &status);
         ck_assert_int_eq(status.st_size, through ? 38 : 15);
         ck_assert_int_eq(check_folder(), through ? 2 : 1);
     }
 }
-END_TEST
 
-START_TEST(report_is_whole_or_not_at_all)
+UNIT_TEST(report_is_whole_or_not_at_all)
 {
     char path[96], part[144], text[64];
     snprintf(path, sizeof path, "%s/report.json", sample.folder);
@@ -269,7 +252,7 @@ START_TEST(report_is_whole_or_not_at_all)
         struct cloth_error error = {0};
         struct output_report *report = NULL;
         sample_write(path, "old", 3);
-        ck_assert_int_eq(output_report_new(&report, &error), 0);
+        UNIT_FINE(output_report_new(&report, &error));
         output_report_integer(report, "steps", 3);
         mode = FULL;
         calls_left = n;
@@ -282,21 +265,4 @@ START_TEST(report_is_whole_or_not_at_all)
         ck_assert_int_ne(access(part, F_OK), 0);
         ck_assert_str_eq(text, through ? "{\n  \"steps\": 3\n}\n" : "old");
     }
-}
-END_TEST
-
-int main(void)
-{
-    TCase *c = tcase_create("crash");
-    tcase_add_checked_fixture(c, start, end);
-    tcase_add_test(c, dies_anywhere);
-    tcase_add_test(c, dies_anywhere_with_a_thread);
-    tcase_add_test(c, full_disk_is_said_later);
-    tcase_add_test(c, fails_to_open_whole);
-    tcase_add_test(c, tells_whose_fault);
-    tcase_add_test(c, full_disk_keeps_whole_frames);
-    tcase_add_test(c, report_is_whole_or_not_at_all);
-    Suite *s = suite_create("output_crash");
-    suite_add_tcase(s, c);
-    return unit_run(s);
 }

@@ -6,25 +6,15 @@
 #include <string.h>
 #include <unistd.h>
 
-static struct sample sample;
+UNIT_FIXTURE(sample_make, sample_free)
 
-static void start(void)
-{
-    sample_make(&sample);
-}
-
-static void end(void)
-{
-    sample_free(&sample);
-}
-
-START_TEST(comes_back)
+UNIT_TEST(comes_back)
 {
     struct cloth_error error = {0};
     struct output_cache cache;
     double want[3 * SAMPLE_POINTS], got[3 * SAMPLE_POINTS];
-    sample_run(&sample, 1, 3);
-    ck_assert_msg(output_cache_open(&cache, sample.frames, &error) == 0, "%s", error.text);
+    sample_run(1, 3);
+    UNIT_FINE(output_cache_open(&cache, sample.frames, &error));
     ck_assert_uint_eq(cache.n_frames, 3);
     ck_assert_uint_eq(cache.mesh.n_vertices, SAMPLE_POINTS);
     ck_assert_uint_eq(cache.mesh.n_faces, sample.mesh[0].n_faces + 1);
@@ -35,7 +25,7 @@ START_TEST(comes_back)
     ck_assert_mem_eq(cache.mesh.position, sample.mesh[0].position, 12 * 3 * sizeof(double));
     for (uint64_t i = 3; i-- > 0;) {
         sample_positions(1, i, want);
-        ck_assert_int_eq(output_cache_frame(&cache, i, got, &error), 0);
+        UNIT_FINE(output_cache_frame(&cache, i, got, &error));
         ck_assert_mem_eq(got, want, sizeof want);
         ck_assert(cache.time[i] == (double)i / 25);
     }
@@ -43,9 +33,8 @@ START_TEST(comes_back)
     ck_assert_ptr_nonnull(strstr(error.text, "3 frames"));
     output_cache_close(&cache);
 }
-END_TEST
 
-START_TEST(header_is_exact)
+UNIT_TEST(header_is_exact)
 {
     static const char WANT[36] = "POINTCACHE2\0"
                                  "\1\0\0\0"
@@ -55,73 +44,66 @@ START_TEST(header_is_exact)
                                  "\2\0\0\0"      /* 2 frames */
                                  "\0\0\372\104"; /* 2000.0f */
     char got[4096];
-    sample_run(&sample, 2, 2);
-    size_t n = sample_read(sample_path(&sample, "cloth.pc2"), got, sizeof got);
+    sample_run(2, 2);
+    size_t n = sample_read(sample_path("cloth.pc2"), got, sizeof got);
     ck_assert_uint_eq(n, 32 + 2 * 12 * SAMPLE_POINTS);
     ck_assert_mem_eq(got, WANT, 36);
 }
-END_TEST
 
-START_TEST(obj_keeps_faces)
+UNIT_TEST(obj_keeps_faces)
 {
     char text[4096];
-    sample_run(&sample, 1, 0);
-    sample_read(sample_path(&sample, "cloth.obj"), text, sizeof text);
+    sample_run(1, 0);
+    sample_read(sample_path("cloth.obj"), text, sizeof text);
     ck_assert_ptr_eq(strstr(text, "o sheet\nv -0.5 0 -0.5\n"), text);
     ck_assert_ptr_nonnull(strstr(text, "\no a_patch\nv 2 0 0\n"));
     ck_assert_ptr_nonnull(strstr(text, "\nf 13 14 15 16\nl 13 15\n"));
     ck_assert_ptr_nonnull(strstr(text, " 12/12"));
-    sample_read(sample_path(&sample, "frames.csv"), text, sizeof text);
+    sample_read(sample_path("frames.csv"), text, sizeof text);
     ck_assert_str_eq(text, "frame,time\n");
 }
-END_TEST
 
-START_TEST(index_tells_time)
+UNIT_TEST(index_tells_time)
 {
     char text[256];
-    sample_run(&sample, 1, 3);
-    sample_read(sample_path(&sample, "frames.csv"), text, sizeof text);
+    sample_run(1, 3);
+    sample_read(sample_path("frames.csv"), text, sizeof text);
     ck_assert_str_eq(text, "frame,time\n0,0\n1,0.040000000000000001\n2,0.080000000000000002\n");
 }
-END_TEST
 
-START_TEST(replaces_an_earlier_run)
+UNIT_TEST(replaces_an_earlier_run)
 {
-    struct cloth_error error = {0};
     struct output_cache cache;
-    sample_run(&sample, 1, 5);
-    sample_run(&sample, 2, 1);
-    ck_assert_msg(output_cache_open(&cache, sample.frames, &error) == 0, "%s", error.text);
+    sample_run(1, 5);
+    sample_run(2, 1);
+    UNIT_FINE(output_cache_open(&cache, sample.frames, &error));
     ck_assert_uint_eq(cache.n_frames, 1);
     output_cache_close(&cache);
 }
-END_TEST
 
 /* The bytes of a frame and its line are there, but the count was not rewritten. */
-START_TEST(interrupted_frame_is_ignored)
+UNIT_TEST(interrupted_frame_is_ignored)
 {
-    struct cloth_error error = {0};
     struct output_cache cache;
-    sample_run(&sample, 1, 2);
-    FILE *file = fopen(sample_path(&sample, "cloth.pc2"), "ab");
+    sample_run(1, 2);
+    FILE *file = fopen(sample_path("cloth.pc2"), "ab");
     fwrite("half a frame", 1, 12, file);
     fclose(file);
-    file = fopen(sample_path(&sample, "frames.csv"), "ab");
+    file = fopen(sample_path("frames.csv"), "ab");
     fputs("2,0.0", file);
     fclose(file);
-    ck_assert_msg(output_cache_open(&cache, sample.frames, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_cache_open(&cache, sample.frames, &error));
     ck_assert_uint_eq(cache.n_frames, 2);
     output_cache_close(&cache);
 }
-END_TEST
 
-START_TEST(refuses_bad_frames)
+UNIT_TEST(refuses_bad_frames)
 {
     struct cloth_error error = {0};
     struct output_frames *frames = NULL;
     double position[3 * SAMPLE_POINTS];
     sample_positions(1, 0, position);
-    ck_assert_int_eq(output_open(&frames, &sample.setup, &error), 0);
+    UNIT_FINE(output_open(&frames, &sample.setup, &error));
     ck_assert_int_eq(output_frame(frames, 1, 0, position, &error), CLOTH_E_RUN);
     error.code = 0;
     position[4] = 1e39; /* no float */
@@ -129,12 +111,11 @@ START_TEST(refuses_bad_frames)
     ck_assert_ptr_nonnull(strstr(error.text, "vertex 2 "));
     error.code = 0;
     position[4] = 0;
-    ck_assert_int_eq(output_frame(frames, 0, 0, position, &error), 0);
-    ck_assert_int_eq(output_close(&frames, &error), 0);
+    UNIT_FINE(output_frame(frames, 0, 0, position, &error));
+    UNIT_FINE(output_close(&frames, &error));
 }
-END_TEST
 
-START_TEST(taken_away_while_it_runs)
+UNIT_TEST(taken_away_while_it_runs)
 {
     static const char *const name[] = {"cloth.pc2", "frames.csv"};
     for (int i = 0; i < 3; i++) {
@@ -142,31 +123,28 @@ START_TEST(taken_away_while_it_runs)
         struct output_frames *frames = NULL, *other = NULL;
         double position[3 * SAMPLE_POINTS];
         sample_positions(1, 0, position);
-        ck_assert_int_eq(output_open(&frames, &sample.setup, &error), 0);
-        ck_assert_int_eq(output_frame(frames, 0, 0, position, &error), 0);
+        UNIT_FINE(output_open(&frames, &sample.setup, &error));
+        UNIT_FINE(output_frame(frames, 0, 0, position, &error));
         if (i < 2)
-            ck_assert_int_eq(unlink(sample_path(&sample, name[i])), 0);
+            ck_assert_int_eq(unlink(sample_path(name[i])), 0);
         else /* another run */
-            ck_assert_int_eq(output_open(&other, &sample.setup, &error), 0);
+            UNIT_FINE(output_open(&other, &sample.setup, &error));
         ck_assert_int_eq(output_frame(frames, 1, 0.04, position, &error), CLOTH_E_IO);
-        ck_assert_msg(i == 2 || strstr(error.text, sample_path(&sample, name[i])), "%s",
-                      error.text);
+        ck_assert_msg(i == 2 || strstr(error.text, sample_path(name[i])), "%s", error.text);
         ck_assert_ptr_nonnull(strstr(error.text, "was removed or replaced"));
         error.code = 0;
-        ck_assert_int_eq(output_close(&frames, &error), 0);
-        ck_assert_int_eq(output_close(&other, &error), 0);
+        UNIT_FINE(output_close(&frames, &error));
+        UNIT_FINE(output_close(&other, &error));
     }
 }
-END_TEST
 
-START_TEST(makes_parents)
+UNIT_TEST(makes_parents)
 {
     char deep[128];
     snprintf(deep, sizeof deep, "%s/a/b/c/", sample.folder);
     sample.setup.folder = deep;
-    sample_run(&sample, 1, 1);
+    sample_run(1, 1);
 }
-END_TEST
 
 #define MOVES(keys)                                                                                \
     "{\"fps\": 25, \"obstacles\": [{\"sphere\": {\"centre\": [0, 0, 0], \"radius\": 1}, "          \
@@ -211,46 +189,24 @@ static const struct damage {
     {"cloth.obj", -1, "v 0 0\n", "cloth.obj"},
 };
 
-START_TEST(refuses_damage)
+UNIT_LOOP(refuses_damage, 0, sizeof DAMAGES / sizeof *DAMAGES)
 {
     const struct damage *damage = &DAMAGES[_i];
     struct cloth_error error = {0};
     struct output_cache cache;
-    sample_run(&sample, 1, 2);
-    FILE *file = fopen(sample_path(&sample, damage->file), damage->at < 0 ? "wb" : "r+b");
+    sample_run(1, 2);
+    FILE *file = fopen(sample_path(damage->file), damage->at < 0 ? "wb" : "r+b");
     fseek(file, damage->at < 0 ? 0 : damage->at, SEEK_SET);
     fputs(damage->text, file);
     fclose(file);
     ck_assert_int_eq(output_cache_open(&cache, sample.frames, &error), CLOTH_E_INPUT);
     ck_assert_msg(strstr(error.text, damage->says) != NULL, "%s", error.text);
 }
-END_TEST
 
-START_TEST(refuses_no_folder)
+UNIT_TEST(refuses_no_folder)
 {
     struct cloth_error error = {0};
     struct output_cache cache;
     ck_assert_int_eq(output_cache_open(&cache, sample.frames, &error), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "No such file"));
-}
-END_TEST
-
-int main(void)
-{
-    TCase *c = tcase_create("frames");
-    tcase_add_checked_fixture(c, start, end);
-    tcase_add_test(c, comes_back);
-    tcase_add_test(c, header_is_exact);
-    tcase_add_test(c, obj_keeps_faces);
-    tcase_add_test(c, index_tells_time);
-    tcase_add_test(c, replaces_an_earlier_run);
-    tcase_add_test(c, interrupted_frame_is_ignored);
-    tcase_add_test(c, refuses_bad_frames);
-    tcase_add_test(c, taken_away_while_it_runs);
-    tcase_add_test(c, makes_parents);
-    tcase_add_loop_test(c, refuses_damage, 0, sizeof DAMAGES / sizeof *DAMAGES);
-    tcase_add_test(c, refuses_no_folder);
-    Suite *s = suite_create("output");
-    suite_add_tcase(s, c);
-    return unit_run(s);
 }

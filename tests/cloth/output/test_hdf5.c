@@ -12,7 +12,6 @@
 enum { POINTS = 5, TRIANGLES = 2, EDGES = 1, CELLS = TRIANGLES + EDGES };
 static const uint32_t TRIANGLE[TRIANGLES][3] = {{0, 1, 2}, {2, 1, 3}}, EDGE[EDGES][2] = {{3, 4}};
 
-static struct sample sample;
 static unsigned warnings;
 static char warning[1200];
 
@@ -75,13 +74,12 @@ static void give(struct output_hdf5 *frames, uint64_t frame)
 /* Writes those of the frames from one up to, not including, another that it takes. */
 static void run_from(const struct output_hdf5_setup *setup, uint64_t first, uint64_t end)
 {
-    struct cloth_error error = {0};
     struct output_hdf5 *frames;
-    ck_assert_msg(output_hdf5_open(&frames, setup, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_hdf5_open(&frames, setup, &error));
     for (uint64_t i = first; i < end; i++)
         if (output_hdf5_takes(frames, i))
             give(frames, i);
-    ck_assert_msg(output_hdf5_close(&frames, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_hdf5_close(&frames, &error));
     ck_assert_ptr_null(frames);
 }
 
@@ -175,16 +173,18 @@ static void check_frame(uint64_t frame, bool is_double)
 
 static void start(void)
 {
-    sample_make(&sample);
+    sample_make();
     warnings = derived = 0;
 }
 
 static void end(void)
 {
-    sample_free(&sample);
+    sample_free();
 }
 
-START_TEST(comes_back)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(comes_back)
 {
     for (int i = 0; i < 4; i++) {
         const struct output_hdf5_setup setup = setup_of(i % 2, 1, i / 2 ? 6 : 0);
@@ -194,9 +194,8 @@ START_TEST(comes_back)
     }
     ck_assert_uint_eq(derived, 4 * 5);
 }
-END_TEST
 
-START_TEST(every_third)
+UNIT_TEST(every_third)
 {
     char text[512];
     const struct output_hdf5_setup setup = setup_of(true, 3, 0);
@@ -210,10 +209,9 @@ START_TEST(every_third)
               "{\"name\": \"hdf5/frame-000003.vtkhdf\", \"time\": 0.12},\n"
               "{\"name\": \"hdf5/frame-000006.vtkhdf\", \"time\": 0.23999999999999999}]\n}\n");
 }
-END_TEST
 
 /* Equal frames are equal bytes, whenever they are written. */
-START_TEST(equal_frames_are_equal_files)
+UNIT_TEST(equal_frames_are_equal_files)
 {
     char one[65536], two[65536];
     const struct output_hdf5_setup setup = setup_of(false, 1, 0);
@@ -225,11 +223,9 @@ START_TEST(equal_frames_are_equal_files)
     ck_assert_mem_eq(one, two, n);
     ck_assert((double)n <= output_hdf5_bytes(&setup));
 }
-END_TEST
 
-START_TEST(replaces_an_earlier_run)
+UNIT_TEST(replaces_an_earlier_run)
 {
-    struct cloth_error error = {0};
     const struct output_hdf5_setup setup = setup_of(false, 1, 0);
     run(&setup, 3);
     sample_write(path_of("hdf5/frame-000007.vtkhdf.part"), "x", 1);
@@ -237,13 +233,12 @@ START_TEST(replaces_an_earlier_run)
     run(&setup, 1);
     ck_assert(is_there("hdf5/frame-000000.vtkhdf") && !is_there("hdf5/frame-000001.vtkhdf"));
     ck_assert(!is_there("hdf5/frame-000007.vtkhdf.part") && is_there("hdf5/mine.txt"));
-    ck_assert_int_eq(output_hdf5_forget(sample.folder, NULL, &error), 0);
+    UNIT_FINE(output_hdf5_forget(sample.folder, NULL, &error));
     ck_assert(!is_there("hdf5/frame-000000.vtkhdf") && !is_there("cloth.xmf"));
     ck_assert(is_there("hdf5/mine.txt"));
 }
-END_TEST
 
-START_TEST(leaves_what_is_not_ours)
+UNIT_TEST(leaves_what_is_not_ours)
 {
     struct cloth_error error = {0};
     struct output_hdf5 *frames;
@@ -251,10 +246,9 @@ START_TEST(leaves_what_is_not_ours)
     sample_write(path_of("cloth.xmf"), "mine", 4);
     ck_assert_int_eq(output_hdf5_open(&frames, &setup, &error), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "cloth.xmf is in the way"));
-    ck_assert_int_eq(output_hdf5_forget(sample.folder, NULL, &error), 0);
+    UNIT_FINE(output_hdf5_forget(sample.folder, NULL, &error));
     ck_assert(is_there("cloth.xmf"));
 }
-END_TEST
 
 enum { TEXT = 65536 };
 static const char *const INDEXES[] = {"cloth.vtkhdf.series", "cloth.xmf"};
@@ -293,19 +287,17 @@ static void check_going_on(uint32_t every, uint64_t stay)
               !is_there("hdf5/cloth.xmf.spare"));
 }
 
-START_TEST(goes_on_with_an_earlier_run)
+UNIT_TEST(goes_on_with_an_earlier_run)
 {
     for (uint64_t stay = 0; stay <= 5; stay++)
         for (uint32_t every = 1; every <= 2; every++)
             check_going_on(every, stay);
 }
-END_TEST
 
 /* Frames that stay, and are not gone on with: a later scene does not ask for any. */
-START_TEST(keeps_frames_of_a_run_that_writes_no_more)
+UNIT_TEST(keeps_frames_of_a_run_that_writes_no_more)
 {
     static char alone[2][TEXT], text[TEXT];
-    struct cloth_error error = {0};
     const uint64_t stay = 3;
     const struct output_hdf5_setup setup = setup_of(true, 1, 0);
     run(&setup, 3);
@@ -313,7 +305,7 @@ START_TEST(keeps_frames_of_a_run_that_writes_no_more)
         sample_read(path_of(INDEXES[i]), alone[i], TEXT);
     run(&setup, 5);
     for (int again = 0; again < 2; again++)
-        ck_assert_int_eq(output_hdf5_forget(sample.folder, &stay, &error), 0);
+        UNIT_FINE(output_hdf5_forget(sample.folder, &stay, &error));
     for (int i = 0; i < 2; i++) {
         sample_read(path_of(INDEXES[i]), text, TEXT);
         ck_assert_str_eq(text, alone[i]);
@@ -321,10 +313,9 @@ START_TEST(keeps_frames_of_a_run_that_writes_no_more)
     check_frame(2, true);
     ck_assert(!is_there("hdf5/frame-000003.vtkhdf") && !is_there("hdf5/cloth.xmf.part"));
 }
-END_TEST
 
 /* An earlier run that had none is gone on with from the frame that is next. */
-START_TEST(begins_with_a_later_frame)
+UNIT_TEST(begins_with_a_later_frame)
 {
     char text[512];
     const uint64_t stay = 2;
@@ -336,7 +327,6 @@ START_TEST(begins_with_a_later_frame)
                            "{\"name\": \"hdf5/frame-000002.vtkhdf\", \"time\": "
                            "0.080000000000000002}]\n}\n");
 }
-END_TEST
 
 static void refuse_to_go_on(const char *why)
 {
@@ -351,7 +341,7 @@ static void refuse_to_go_on(const char *why)
 }
 
 /* What is to stay, and does not: nothing is removed. */
-START_TEST(refuses_a_changed_folder)
+UNIT_TEST(refuses_a_changed_folder)
 {
     char text[TEXT];
     const struct output_hdf5_setup setup = setup_of(true, 1, 0);
@@ -372,16 +362,15 @@ START_TEST(refuses_a_changed_folder)
     sample_write(path_of("cloth.xmf"), "mine", 4);
     refuse_to_go_on("cloth.xmf is in the way");
 }
-END_TEST
 
 /* A folder in the place of frame 1: the others are written, and it is said once. */
-START_TEST(goes_on_without_a_frame)
+UNIT_TEST(goes_on_without_a_frame)
 {
     struct cloth_error error = {0};
     struct output_hdf5 *frames;
     char text[512];
     const struct output_hdf5_setup setup = setup_of(true, 1, 0);
-    ck_assert_int_eq(output_hdf5_open(&frames, &setup, &error), 0);
+    UNIT_FINE(output_hdf5_open(&frames, &setup, &error));
     ck_assert_int_eq(mkdir(path_of("hdf5/frame-000001.vtkhdf"), 0777), 0);
     for (uint64_t i = 0; i < 3; i++)
         give(frames, i);
@@ -397,24 +386,4 @@ START_TEST(goes_on_without_a_frame)
     sample_read(path_of("cloth.vtkhdf.series"), text, sizeof text);
     ck_assert_ptr_null(strstr(text, "000001"));
     ck_assert_ptr_nonnull(strstr(text, "000002"));
-}
-END_TEST
-
-int main(void)
-{
-    TCase *c = tcase_create("hdf5");
-    tcase_add_checked_fixture(c, start, end);
-    tcase_add_test(c, comes_back);
-    tcase_add_test(c, every_third);
-    tcase_add_test(c, equal_frames_are_equal_files);
-    tcase_add_test(c, replaces_an_earlier_run);
-    tcase_add_test(c, leaves_what_is_not_ours);
-    tcase_add_test(c, goes_on_without_a_frame);
-    tcase_add_test(c, goes_on_with_an_earlier_run);
-    tcase_add_test(c, keeps_frames_of_a_run_that_writes_no_more);
-    tcase_add_test(c, begins_with_a_later_frame);
-    tcase_add_test(c, refuses_a_changed_folder);
-    Suite *s = suite_create("hdf5");
-    suite_add_tcase(s, c);
-    return unit_run(s);
 }

@@ -11,7 +11,6 @@
 
 enum { N = 7, ROWS = 3 * N };
 
-static struct sample sample;
 static struct solve_system system_;
 static double matrix[ROWS][ROWS];
 
@@ -20,7 +19,7 @@ static void make(void)
 {
     static const uint32_t end[][2] = {{4, 1}, {0, 1}, {1, 4}, {2, 3}, {5, 0}, {3, 1}, {2, 5}};
     const size_t n = sizeof end / sizeof *end;
-    sample_make(&sample);
+    sample_make();
     ck_assert_int_eq(solve_system_make(&system_, N, n, SOLVE_PAIRS_OF_SPRINGS, NULL), 0);
     system_.h = 0.5;
     for (uint32_t v = 0; v < N; v++) {
@@ -43,7 +42,7 @@ static void make(void)
 static void end(void)
 {
     solve_system_free(&system_);
-    sample_free(&sample);
+    sample_free();
 }
 
 static FILE *open_file(const char *name, const char *banner)
@@ -92,11 +91,12 @@ static void read_array(const char *name, double *value)
     fclose(file);
 }
 
-START_TEST(the_matrix_is_the_product)
+UNIT_FIXTURE(make, end)
+
+UNIT_TEST(the_matrix_is_the_product)
 {
-    struct cloth_error error = {0};
     double p[ROWS], y[ROWS];
-    ck_assert_msg(output_system(sample.folder, &system_, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_system(sample.folder, &system_, &error));
     read_matrix();
     for (size_t i = 0; i < ROWS; i++)
         p[i] = 1 / (1 + (double)(i * i % 11));
@@ -108,13 +108,11 @@ START_TEST(the_matrix_is_the_product)
         ck_assert_double_eq_tol(sum, system_.free[i / 3] > 0 ? y[i] : p[i], 1e-14);
     }
 }
-END_TEST
 
-START_TEST(vectors_are_filtered)
+UNIT_TEST(vectors_are_filtered)
 {
-    struct cloth_error error = {0};
     double value[ROWS];
-    ck_assert_int_eq(output_system(sample.folder, &system_, &error), 0);
+    UNIT_FINE(output_system(sample.folder, &system_, &error));
     read_array("rhs", value);
     for (size_t i = 0; i < ROWS; i++)
         ck_assert_double_eq(value[i], system_.free[i / 3] * system_.b[i]);
@@ -125,9 +123,8 @@ START_TEST(vectors_are_filtered)
     for (size_t i = 0; i < ROWS; i++)
         ck_assert_double_eq(value[i], system_.free[i / 3] * system_.mass[i / 3]);
 }
-END_TEST
 
-START_TEST(springs_are_in_order)
+UNIT_TEST(springs_are_in_order)
 {
     for (size_t i = 0; i < system_.n_pairs; i++) {
         ck_assert_uint_lt(system_.end[i][0], system_.end[i][1]);
@@ -140,9 +137,8 @@ START_TEST(springs_are_in_order)
     ck_assert_double_eq(system_.value[3][0], 1);
     ck_assert_double_eq(system_.value[4][0], 1.0 / 7);
 }
-END_TEST
 
-START_TEST(what_cannot_be_written)
+UNIT_TEST(what_cannot_be_written)
 {
     struct cloth_error error = {0};
     char path[120];
@@ -154,18 +150,4 @@ START_TEST(what_cannot_be_written)
     ck_assert_int_eq(output_system(sample.folder, &system_, &error), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "rhs.mtx"));
     ck_assert_int_eq(rmdir(path), 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("output/market");
-    TCase *one = tcase_create("files");
-    tcase_add_checked_fixture(one, make, end);
-    tcase_add_test(one, the_matrix_is_the_product);
-    tcase_add_test(one, vectors_are_filtered);
-    tcase_add_test(one, springs_are_in_order);
-    tcase_add_test(one, what_cannot_be_written);
-    suite_add_tcase(suite, one);
-    return unit_run(suite);
 }

@@ -8,19 +8,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static struct sample sample;
+UNIT_FIXTURE(sample_make, sample_free)
 
-static void start(void)
-{
-    sample_make(&sample);
-}
-
-static void end(void)
-{
-    sample_free(&sample);
-}
-
-START_TEST(folder_in_the_way)
+UNIT_TEST(folder_in_the_way)
 {
     struct cloth_error error = {0};
     struct output_frames *frames = NULL;
@@ -41,42 +31,39 @@ START_TEST(folder_in_the_way)
     sample_read(file, text, sizeof text);
     ck_assert_str_eq(text, "mine");
 }
-END_TEST
 
 /* Something else stands where a file of the folder goes. */
-START_TEST(file_in_the_way)
+UNIT_TEST(file_in_the_way)
 {
     static const char *const name[] = {"cloth.obj", "cloth.pc2", "frames.csv.part"};
     for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
         struct cloth_error error = {0};
         struct output_frames *frames = NULL;
-        sample_run(&sample, 1, 1);
-        unlink(sample_path(&sample, name[i]));
-        ck_assert_int_eq(mkdir(sample_path(&sample, name[i]), 0777), 0);
+        sample_run(1, 1);
+        unlink(sample_path(name[i]));
+        ck_assert_int_eq(mkdir(sample_path(name[i]), 0777), 0);
         ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-        ck_assert_msg(strstr(error.text, sample_path(&sample, name[i])) != NULL, "%s", error.text);
+        ck_assert_msg(strstr(error.text, sample_path(name[i])) != NULL, "%s", error.text);
         ck_assert_ptr_null(frames);
-        ck_assert_int_eq(rmdir(sample_path(&sample, name[i])), 0);
+        ck_assert_int_eq(rmdir(sample_path(name[i])), 0);
     }
 }
-END_TEST
 
 /* A mesh that the user keeps in the folder stays; what an earlier run left goes. */
-START_TEST(mesh_of_the_user)
+UNIT_TEST(mesh_of_the_user)
 {
     struct cloth_error error = {0};
     struct output_frames *frames = NULL;
     char text[8];
     ck_assert_int_eq(mkdir(sample.frames, 0777), 0);
-    sample_write(sample_path(&sample, "cloth.obj"), "mine", 4);
+    sample_write(sample_path("cloth.obj"), "mine", 4);
     ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
     ck_assert_ptr_null(frames);
-    ck_assert_msg(strstr(error.text, sample_path(&sample, "cloth.obj")) != NULL, "%s", error.text);
-    sample_read(sample_path(&sample, "cloth.obj"), text, sizeof text);
+    ck_assert_msg(strstr(error.text, sample_path("cloth.obj")) != NULL, "%s", error.text);
+    sample_read(sample_path("cloth.obj"), text, sizeof text);
     ck_assert_str_eq(text, "mine");
-    ck_assert_int_ne(access(sample_path(&sample, "cloth.obj.part"), F_OK), 0);
+    ck_assert_int_ne(access(sample_path("cloth.obj.part"), F_OK), 0);
 }
-END_TEST
 
 /* Of so many boxes; the caller frees their memory. */
 static struct contact_bodies boxes_make(uint32_t n)
@@ -85,13 +72,11 @@ static struct contact_bodies boxes_make(uint32_t n)
     static const struct contact_shape shape[] = {{.kind = 5, .body = 1}, {.kind = 5, .body = 2}};
     struct contact_bodies bodies = {0};
     for (uint32_t i = 0; i < n; i++) {
-        struct cloth_error error = {0};
-        struct mesh mesh;
+        UNIT_OWNED(mesh_free) struct mesh mesh;
         bool turned;
         surface_box(&box, 1 + i, 1, 1);
         surface_mesh(&box, &mesh);
-        ck_assert_int_eq(contact_bodies_add(&bodies, &mesh, &turned, &error), 0);
-        mesh_free(&mesh);
+        UNIT_FINE(contact_bodies_add(&bodies, &mesh, &turned, &error));
     }
     sample.setup.n_obstacles = n;
     sample.setup.obstacles = shape;
@@ -101,14 +86,13 @@ static struct contact_bodies boxes_make(uint32_t n)
 /* The folder is as it was, and nothing is beside its files. */
 static void check_untouched(const char *const *name, size_t n, uint64_t n_frames)
 {
-    struct cloth_error error = {0};
     struct output_cache cache;
     for (size_t i = 0; i < n; i++) {
         char part[40];
         snprintf(part, sizeof part, "%s.part", name[i]);
-        ck_assert_int_ne(access(sample_path(&sample, part), F_OK), 0);
+        ck_assert_int_ne(access(sample_path(part), F_OK), 0);
     }
-    ck_assert_msg(output_cache_open(&cache, sample.frames, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_cache_open(&cache, sample.frames, &error));
     ck_assert_uint_eq(cache.n_frames, n_frames);
     output_cache_close(&cache);
 }
@@ -119,14 +103,14 @@ enum { N_FILES = sizeof FILES / sizeof *FILES };
 
 /* What the run reads, by another path: a file of an earlier run, also the second body, which would
  * go without a successor; and what files are written to first. */
-START_TEST(would_replace_an_input)
+UNIT_TEST(would_replace_an_input)
 {
     struct contact_bodies two = boxes_make(2), one = boxes_make(1);
     char link[128], want[300];
     const char *const inputs[] = {"nowhere", link};
     sample.setup.bodies = &two;
     sample.setup.n_obstacles = 2;
-    sample_run(&sample, 1, 3);
+    sample_run(1, 3);
     sample.setup.bodies = &one;
     sample.setup.n_obstacles = 1;
     snprintf(link, sizeof link, "%s/input", sample.folder);
@@ -138,75 +122,57 @@ START_TEST(would_replace_an_input)
         char name[40];
         snprintf(name, sizeof name, "%s%s", FILES[i / 2], i % 2 ? ".part" : "");
         if (i % 2)
-            sample_write(sample_path(&sample, name), "mine", 4);
-        ck_assert_int_eq(symlink(sample_path(&sample, name), link), 0);
+            sample_write(sample_path(name), "mine", 4);
+        ck_assert_int_eq(symlink(sample_path(name), link), 0);
         snprintf(want, sizeof want, "%s would be replaced, but this run reads it, as %s; ",
-                 sample_path(&sample, name), link);
+                 sample_path(name), link);
         ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
         ck_assert_msg(strstr(error.text, want) == error.text, "%s", error.text);
         ck_assert_int_eq(unlink(link), 0);
-        ck_assert_int_eq(i % 2 ? unlink(sample_path(&sample, name)) : 0, 0);
+        ck_assert_int_eq(i % 2 ? unlink(sample_path(name)) : 0, 0);
         check_untouched(FILES, N_FILES, 3);
     }
-    sample_run(&sample, 2, 1);
+    sample_run(2, 1);
     free(one.memory);
     free(two.memory);
 }
-END_TEST
 
 /* Bodies of an earlier run that had more; what no run made stays. */
-START_TEST(bodies_of_an_earlier_run)
+UNIT_TEST(bodies_of_an_earlier_run)
 {
     struct contact_bodies two = boxes_make(2), one = boxes_make(1);
     for (uint32_t n = 3; n-- > 0;) {
         sample.setup.bodies = n == 2 ? &two : n == 1 ? &one : NULL;
         sample.setup.n_obstacles = n;
-        sample_run(&sample, n, 1);
+        sample_run(n, 1);
         if (n == 2)
-            sample_write(sample_path(&sample, "body-2.obj"), "mine", 4);
-        ck_assert_int_eq(access(sample_path(&sample, "body-0.obj"), F_OK) == 0, n > 0);
-        ck_assert_int_eq(access(sample_path(&sample, "body-1.obj"), F_OK) == 0, n > 1);
-        ck_assert_int_eq(access(sample_path(&sample, "body-2.obj"), F_OK), 0);
+            sample_write(sample_path("body-2.obj"), "mine", 4);
+        ck_assert_int_eq(access(sample_path("body-0.obj"), F_OK) == 0, n > 0);
+        ck_assert_int_eq(access(sample_path("body-1.obj"), F_OK) == 0, n > 1);
+        ck_assert_int_eq(access(sample_path("body-2.obj"), F_OK), 0);
     }
     free(one.memory);
     free(two.memory);
 }
-END_TEST
 
 /* Found before the frames of an earlier run go. */
-START_TEST(folder_where_a_file_goes)
+UNIT_TEST(folder_where_a_file_goes)
 {
     struct contact_bodies one = boxes_make(1);
     sample.setup.n_obstacles = 0;
-    sample_run(&sample, 1, 3);
+    sample_run(1, 3);
     sample.setup.bodies = &one;
     sample.setup.n_obstacles = 1;
     for (int i = 0; i < 2; i++) {
         const char *name = i ? "body-0.obj" : "body-0.obj.part";
         struct cloth_error error = {0};
         struct output_frames *frames = NULL;
-        ck_assert_int_eq(mkdir(sample_path(&sample, name), 0777), 0);
+        ck_assert_int_eq(mkdir(sample_path(name), 0777), 0);
         ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-        ck_assert_msg(strstr(error.text, sample_path(&sample, name)), "%s", error.text);
+        ck_assert_msg(strstr(error.text, sample_path(name)), "%s", error.text);
         ck_assert_ptr_nonnull(strstr(error.text, "Is a directory"));
-        ck_assert_int_eq(rmdir(sample_path(&sample, name)), 0);
+        ck_assert_int_eq(rmdir(sample_path(name)), 0);
         check_untouched(FILES, N_FILES, 3);
     }
     free(one.memory);
-}
-END_TEST
-
-int main(void)
-{
-    TCase *c = tcase_create("replace");
-    tcase_add_checked_fixture(c, start, end);
-    tcase_add_test(c, folder_in_the_way);
-    tcase_add_test(c, file_in_the_way);
-    tcase_add_test(c, mesh_of_the_user);
-    tcase_add_test(c, would_replace_an_input);
-    tcase_add_test(c, bodies_of_an_earlier_run);
-    tcase_add_test(c, folder_where_a_file_goes);
-    Suite *s = suite_create("output");
-    suite_add_tcase(s, c);
-    return unit_run(s);
 }

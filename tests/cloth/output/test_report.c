@@ -8,7 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static struct sample sample;
 static struct output_report *report;
 static struct cloth_error error;
 static char path[96], text[4096];
@@ -16,31 +15,32 @@ static char path[96], text[4096];
 static void start(void)
 {
     memset(&error, 0, sizeof error);
-    sample_make(&sample);
+    sample_make();
     snprintf(path, sizeof path, "%s/report.json", sample.folder);
-    ck_assert_int_eq(output_report_new(&report, &error), 0);
+    UNIT_FINE(output_report_new(&report, &error));
 }
 
 static void end(void)
 {
     output_report_free(report);
-    sample_free(&sample);
+    sample_free();
 }
 
 static void check_written(const char *want)
 {
-    ck_assert_msg(output_report_write(report, path, &error) == 0, "%s", error.text);
+    UNIT_FINE(output_report_write(report, path, &error));
     sample_read(path, text, sizeof text);
     ck_assert_str_eq(text, want);
 }
 
-START_TEST(empty)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(empty)
 {
     check_written("{}\n");
 }
-END_TEST
 
-START_TEST(keeps_order)
+UNIT_TEST(keeps_order)
 {
     output_report_text(report, "scene", "sheet.yaml");
     output_report_integer(report, "steps", UINT64_MAX);
@@ -51,9 +51,8 @@ START_TEST(keeps_order)
     check_written("{\n  \"scene\": \"sheet.yaml\",\n  \"steps\": 18446744073709551615,\n"
                   "  \"messages\": null,\n  \"h\": 0.5,\n  \"lost\": null,\n  \"most\": null\n}\n");
 }
-END_TEST
 
-START_TEST(escapes)
+UNIT_TEST(escapes)
 {
     output_report_text(report, "a\"b", "\\ \" \n \t \1 \x7f");
     output_report_text(report, "utf8", "d\xc3\xa9j\xc3\xa0 \xe2\x82\xac \xf0\x9f\x98\x80");
@@ -63,14 +62,13 @@ START_TEST(escapes)
                   "  \"not utf8\": \"\\ufffd \\ufffd( \\ufffd\\ufffd \\ufffd\\ufffd\\ufffd "
                   "\\ufffd\\ufffd\"\n}\n");
 }
-END_TEST
 
-START_TEST(numbers_come_back)
+UNIT_TEST(numbers_come_back)
 {
     static const double value[] = {0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, -0.0, 1e22};
     for (size_t i = 0; i < sizeof value / sizeof *value; i++)
         output_report_number(report, "x", value[i]);
-    ck_assert_int_eq(output_report_write(report, path, &error), 0);
+    UNIT_FINE(output_report_write(report, path, &error));
     sample_read(path, text, sizeof text);
     const char *next = text;
     for (size_t i = 0; i < sizeof value / sizeof *value; i++) {
@@ -79,35 +77,32 @@ START_TEST(numbers_come_back)
         ck_assert_mem_eq(&got, &value[i], sizeof got);
     }
 }
-END_TEST
 
-START_TEST(keeps_a_link)
+UNIT_TEST(keeps_a_link)
 {
     char link[96];
     snprintf(link, sizeof link, "%s/link.json", sample.folder);
     sample_write(path, "old", 3);
     ck_assert_int_eq(symlink("report.json", link), 0);
-    ck_assert_int_eq(output_report_write(report, link, &error), 0);
+    UNIT_FINE(output_report_write(report, link, &error));
     struct stat status;
     ck_assert_int_eq(lstat(link, &status), 0);
     ck_assert(S_ISLNK(status.st_mode));
     sample_read(path, text, sizeof text);
     ck_assert_str_eq(text, "{}\n");
 }
-END_TEST
 
-START_TEST(does_not_replace_a_device)
+UNIT_TEST(does_not_replace_a_device)
 {
     struct stat status;
-    ck_assert_int_eq(output_report_write(report, "/dev/null", &error), 0);
+    UNIT_FINE(output_report_write(report, "/dev/null", &error));
     ck_assert_int_eq(stat("/dev/null", &status), 0);
     ck_assert(S_ISCHR(status.st_mode));
     ck_assert_int_eq(output_report_write(report, "/dev/full", &error), CLOTH_E_IO);
     ck_assert_ptr_nonnull(strstr(error.text, "No space left"));
 }
-END_TEST
 
-START_TEST(says_what_is_in_the_way)
+UNIT_TEST(says_what_is_in_the_way)
 {
     ck_assert_int_eq(output_report_write(report, sample.folder, &error), CLOTH_E_IO);
     ck_assert_ptr_nonnull(strstr(error.text, "Is a directory"));
@@ -118,10 +113,9 @@ START_TEST(says_what_is_in_the_way)
     ck_assert_int_eq(output_report_write(report, below, &error), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "Not a directory"));
 }
-END_TEST
 
 /* A link to another, in a folder, to a file that is not there yet. */
-START_TEST(follows_links_to_nothing)
+UNIT_TEST(follows_links_to_nothing)
 {
     char link[112], below[112], target[112];
     struct stat status;
@@ -135,17 +129,16 @@ START_TEST(follows_links_to_nothing)
     error.code = 0;
     ck_assert_int_eq(mkdir(target, 0777), 0);
     ck_assert_int_eq(symlink("third.json", below), 0);
-    ck_assert_int_eq(output_report_check(link, NULL, &error), 0);
-    ck_assert_int_eq(output_report_write(report, link, &error), 0);
+    UNIT_FINE(output_report_check(link, NULL, &error));
+    UNIT_FINE(output_report_write(report, link, &error));
     ck_assert(lstat(link, &status) == 0 && S_ISLNK(status.st_mode));
     ck_assert(lstat(below, &status) == 0 && S_ISLNK(status.st_mode));
     snprintf(target, sizeof target, "%s/sub/third.json", sample.folder);
     sample_read(target, text, sizeof text);
     ck_assert_str_eq(text, "{}\n");
 }
-END_TEST
 
-START_TEST(links_in_a_ring)
+UNIT_TEST(links_in_a_ring)
 {
     char link[112];
     snprintf(link, sizeof link, "%s/ring.json", sample.folder);
@@ -155,13 +148,12 @@ START_TEST(links_in_a_ring)
     error.code = 0;
     ck_assert_int_eq(output_report_write(report, link, &error), CLOTH_E_IO);
 }
-END_TEST
 
-START_TEST(checks_before)
+UNIT_TEST(checks_before)
 {
     char file[128], made[128];
-    ck_assert_int_eq(output_report_check("/dev/null", NULL, &error), 0);
-    ck_assert_int_eq(output_report_check(path, NULL, &error), 0);
+    UNIT_FINE(output_report_check("/dev/null", NULL, &error));
+    UNIT_FINE(output_report_check(path, NULL, &error));
     ck_assert_int_eq(output_report_check(sample.folder, NULL, &error), CLOTH_E_INPUT);
     ck_assert_str_eq(error.text, "this is a folder; the name of a file is expected");
     error.code = 0;
@@ -172,24 +164,4 @@ START_TEST(checks_before)
         ck_assert_int_eq(output_report_check(file, made, &error), i ? 0 : CLOTH_E_INPUT);
         error.code = 0;
     }
-}
-END_TEST
-
-int main(void)
-{
-    TCase *c = tcase_create("report");
-    tcase_add_checked_fixture(c, start, end);
-    tcase_add_test(c, empty);
-    tcase_add_test(c, keeps_order);
-    tcase_add_test(c, escapes);
-    tcase_add_test(c, numbers_come_back);
-    tcase_add_test(c, keeps_a_link);
-    tcase_add_test(c, does_not_replace_a_device);
-    tcase_add_test(c, says_what_is_in_the_way);
-    tcase_add_test(c, follows_links_to_nothing);
-    tcase_add_test(c, links_in_a_ring);
-    tcase_add_test(c, checks_before);
-    Suite *s = suite_create("report");
-    suite_add_tcase(s, c);
-    return unit_run(s);
 }

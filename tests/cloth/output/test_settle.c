@@ -25,20 +25,18 @@ static int settle_slowly(void *context, uint32_t n, struct cloth_error *error)
     return output_member_wrote(&slow->member, n + 1, error);
 }
 
-START_TEST(frames_that_come_later_are_not_waited_for)
+UNIT_TEST(frames_that_come_later_are_not_waited_for)
 {
     struct slow slow = {.member = {.settle = settle_slowly, .context = &slow}};
-    struct cloth_error error = {0};
-    ck_assert_int_eq(output_settler_open(&slow.settler, &error), 0);
+    UNIT_FINE(output_settler_open(&slow.settler, &error));
     output_member_add(&slow.member, slow.settler, 0);
-    ck_assert_int_eq(output_member_wrote(&slow.member, 1, &error), 0);
-    ck_assert_int_eq(output_settler_wait(slow.settler, &error), 0);
+    UNIT_FINE(output_member_wrote(&slow.member, 1, &error));
+    UNIT_FINE(output_settler_wait(slow.settler, &error));
     atomic_store(&slow.stop, true);
-    ck_assert_int_eq(output_settler_close(&slow.settler, &error), 0);
+    UNIT_FINE(output_settler_close(&slow.settler, &error));
     ck_assert_uint_ge(slow.settled, 1);
     ck_assert_uint_lt(slow.settled, MANY);
 }
-END_TEST
 
 /* Counts its frames; has no room for more than four. */
 static int settle_four(void *context, uint32_t n, struct cloth_error *error)
@@ -49,7 +47,7 @@ static int settle_four(void *context, uint32_t n, struct cloth_error *error)
     return CLOTH_OK;
 }
 
-START_TEST(a_failure_is_told_and_the_last)
+UNIT_TEST(a_failure_is_told_and_the_last)
 {
     uint32_t counted[OUTPUT_MEMBERS] = {0};
     struct output_member member[OUTPUT_MEMBERS];
@@ -71,15 +69,4 @@ START_TEST(a_failure_is_told_and_the_last)
     ck_assert_str_eq(error.text, "no room");
     ck_assert_uint_eq(counted[0], 4);
     ck_assert_uint_eq(counted[1], 4);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("settle");
-    TCase *cases = tcase_create("settle");
-    tcase_add_test(cases, frames_that_come_later_are_not_waited_for);
-    tcase_add_test(cases, a_failure_is_told_and_the_last);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

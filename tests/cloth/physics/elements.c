@@ -66,18 +66,6 @@ void elements_check_gradient(const struct elements *model, const struct elements
     ck_assert_double_le(error, max);
 }
 
-void elements_check_force(const struct elements *model, const struct elements_state *state,
-                          double max)
-{
-    const double coarse = force_error(model, state, 2e-3), fine = force_error(model, state, 1e-3);
-    printf("# forces against differences of the energy over 4e-3 and 2e-3 m: off by %.2e, %.2e N: "
-           "order %.2f\n",
-           coarse, fine, log2(coarse / fine));
-    ck_assert_double_ge(coarse / fine, 3.7);
-    ck_assert_double_le(coarse / fine, 4.3);
-    elements_check_gradient(model, state, max);
-}
-
 /* y = A p of the pairs. */
 static void apply(const struct elements *model, const struct phys_pair *pair, const phys_vec *p,
                   uint32_t n, phys_vec *y)

@@ -31,11 +31,9 @@ struct elements_state {
 void elements_shake(struct elements_state *state, double size, unsigned seed);
 
 /* Forces (without speeds) are minus the slope of the energy: central differences over 2e-5 m miss
- * them by no more than `most`; the other: and by an error that falls as the square of the step. */
+ * them by no more than `most`. */
 void elements_check_gradient(const struct elements *model, const struct elements_state *state,
                              double max);
-void elements_check_force(const struct elements *model, const struct elements_state *state,
-                          double max);
 
 /* The full matrix is the slope of forces against positions and speeds, by differences to within
  * `most`; K v is that of the same matrix; both of the reduced one agree, which is nowhere negative.

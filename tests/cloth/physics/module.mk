@@ -1,8 +1,7 @@
 if HAVE_CHECK
 ASAN_TESTS += tests/cloth/physics/test_bending tests/cloth/physics/test_curve tests/cloth/physics/test_particle \
-    tests/cloth/physics/test_spring tests/cloth/physics/test_stage tests/cloth/physics/test_tiny tests/cloth/physics/test_triangle \
-    tests/cloth/physics/test_triangle_forms tests/cloth/physics/test_energy tests/cloth/physics/test_limit
-tests_cloth_physics_test_bending_SOURCES = tests/cloth/physics/test_bending.c tests/cloth/physics/elements.c tests/cloth/physics/elements.h
+    tests/cloth/physics/test_spring tests/cloth/physics/test_tiny tests/cloth/physics/test_triangle \
+    tests/cloth/physics/test_triangle_forms tests/cloth/physics/test_limit
 PHYSICS_TEST_TRIANGLES = tests/cloth/physics/triangle_sheet.h tests/cloth/physics/elements.c tests/cloth/physics/elements.h
 tests_cloth_physics_test_triangle_SOURCES = tests/cloth/physics/test_triangle.c $(PHYSICS_TEST_TRIANGLES)
 tests_cloth_physics_test_triangle_forms_SOURCES = tests/cloth/physics/test_triangle_forms.c $(PHYSICS_TEST_TRIANGLES)

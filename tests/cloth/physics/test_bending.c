@@ -1,6 +1,6 @@
-/* Hinges and quadratic bending against what they are derived from, and against a cylinder. */
+/* Hinges against their angles, and against a cylinder: what they have beyond what
+ * tests/cloth/element says of every kind. */
 #include "cloth/physics/bending.h"
-#include "tests/cloth/physics/elements.h"
 #include "tests/support/unit.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ static void quadratic(double theta, double x[12])
     }
 }
 
-START_TEST(s_is_twice_the_sine_of_half_the_angle)
+UNIT_TEST(s_is_twice_the_sine_of_half_the_angle)
 {
     for (double theta = -3.1; theta < 3.14; theta += 0.1) {
         double x[12];
@@ -36,203 +36,25 @@ START_TEST(s_is_twice_the_sine_of_half_the_angle)
         ck_assert_double_eq_tol(rest.weight[1], 0.4 / 1.3 / 0.7 + 0.9 / 1.3 / 1.1, 1e-14);
     }
 }
-END_TEST
 
-START_TEST(rigidity_is_that_of_the_threads_across)
+UNIT_TEST(rigidity_is_that_of_the_threads_across)
 {
     ck_assert_double_eq(phys_bend_rigidity(3, 5, (double[]){0, 2}), 3);
     ck_assert_double_eq(phys_bend_rigidity(3, 5, (double[]){-7, 0}), 5);
     ck_assert_double_eq(phys_bend_rigidity(3, 5, (double[]){1, -1}), 4);
     ck_assert_double_eq(phys_bend_rigidity(3, 5, (double[]){0, 0}), 4);
 }
-END_TEST
 
-START_TEST(rest_shapes_without_area_are_refused)
+UNIT_TEST(rest_shapes_without_area_are_refused)
 {
     const double line[12] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0}, point[12] = {0};
     struct phys_bend_rest rest;
     ck_assert_int_eq(phys_bend_rest(line, &rest), -1);
     ck_assert_int_eq(phys_bend_rest(point, &rest), -1);
 }
-END_TEST
-
-/* ---- A strip ---- */
-
-/* Six vertices in two rows, and edges with two triangles: some over others, and one told the other
- * way round. Five are no multiple of what is worked on at once. */
-enum { VERTICES = 6, BENDS = 5 };
-static const uint32_t corner[BENDS][4] = {
-    {0, 4, 3, 1}, {1, 4, 0, 5}, {1, 5, 4, 2}, {4, 1, 5, 0}, {1, 2, 5, 0}};
-static const double place[VERTICES][3] = {{0, 0, 0},    {1, 0.1, 0},   {2.1, -0.1, 0},
-                                          {-0.1, 1, 0}, {0.8, 1.1, 0}, {2, 0.9, 0}};
-
-struct strip {
-    double stiffness[BENDS], damping[BENDS], rest[BENDS];
-    phys_vec weight[BENDS];
-    struct phys_hinges hinges;
-    struct phys_quadratic quadratic;
-};
-
-static void start(struct elements_state *state)
-{
-    *state = (struct elements_state){.n = VERTICES};
-    for (int i = 0; i < VERTICES; i++)
-        state->x[i] = (phys_vec){place[i][0], place[i][1], place[i][2], 0};
-}
-
-/* Rest values are those of the state. */
-static void make_strip(struct strip *s, const struct elements_state *state, double damping)
-{
-    for (int e = 0; e < BENDS; e++) {
-        double x[12];
-        struct phys_bend_rest rest;
-        for (int i = 0; i < 12; i++)
-            x[i] = state->x[corner[e][i / 3]][i % 3];
-        ck_assert_int_eq(phys_bend_rest(x, &rest), 0);
-        s->stiffness[e] = 2 + e;
-        s->damping[e] = damping * (1 + e);
-        s->rest[e] = rest.s;
-        s->weight[e] = (phys_vec){rest.weight[0], rest.weight[1], rest.weight[2], rest.weight[3]};
-    }
-    s->hinges = (struct phys_hinges){BENDS, corner, s->stiffness, s->damping, s->rest};
-    s->quadratic = (struct phys_quadratic){BENDS, corner, s->weight};
-}
-
-static double hinge_energy(const void *of, const struct phys_sight *sight)
-{
-    return phys_hinges_energy(of, sight);
-}
-static void hinge_force(const void *of, const struct phys_sight *sight, phys_vec *f)
-{
-    phys_hinges_force(of, sight, f);
-}
-static void hinge_stiffness(const void *of, int full, double scale, const struct phys_sight *sight,
-                            phys_vec *y)
-{
-    phys_hinges_stiffness(of, full, scale, sight, y);
-}
-static void hinge_matrix(const void *of, const struct phys_step *step,
-                         const struct phys_sight *sight, struct phys_pair *pair)
-{
-    phys_hinges_matrix(of, 0, 1, step, sight, NULL, pair);
-    phys_hinges_matrix(of, 1, BENDS, step, sight, NULL, pair + PHYS_BEND_PAIRS);
-}
-static double quadratic_energy(const void *of, const struct phys_sight *sight)
-{
-    return phys_quadratic_energy(of, sight);
-}
-static void quadratic_force(const void *of, const struct phys_sight *sight, phys_vec *f)
-{
-    phys_quadratic_force(of, sight, f);
-}
-static void quadratic_stiffness(const void *of, int full, double scale,
-                                const struct phys_sight *sight, phys_vec *y)
-{
-    (void)full;
-    phys_quadratic_stiffness(of, scale, sight, y);
-}
-static void quadratic_matrix(const void *of, const struct phys_step *step,
-                             const struct phys_sight *sight, struct phys_pair *pair)
-{
-    (void)sight;
-    phys_quadratic_matrix(of, 0, 3, step->h, pair);
-    phys_quadratic_matrix(of, 3, BENDS, step->h, pair + 3 * PHYS_BEND_PAIRS);
-}
-
-static struct elements model_of(const struct strip *s, int quadratic)
-{
-    static const int pair[PHYS_BEND_PAIRS][2] = {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}};
-    if (quadratic)
-        return (struct elements){
-            &s->quadratic,    BENDS,           PHYS_BEND_PAIRS,     corner,          pair,
-            quadratic_energy, quadratic_force, quadratic_stiffness, quadratic_matrix};
-    return (struct elements){&s->hinges,   BENDS,       PHYS_BEND_PAIRS, corner,      pair,
-                             hinge_energy, hinge_force, hinge_stiffness, hinge_matrix};
-}
-
-/* _i: 0 hinges, 1 quadratic bending. */
-START_TEST(force_is_the_slope_of_the_energy)
-{
-    struct elements_state state;
-    struct strip s;
-    start(&state);
-    elements_shake(&state, _i ? 0 : 0.1, 5); /* quadratic bending has a flat rest shape */
-    make_strip(&s, &state, 0);
-    elements_shake(&state, 0.2, 3);
-    const struct elements model = model_of(&s, _i);
-    if (_i) { /* quadratic: differences are exact */
-        struct phys_sight sight = {state.n, state.x, state.v, NULL, NULL};
-        phys_vec f[VERTICES] = {{0}};
-        memset(state.v, 0, sizeof state.v);
-        phys_quadratic_force(&s.quadratic, &sight, f);
-        for (int i = 0; i < 3 * VERTICES; i++) {
-            double w[2];
-            for (int side = 0; side < 2; side++) {
-                state.x[i / 3][i % 3] += side ? -0.2 : 0.1;
-                w[side] = phys_quadratic_energy(&s.quadratic, &sight);
-            }
-            state.x[i / 3][i % 3] += 0.1;
-            ck_assert_double_eq_tol(f[i / 3][i % 3], -(w[0] - w[1]) / 0.2, 1e-12);
-        }
-        return;
-    }
-    elements_check_force(&model, &state, 1e-7);
-}
-END_TEST
-
-START_TEST(matrix_is_the_slope_of_the_force)
-{
-    for (int damped = 0; damped < 2; damped++) {
-        struct elements_state state;
-        struct strip s;
-        start(&state);
-        elements_shake(&state, _i ? 0 : 0.1, 5);
-        make_strip(&s, &state, 0.3 * damped);
-        elements_shake(&state, 0.3, 3);
-        const struct elements model = model_of(&s, _i);
-        elements_check_matrix(&model, &state, 1e-6);
-    }
-}
-END_TEST
-
-START_TEST(momentum_is_kept)
-{
-    struct elements_state state;
-    struct strip s;
-    start(&state);
-    make_strip(&s, &state, 0.1);
-    elements_shake(&state, 0.3, 3);
-    const struct elements model = model_of(&s, _i);
-    elements_check_momentum(&model, &state, 1e-12);
-}
-END_TEST
-
-START_TEST(rigid_motion_gives_no_force)
-{
-    struct elements_state state;
-    struct strip s;
-    start(&state);
-    elements_shake(&state, _i ? 0 : 0.3, 5); /* hinges: also of a rest shape that is not flat */
-    make_strip(&s, &state, 0.1);
-    const struct elements model = model_of(&s, _i);
-    elements_check_rigid(&model, &state, 1e-12);
-}
-END_TEST
-
-START_TEST(blocks_find_the_same_bits)
-{
-    struct elements_state state;
-    struct strip s;
-    start(&state);
-    make_strip(&s, &state, 0.1);
-    elements_shake(&state, 0.3, 3);
-    const struct elements model = model_of(&s, _i);
-    elements_check_split(&model, &state, 4);
-}
-END_TEST
 
 /* Folded nearly shut, one way and the other, forces still open it. */
-START_TEST(angles_up_to_half_a_turn)
+UNIT_TEST(angles_up_to_half_a_turn)
 {
     const uint32_t one[1][4] = {{0, 1, 2, 3}};
     const double k = 1, damping = 0, rest = 0;
@@ -252,9 +74,8 @@ START_TEST(angles_up_to_half_a_turn)
         ck_assert_double_gt(side * phys_dot(f + 2, &normal), 0);
     }
 }
-END_TEST
 
-START_TEST(collapsed_hinges_stay_finite)
+UNIT_TEST(collapsed_hinges_stay_finite)
 {
     const uint32_t one[1][4] = {{0, 1, 2, 3}};
     const double k = 1, damping = 1, rest = 0.5;
@@ -274,7 +95,6 @@ START_TEST(collapsed_hinges_stay_finite)
             ck_assert(isfinite(pair[c / 12].cyclic[c / 4 % 3][c % 4]));
     }
 }
-END_TEST
 
 /* ---- A cylinder ---- */
 
@@ -309,7 +129,7 @@ static double cylinder(const double a[2], const double b[2], double along)
 }
 
 /* What docs/physics.md says of the mesh's direction. */
-START_TEST(bias_of_the_mesh)
+UNIT_TEST(bias_of_the_mesh)
 {
     const double right[2][2] = {{1, 0}, {0, 1}}, equal[2][2] = {{1, 0}, {-0.5, sqrt(0.75)}};
     for (int i = 0; i < 12; i++) {
@@ -318,25 +138,4 @@ START_TEST(bias_of_the_mesh)
         const double w = s * c, expected = 1 + 2 * w + 4 * w * w;
         ck_assert_double_eq_tol(cylinder(right[0], right[1], angle), expected, 1e-5);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("bending");
-    TCase *angles = tcase_create("angles"), *slopes = tcase_create("slopes");
-    tcase_add_test(angles, s_is_twice_the_sine_of_half_the_angle);
-    tcase_add_test(angles, rigidity_is_that_of_the_threads_across);
-    tcase_add_test(angles, rest_shapes_without_area_are_refused);
-    tcase_add_test(angles, angles_up_to_half_a_turn);
-    tcase_add_test(angles, collapsed_hinges_stay_finite);
-    tcase_add_test(angles, bias_of_the_mesh);
-    tcase_add_loop_test(slopes, force_is_the_slope_of_the_energy, 0, 2);
-    tcase_add_loop_test(slopes, matrix_is_the_slope_of_the_force, 0, 2);
-    tcase_add_loop_test(slopes, momentum_is_kept, 0, 2);
-    tcase_add_loop_test(slopes, rigid_motion_gives_no_force, 0, 2);
-    tcase_add_loop_test(slopes, blocks_find_the_same_bits, 0, 2);
-    suite_add_tcase(suite, angles);
-    suite_add_tcase(suite, slopes);
-    return unit_run(suite);
 }

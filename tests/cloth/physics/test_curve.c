@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-START_TEST(sines)
+UNIT_TEST(sines)
 {
     const double two_pi = 6.283185307179586;
     double max = 0;
@@ -18,9 +18,8 @@ START_TEST(sines)
     ck_assert_double_eq(phys_sine(1e9), 0);
     ck_assert_double_eq_tol(phys_sine(1e6 + 1.0 / 12), 0.5, 1e-9);
 }
-END_TEST
 
-START_TEST(angles)
+UNIT_TEST(angles)
 {
     static const double quarter[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
     double c, s;
@@ -34,9 +33,8 @@ START_TEST(angles)
                   fabs(s - sin(degrees * M_PI / 180)) < 2e-15);
     }
 }
-END_TEST
 
-START_TEST(key_frames)
+UNIT_TEST(key_frames)
 {
     const struct phys_curve_key curve_key[] = {{1, 2}, {2, 4}, {4, -4}};
     ck_assert_double_eq(phys_curve_at(3, curve_key, -5), 2);
@@ -47,16 +45,4 @@ START_TEST(key_frames)
     ck_assert_double_eq(phys_curve_at(3, curve_key, 4), -4);
     ck_assert_double_eq(phys_curve_at(3, curve_key, 100), -4);
     ck_assert_double_eq(phys_curve_at(1, curve_key, 100), 2);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("curve");
-    TCase *cases = tcase_create("curve");
-    tcase_add_test(cases, sines);
-    tcase_add_test(cases, angles);
-    tcase_add_test(cases, key_frames);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

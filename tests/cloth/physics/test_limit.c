@@ -79,7 +79,7 @@ static double grown(int scheme, const struct mode *m, double h)
     return sqrt(m->omega * m->omega * x * x + v * v);
 }
 
-START_TEST(limits)
+UNIT_LOOP(limits, 0, sizeof SCHEMES / sizeof *SCHEMES)
 {
     static const double zeta[] = {0.1, 0.4, 1, 1.5, 4};
     for (size_t i = 0; i < sizeof zeta / sizeof *zeta; i++) {
@@ -92,10 +92,9 @@ START_TEST(limits)
     const double alone = 30 * SCHEMES[_i].limit(30, 0);
     ck_assert_double_eq_tol(alone, SCHEMES[_i].undamped, 1e-12);
 }
-END_TEST
 
 /* Without damping explicit Euler makes every mode sqrt(1 + h^2 omega^2) times as large. */
-START_TEST(undamped_growth)
+UNIT_TEST(undamped_growth)
 {
     const struct mode m = {30, 0};
     double x = 0, v = 1;
@@ -103,7 +102,6 @@ START_TEST(undamped_growth)
         euler(&m, 0.001, &x, &v);
     ck_assert_double_eq_tol(sqrt(900 * x * x + v * v), pow(sqrt(1 + 0.03 * 0.03), 50), 1e-12);
 }
-END_TEST
 
 static void largest(double expected, const double m[6])
 {
@@ -112,23 +110,11 @@ static void largest(double expected, const double m[6])
     ck_assert_double_le(seen, expected * 1.01);
 }
 
-START_TEST(largest_eigenvalue)
+UNIT_TEST(largest_eigenvalue)
 {
     largest(3, (const double[]){3, 1, 2, 0, 0, 0});
     largest(7e9, (const double[]){7e9, 7e9, 7e9, 0, 0, 0});
     largest(9, (const double[]){1, 4, 4, 2, 4, 2});           /* (1, 2, 2) with itself */
     largest(3 + sqrt(2), (const double[]){3, 3, 3, 1, 1, 0}); /* a tridiagonal one */
     ck_assert_double_eq(phys_largest((const double[6]){0}), 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("limit");
-    TCase *cases = tcase_create("limit");
-    tcase_add_loop_test(cases, limits, 0, sizeof SCHEMES / sizeof *SCHEMES);
-    tcase_add_test(cases, undamped_growth);
-    tcase_add_test(cases, largest_eigenvalue);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

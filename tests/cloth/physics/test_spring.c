@@ -66,7 +66,7 @@ static double force_error(double e)
     return max;
 }
 
-START_TEST(force_is_the_slope_of_the_energy)
+UNIT_TEST(force_is_the_slope_of_the_energy)
 {
     const double coarse = force_error(2e-3), fine = force_error(1e-3), least = force_error(1e-6);
     printf("# forces of springs against differences of the energy over 4e-3, 2e-3 and 2e-6 m: off "
@@ -75,9 +75,8 @@ START_TEST(force_is_the_slope_of_the_energy)
     ck_assert_double_eq_tol(log2(coarse / fine), 2, 0.1);
     ck_assert_double_le(least, 1e-7);
 }
-END_TEST
 
-START_TEST(damping_acts_along_the_spring_only)
+UNIT_TEST(damping_acts_along_the_spring_only)
 {
     const uint32_t end[1][2] = {{0, 1}};
     const double k[1] = {3}, c[1] = {0.25}, length[1] = {2};
@@ -91,7 +90,6 @@ START_TEST(damping_acts_along_the_spring_only)
     for (int i = 0; i < 3; i++)
         ck_assert_double_eq(f[1][i], -f[0][i]);
 }
-END_TEST
 
 /* t = (alpha I + w w') d. */
 static void apply(const phys_vec *value, const phys_vec *d, phys_vec *t)
@@ -103,7 +101,7 @@ static void apply(const phys_vec *value, const phys_vec *d, phys_vec *t)
 
 /* -dF/dx and -dF/dv of all springs by differences, against h c u u' + h^2 K by superposition of
  * unit moves; the full ones also under compression. */
-START_TEST(matrix_is_the_slope_of_the_force)
+UNIT_LOOP(matrix_is_the_slope_of_the_force, 0, 2)
 {
     const double h = 0.1, e = 1e-6;
     struct phys_springs still = tangle(slack, shorter), s = tangle(damping, shorter);
@@ -141,7 +139,6 @@ START_TEST(matrix_is_the_slope_of_the_force)
                 }
         }
 }
-END_TEST
 
 /* y -= h^2 K v. */
 static void take_stiffness(const struct phys_springs *s, double h, const phys_vec *x,
@@ -151,7 +148,7 @@ static void take_stiffness(const struct phys_springs *s, double h, const phys_ve
     phys_springs_system(s, h, 0, x, v, y, value);
 }
 
-START_TEST(stiffness_times_velocity_is_the_slope_of_the_force)
+UNIT_LOOP(stiffness_times_velocity_is_the_slope_of_the_force, 0, 2)
 {
     const double e = 1e-6;
     struct phys_springs s = tangle(slack, shorter);
@@ -171,10 +168,9 @@ START_TEST(stiffness_times_velocity_is_the_slope_of_the_force)
         for (int c = 0; c < 3; c++)
             ck_assert_double_eq_tol(y[i][c], 4 * (f[0][i][c] - f[1][i][c]) / (2 * e), 1e-6);
 }
-END_TEST
 
 /* All of it at once: the matrix to the bit, push times the force, h^2 K v. */
-START_TEST(system_is_force_stiffness_and_matrix)
+UNIT_LOOP(system_is_force_stiffness_and_matrix, 0, 3)
 {
     const double h = 0.3, push = 0.7;
     struct phys_springs s = tangle(damping, _i ? longer : shorter);
@@ -189,11 +185,10 @@ START_TEST(system_is_force_stiffness_and_matrix)
         for (int c = 0; c < 4; c++)
             ck_assert_double_eq_tol(b[i][c], push * f[i][c] + y[i][c], 1e-13);
 }
-END_TEST
 
 /* A spring at 0.8 of its length: across it the true slope is negative; the matrix has zero there,
  * and k along it. */
-START_TEST(compression_drops_the_transverse_term)
+UNIT_TEST(compression_drops_the_transverse_term)
 {
     const uint32_t end[1][2] = {{0, 1}};
     const double k[1] = {100}, c[1] = {0}, length[1] = {1};
@@ -210,11 +205,10 @@ START_TEST(compression_drops_the_transverse_term)
     take_stiffness(&s, 1, x, along, y);
     ck_assert_double_eq_tol(y[0][0], 100, 1e-12);
 }
-END_TEST
 
 /* The absolute slope: across a spring at 0.8 of its length 0.25 k, at less than half of it k, as
  * for two ends at one place; a stretched one has its true slope. */
-START_TEST(compression_by_its_absolute_value)
+UNIT_TEST(compression_by_its_absolute_value)
 {
     static const double at[] = {0.8, 0.4, 0, 1.25}, across[] = {0.25, 1, 1, 0.2};
     const uint32_t end[1][2] = {{0, 1}};
@@ -230,9 +224,8 @@ START_TEST(compression_by_its_absolute_value)
         ck_assert_double_eq_tol(y[0][1], 100 * across[i], 1e-12);
     }
 }
-END_TEST
 
-START_TEST(ends_at_one_place_pull_nowhere)
+UNIT_TEST(ends_at_one_place_pull_nowhere)
 {
     const uint32_t end[1][2] = {{0, 1}};
     const double k[1] = {100}, c[1] = {1}, length[1] = {1};
@@ -246,11 +239,10 @@ START_TEST(ends_at_one_place_pull_nowhere)
         ck_assert_double_eq(value[i], 0);
     }
 }
-END_TEST
 
 /* Particles 0 and 1 in one block, 2 to 4 in another: the halves give the rows of the whole, cut
  * springs bit for bit with opposite signs. */
-START_TEST(cut_springs_are_exact_opposites)
+UNIT_TEST(cut_springs_are_exact_opposites)
 {
     const uint32_t one[1][2] = {{0, 1}}, other[1][2] = {{1, 0}};
     const double k[1] = {37.1}, c[1] = {0.77}, length[1] = {0.9}, more[1] = {1.7};
@@ -276,7 +268,6 @@ START_TEST(cut_springs_are_exact_opposites)
         ck_assert(value[0][3] == value[1][3] && value[0][3] == value[2][3]);
     }
 }
-END_TEST
 
 static void cross(const phys_vec *a, const phys_vec *b, phys_vec *y)
 {
@@ -284,7 +275,7 @@ static void cross(const phys_vec *a, const phys_vec *b, phys_vec *y)
                     (*a)[0] * (*b)[1] - (*a)[1] * (*b)[0], 0};
 }
 
-START_TEST(internal_forces_keep_momentum)
+UNIT_LOOP(internal_forces_keep_momentum, 0, 2)
 {
     const struct phys_springs s = tangle(damping, _i ? longer : shorter);
     phys_vec f[N] = {{0}}, sum = {0}, torque = {0};
@@ -301,10 +292,9 @@ START_TEST(internal_forces_keep_momentum)
     }
     ck_assert_double_gt(phys_dot(f, f), 1);
 }
-END_TEST
 
 /* Turned by a third of a turn about (1, 1, 1), which swaps the axes, moved, and spinning. */
-START_TEST(rigid_motion_gives_no_force)
+UNIT_TEST(rigid_motion_gives_no_force)
 {
     double rest[SPRINGS];
     phys_vec x[N], v[N], f[N] = {{0}};
@@ -323,9 +313,8 @@ START_TEST(rigid_motion_gives_no_force)
         for (int c = 0; c < 3; c++)
             ck_assert_double_eq_tol(f[i][c], 0, 2e-12);
 }
-END_TEST
 
-START_TEST(stretch_is_the_largest_of_the_chosen)
+UNIT_TEST(stretch_is_the_largest_of_the_chosen)
 {
     unsigned char chosen[SPRINGS] = {1, 0, 1, 0, 0, 0, 0};
     const struct phys_springs s = tangle(damping, shorter);
@@ -335,25 +324,4 @@ START_TEST(stretch_is_the_largest_of_the_chosen)
     ck_assert_double_eq_tol(phys_springs_stretch(&s, chosen, places, places), first, 1e-14);
     chosen[0] = 0;
     ck_assert_double_eq(phys_springs_stretch(&s, chosen, places, places), 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("spring");
-    TCase *cases = tcase_create("spring");
-    tcase_add_test(cases, force_is_the_slope_of_the_energy);
-    tcase_add_test(cases, damping_acts_along_the_spring_only);
-    tcase_add_loop_test(cases, matrix_is_the_slope_of_the_force, 0, 2);
-    tcase_add_loop_test(cases, stiffness_times_velocity_is_the_slope_of_the_force, 0, 2);
-    tcase_add_loop_test(cases, system_is_force_stiffness_and_matrix, 0, 3);
-    tcase_add_test(cases, compression_drops_the_transverse_term);
-    tcase_add_test(cases, compression_by_its_absolute_value);
-    tcase_add_test(cases, ends_at_one_place_pull_nowhere);
-    tcase_add_test(cases, cut_springs_are_exact_opposites);
-    tcase_add_loop_test(cases, internal_forces_keep_momentum, 0, 2);
-    tcase_add_test(cases, rigid_motion_gives_no_force);
-    tcase_add_test(cases, stretch_is_the_largest_of_the_chosen);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -21,7 +21,7 @@ __attribute__((noinline)) static double vector_scaled(double value, double facto
     return product[0] + product[1] + product[2] + product[3];
 }
 
-START_TEST(made_and_met_as_zero)
+UNIT_TEST(made_and_met_as_zero)
 {
     const double least = 2.3e-308;
     for (int again = 0; again < 2; again++) {
@@ -39,16 +39,6 @@ START_TEST(made_and_met_as_zero)
     phys_tiny_back(before);
     ck_assert(!(met > 0));
     ck_assert(scaled(subnormal, 4) > 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("tiny");
-    TCase *cases = tcase_create("tiny");
-    tcase_add_test(cases, made_and_met_as_zero);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }
 
 #else

@@ -1,70 +1,9 @@
-/* Triangles against what they are derived from. */
+/* What triangles have beyond what tests/cloth/element says of every kind. */
 #include "tests/cloth/physics/triangle_sheet.h"
-
-#include <stdio.h>
-
-START_TEST(force_is_the_slope_of_the_energy)
-{
-    struct sheet s;
-    struct elements_state state;
-    make_sheet(&s, 0);
-    shaken(&s, 0.05, &state);
-    const struct elements model = model_of(&s);
-    elements_check_force(&model, &state, 1e-6);
-}
-END_TEST
-
-START_TEST(matrix_is_the_slope_of_the_force)
-{
-    struct sheet s;
-    struct elements_state state;
-    for (int damped = 0; damped < 2; damped++) {
-        make_sheet(&s, 0.1 * damped);
-        shaken(&s, 0.05, &state);
-        const struct elements model = model_of(&s);
-        elements_check_matrix(&model, &state, 1e-6);
-    }
-}
-END_TEST
-
-START_TEST(momentum_is_kept)
-{
-    struct sheet s;
-    struct elements_state state;
-    make_sheet(&s, 0.1);
-    shaken(&s, 0.1, &state);
-    const struct elements model = model_of(&s);
-    elements_check_momentum(&model, &state, 1e-12);
-}
-END_TEST
-
-START_TEST(rigid_motion_gives_no_force)
-{
-    const phys_vec fu = {1, 0, 0, 0}, fv = {0, 0, 1, 0};
-    struct sheet s;
-    struct elements_state state;
-    make_sheet(&s, 0.1);
-    place(&s, &fu, &fv, &state);
-    const struct elements model = model_of(&s);
-    elements_check_rigid(&model, &state, 1e-11);
-}
-END_TEST
-
-START_TEST(blocks_find_the_same_bits)
-{
-    struct sheet s;
-    struct elements_state state;
-    make_sheet(&s, 0.1);
-    shaken(&s, 0.05, &state);
-    const struct elements model = model_of(&s);
-    elements_check_split(&model, &state, 5);
-    elements_check_split(&model, &state, 10);
-}
-END_TEST
 
 /* All of it at once, in two parts: the matrix to the bit, push times the force, h^2 K v; pairs
  * turned where that is wanted. */
-START_TEST(system_is_force_stiffness_and_matrix)
+UNIT_LOOP(system_is_force_stiffness_and_matrix, 0, 2)
 {
     const struct phys_step step = {0.3, _i};
     const double push = 0.7;
@@ -95,10 +34,9 @@ START_TEST(system_is_force_stiffness_and_matrix)
         for (int c = 0; c < 4; c++)
             ck_assert_double_eq_tol(b[i][c], push * f[i][c] + y[i][c], 1e-11);
 }
-END_TEST
 
 /* At rest the reduced matrix leaves nothing out. */
-START_TEST(reduced_is_full_at_rest)
+UNIT_TEST(reduced_is_full_at_rest)
 {
     const phys_vec fu = {1, 0, 0, 0}, fv = {0, 0, 1, 0};
     const struct phys_step reduced = {0.1, 0}, full = {0.1, 1};
@@ -115,7 +53,6 @@ START_TEST(reduced_is_full_at_rest)
             for (int r = 0; r < 3; r++)
                 ck_assert_double_eq_tol(a[i].cyclic[c][r], b[i].cyclic[c][r], 1e-12);
 }
-END_TEST
 
 /* n.K n of moves along the normal of a sheet that is stretched flat. */
 static double across(const struct sheet *s, const phys_vec *fu, const phys_vec *fv, int full,
@@ -137,7 +74,7 @@ static double across(const struct sheet *s, const phys_vec *fu, const phys_vec *
 
 /* Tension resists moves across the sheet as it does; compression, which gives way to them, does
  * nothing; one of each, in part. */
-START_TEST(moves_across_the_sheet)
+UNIT_TEST(moves_across_the_sheet)
 {
     const phys_vec longer[2] = {{1.1, 0.02, 0, 0}, {0.02, 1.2, 0, 0}};
     const phys_vec shorter[2] = {{0.9, 0.02, 0, 0}, {0.02, 0.8, 0, 0}};
@@ -154,20 +91,4 @@ START_TEST(moves_across_the_sheet)
         ck_assert_double_gt(part, 0);
         ck_assert_double_gt(part, 1 + across(&s, mixed, mixed + 1, 1, seed));
     }
-}
-END_TEST
-int main(void)
-{
-    Suite *suite = suite_create("triangle");
-    TCase *slopes = tcase_create("slopes");
-    tcase_add_test(slopes, force_is_the_slope_of_the_energy);
-    tcase_add_test(slopes, matrix_is_the_slope_of_the_force);
-    tcase_add_loop_test(slopes, system_is_force_stiffness_and_matrix, 0, 2);
-    tcase_add_test(slopes, momentum_is_kept);
-    tcase_add_test(slopes, rigid_motion_gives_no_force);
-    tcase_add_test(slopes, blocks_find_the_same_bits);
-    tcase_add_test(slopes, reduced_is_full_at_rest);
-    tcase_add_test(slopes, moves_across_the_sheet);
-    suite_add_tcase(suite, slopes);
-    return unit_run(suite);
 }

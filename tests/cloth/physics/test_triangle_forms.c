@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 /* Any affine map leaves inner vertices without force, however distorted the mesh. */
-START_TEST(patch)
+UNIT_TEST(patch)
 {
     static const phys_vec map[][2] = {{{1.05, 0, 0, 0}, {0, 0, 0.98, 0}},
                                       {{0.7, 0.6, -0.5, 0}, {0.2, 0.9, 1.2, 0}},
@@ -28,10 +28,9 @@ START_TEST(patch)
         ck_assert_double_gt(max, 1);
     }
 }
-END_TEST
 
 /* F = R S with a rotation R out of the plane: strains are of S - I alone, stresses C times them. */
-START_TEST(strain_of_an_affine_map)
+UNIT_TEST(strain_of_an_affine_map)
 {
     const double suu = 1.05, suv = 0.03, svv = 0.97, c = 0.6, d = 0.8;
     const phys_vec ru = {c, d, 0, 0}, rv = {0, 0, 1, 0};
@@ -56,7 +55,6 @@ START_TEST(strain_of_an_affine_map)
         ck_assert_double_eq_tol(stress[t][2], 2 * SHEAR * suv, 1e-10);
     }
 }
-END_TEST
 
 /* Sum of the forces on the vertices of the right edge (u largest), or of the upper one. */
 static void pull(const phys_vec *f, int upper, phys_vec *sum)
@@ -67,7 +65,7 @@ static void pull(const phys_vec *f, int upper, phys_vec *sum)
             *sum += f[i];
 }
 
-START_TEST(uniaxial_stretch)
+UNIT_TEST(uniaxial_stretch)
 {
     const double e = 0.08, nu21 = POISSON * WEFT / WARP, width = 0.4 * (NX - 1),
                  height = 0.3 * (NY - 1);
@@ -93,9 +91,8 @@ START_TEST(uniaxial_stretch)
         ck_assert_double_eq_tol(up[0], 0, 1e-12);
     }
 }
-END_TEST
 
-START_TEST(pure_shear)
+UNIT_TEST(pure_shear)
 {
     const double angle = 0.06, height = 0.3 * (NY - 1);
     const phys_vec fu = {1, angle / 2, 0, 0}, fv = {angle / 2, 1, 0, 0};
@@ -111,10 +108,9 @@ START_TEST(pure_shear)
     ck_assert_double_eq_tol(right[1], -SHEAR * angle * height, 1e-12);
     ck_assert_double_eq_tol(right[0], 0, 1e-12);
 }
-END_TEST
 
 /* Stretched in a direction that is neither warp nor weft, the papers' forces turn the sheet. */
-START_TEST(uncorrected_forces_leave_their_torque)
+UNIT_TEST(uncorrected_forces_leave_their_torque)
 {
     struct sheet s;
     struct elements_state state;
@@ -143,9 +139,8 @@ START_TEST(uncorrected_forces_leave_their_torque)
     for (int c = 0; c < 3; c++)
         ck_assert_double_eq(torque[c], 0);
 }
-END_TEST
 
-START_TEST(collapsed_triangles_stay_finite)
+UNIT_TEST(collapsed_triangles_stay_finite)
 {
     static const phys_vec map[][2] = {{{1, 0, 0, 0}, {0.5, 0, 0, 0}}, {{0}, {0}}};
     for (int m = 0; m < 2; m++) {
@@ -168,9 +163,8 @@ START_TEST(collapsed_triangles_stay_finite)
             ck_assert(isfinite(f[i / 4][i % 4]));
     }
 }
-END_TEST
 
-START_TEST(impossible_values_are_refused)
+UNIT_TEST(impossible_values_are_refused)
 {
     static const double bad[][5] = {{-1, 1, 1, 0, 0},   {1, -1, 1, 0, 0},       {1, 1, -1, 0, 0},
                                     {NAN, 1, 1, 0, 0},  {1, 1, INFINITY, 0, 0}, {1, 1, 1, 1, 0},
@@ -186,19 +180,4 @@ START_TEST(impossible_values_are_refused)
     ck_assert_int_eq(phys_membrane_make(0, 0, 1, 0, 0, &m), 0);
     ck_assert_int_eq(phys_triangle_rest(line, gradient, &area), -1);
     ck_assert_int_eq(phys_triangle_rest(point, gradient, &area), -1);
-}
-END_TEST
-int main(void)
-{
-    Suite *suite = suite_create("triangle_forms");
-    TCase *forms = tcase_create("closed forms");
-    tcase_add_test(forms, patch);
-    tcase_add_test(forms, strain_of_an_affine_map);
-    tcase_add_test(forms, uniaxial_stretch);
-    tcase_add_test(forms, pure_shear);
-    tcase_add_test(forms, uncorrected_forces_leave_their_torque);
-    tcase_add_test(forms, collapsed_triangles_stay_finite);
-    tcase_add_test(forms, impossible_values_are_refused);
-    suite_add_tcase(suite, forms);
-    return unit_run(suite);
 }

@@ -80,14 +80,6 @@ static inline void forces(const struct sheet *s, const struct elements_state *st
     phys_triangles_force(&s->triangles, &sight, f);
 }
 
-static inline double energy(const void *of, const struct phys_sight *sight)
-{
-    return phys_triangles_energy(of, sight);
-}
-static inline void force(const void *of, const struct phys_sight *sight, phys_vec *f)
-{
-    phys_triangles_force(of, sight, f);
-}
 static inline void stiffness(const void *of, int full, double scale, const struct phys_sight *sight,
                              phys_vec *y)
 {
@@ -102,13 +94,6 @@ static inline void matrix(const void *of, const struct phys_step *step,
     phys_triangles_matrix(t, 0, 5, step, sight, NULL,
                           pair); /* in two parts, neither a multiple of 4 */
     phys_triangles_matrix(t, 5, t->n, step, sight, NULL, pair + 15);
-}
-
-static inline struct elements model_of(const struct sheet *s)
-{
-    static const int pair[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-    return (struct elements){&s->triangles, TRIANGLES, 3,     s->triangles.corner, pair, energy,
-                             force,         stiffness, matrix};
 }
 
 /* Bent, stretched and shaken. */

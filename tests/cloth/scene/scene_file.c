@@ -23,7 +23,7 @@ const char *const scene_right = "schema: 1\n"
                                 "time: {h: 0.001, end: 0.1}\n";
 
 static char folder[64];
-static char written[16][128];
+static char written[32][128];
 static size_t n_written;
 static pid_t owner;
 
@@ -108,39 +108,4 @@ struct model scene_read_changed(const char *from, const char *to)
     struct model model = scene_read_right(text, 0, NULL);
     free(text);
     return model;
-}
-
-/* An expected text that ends with "..." says how the text begins. */
-static void check_text(char *text, const char *expected)
-{
-    const size_t n = strlen(expected), begin = n < 3 ? n : n - 3;
-    if (n == begin || strcmp(expected + begin, "...") != 0 || strlen(text) < begin) {
-        ck_assert_str_eq(text, expected);
-        return;
-    }
-    ck_assert_msg(!strncmp(text, expected, begin), "\"%s\" does not begin with \"%.*s\"", text,
-                  (int)begin, expected);
-}
-
-void scene_expect_error(const char *text, const char *set, const char *error)
-{
-    struct model model;
-    struct cloth_error got = {0};
-    const struct scene_set sets[] = {{.text = set}};
-    int code = scene_read_text(&model, text, set ? 1 : 0, sets, &got);
-    size_t path = strlen(scene_path());
-    bool in_file = strncmp(got.text, scene_path(), path) == 0;
-    check_text(in_file ? got.text + path : got.text, error);
-    ck_assert_int_eq(code, CLOTH_E_INPUT);
-    model_free(&model);
-}
-
-void scene_expect_errors(const struct scene_wrong *wrong, size_t n)
-{
-    for (size_t i = 0; i < n; i++) {
-        char *text = wrong[i].from ? scene_changed(scene_right, wrong[i].from, wrong[i].to)
-                                   : strdup(scene_right);
-        scene_expect_error(text, wrong[i].set, wrong[i].error);
-        free(text);
-    }
 }

@@ -30,22 +30,4 @@ void scene_write_file(const char *name, const char *bytes, size_t size);
 /* The path of "scene.yaml", as errors name it. */
 const char *scene_path(void);
 
-/* A change of the scene that is right, and the error that it must give. */
-struct scene_wrong {
-    const char *from, *to; /* the change of the file; NULL: none */
-    const char *set;       /* NULL: none */
-    const char *error;     /* after the path of the file, or all of it when there is a set */
-};
-
-/* Fails the test unless reading the text, with the set if there is one, gives this error; one that
- * ends with "..." says how it begins, so a list of keys may grow. */
-void scene_expect_error(const char *text, const char *set, const char *error);
-void scene_expect_errors(const struct scene_wrong *wrong, size_t n);
-
-#define EXPECT(...)                                                                                \
-    do {                                                                                           \
-        static const struct scene_wrong all[] = {__VA_ARGS__};                                     \
-        scene_expect_errors(all, sizeof all / sizeof all[0]);                                      \
-    } while (0)
-
 #endif

@@ -13,8 +13,9 @@ static void same_vector(const double *a, double x, double y, double z)
 
 /* Parameters in the order of their kind, directions and rotations made of length 1; keys of
  * obstacles come before those of pins. */
-START_TEST(obstacles)
+UNIT_TEST(obstacles)
 {
+    UNIT_OWNED(model_free)
     struct model model = scene_read_set(
         "obstacles=[{box: {centre: [1, 2, 3], size: [4, 5, 6], rotate: [3, 0, 4, 0]}}, {sphere: "
         "{radius: 7, motion: {times: [1, 2], translate: [[1, 0, 0], [0, 0, 8]], about: [0, 9, 0]}, "
@@ -37,12 +38,10 @@ START_TEST(obstacles)
     same_vector(model.keys[ball->first + 1].translate, 0, 0, 8);
     ck_assert(model_obstacles_move(&model) && !model_is_driven(&model));
     ck_assert(model_moves_after(&model, 1.5) && !model_moves_after(&model, 2));
-    model_free(&model);
 }
-END_TEST
 
 /* Key frames that are all the same move nothing, so that the energy is guarded. */
-START_TEST(still_motions)
+UNIT_TEST(still_motions)
 {
     static const char *const sets[] = {
         "obstacles[0].plane.motion={times: [0, 2], translate: [[0, 1, 0], [0, 1, 0]]}",
@@ -50,19 +49,17 @@ START_TEST(still_motions)
         "obstacles[0].plane.motion={times: [0, 2], rotate: [[1, 0, 0, 0], [1, 0, 0, 0]]}",
         "obstacles[0].plane.motion={times: [0, 2], rotate: [[1, 0, 0, 0], [1, 0, 1, 0]]}"};
     for (int i = 0; i < 4; i++) {
-        struct model model = scene_read_set(sets[i]);
+        UNIT_OWNED(model_free) struct model model = scene_read_set(sets[i]);
         ck_assert_int_eq(model_obstacles_move(&model), i % 2);
         ck_assert_int_eq(model_moves_after(&model, 1), i % 2);
         ck_assert_int_eq(model_is_guarded(&model), 1 - i % 2);
-        model_free(&model);
     }
+    UNIT_OWNED(model_free)
     struct model model = scene_read_set(
         "cloths[0].pins[0].motion={times: [0, 1, 2], translate: [[0, 0, 0], [0, 1, 0], [0, 1, "
         "0]]}");
     ck_assert(model_moves_after(&model, 0.5) && !model_moves_after(&model, 1));
-    model_free(&model);
 }
-END_TEST
 
 #define SECOND "cloths[1]={mesh: {grid: {width: 1, height: 1, nx: 3, ny: 3}}, material: cotton}"
 #define CHAIN                                                                                      \
@@ -87,22 +84,20 @@ static const struct {
     {{CHAIN, "materials.wire={ea: 1}", "contact.self=on"}, MODEL_CONTACT_PROJECT},
 };
 
-START_TEST(contact_modes)
+UNIT_LOOP(contact_modes, 0, sizeof modes / sizeof *modes)
 {
     struct scene_set sets[4] = {{.text = "contact.thickness=0.01"}};
     size_t n = 1;
     for (; n < 4 && modes[_i].set[n - 1]; n++)
         sets[n] = (struct scene_set){.text = modes[_i].set[n - 1]};
-    struct model model = scene_read_right(scene_right, n, sets);
+    UNIT_OWNED(model_free) struct model model = scene_read_right(scene_right, n, sets);
     ck_assert(model.contact.assumed);
     ck_assert_int_eq((int)model.contact.mode, (int)modes[_i].mode);
     ck_assert(strstr(model_contact_cure(&model), "mode: project"));
     model_free(&model);
     model = scene_read_set("contact.mode=certified");
     ck_assert(!model.contact.assumed && !model_contact_cure(&model)[0]);
-    model_free(&model);
 }
-END_TEST
 
 /* Steps look for contact where something can touch, or where it is reported. */
 static const struct {
@@ -115,22 +110,21 @@ static const struct {
     {{"obstacles=[]", "probes=[{cloth: sheet, vertices: [1], values: [contact], name: p}]"}, true},
 };
 
-START_TEST(contact_with_nothing)
+UNIT_LOOP(contact_with_nothing, 0, sizeof idle_scenes / sizeof *idle_scenes)
 {
     struct scene_set sets[3] = {{.text = "contact.mode=certified"}};
     size_t n = 1;
     for (; n < 3 && idle_scenes[_i].set[n - 1]; n++)
         sets[n] = (struct scene_set){.text = idle_scenes[_i].set[n - 1]};
-    struct model model = scene_read_right(scene_right, n, sets);
+    UNIT_OWNED(model_free) struct model model = scene_read_right(scene_right, n, sets);
     ck_assert_int_eq(model_promise(&model).apart, idle_scenes[_i].certifies);
     ck_assert_int_eq((int)model.contact.mode, MODEL_CONTACT_CERTIFIED);
-    model_free(&model);
 }
-END_TEST
 
 /* What gives no coefficient has that of contact. */
-START_TEST(frictions)
+UNIT_TEST(frictions)
 {
+    UNIT_OWNED(model_free)
     struct model model =
         scene_read_changed("  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
                            "  linen: {density: 1, stretch: 2, friction: 0}\n"
@@ -145,12 +139,11 @@ START_TEST(frictions)
     model = scene_read_set("obstacles[0].plane.friction=0.5");
     ck_assert_double_eq(model.obstacles[0].friction, 0.5);
     ck_assert_double_eq(model.materials[0].friction, 0);
-    model_free(&model);
 }
-END_TEST
 
-START_TEST(probes_of_contact)
+UNIT_TEST(probes_of_contact)
 {
+    UNIT_OWNED(model_free)
     struct model model = scene_read_changed(
         "\ntime: {h",
         "\ncontact: {mode: certified}\nintegrator: implicit_euler\n"
@@ -161,32 +154,14 @@ START_TEST(probes_of_contact)
     ck_assert(probe[1].by_obstacle && !probe[1].contact && !probe[1].position);
     ck_assert_uint_eq(probe[1].obstacle, 0);
     ck_assert(model_feels_contact(&model));
-    model_free(&model);
 }
-END_TEST
 
-START_TEST(huge_and_tiny_normals)
+UNIT_TEST(huge_and_tiny_normals)
 {
+    UNIT_OWNED(model_free)
     struct model model = scene_read_changed("normal: [0, 3, 4]", "normal: [0, 3e300, 4e300]");
     ck_assert_double_eq_tol(model.obstacles[0].value[4], 0.6, 1e-15);
     model_free(&model);
     model = scene_read_changed("normal: [0, 3, 4]", "normal: [0, 3e-300, 4e-300]");
     ck_assert_double_eq_tol(model.obstacles[0].value[5], 0.8, 1e-15);
-    model_free(&model);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("scene values of contact");
-    TCase *cases = tcase_create("values");
-    tcase_add_test(cases, obstacles);
-    tcase_add_loop_test(cases, contact_modes, 0, sizeof modes / sizeof *modes);
-    tcase_add_loop_test(cases, contact_with_nothing, 0, sizeof idle_scenes / sizeof *idle_scenes);
-    tcase_add_test(cases, still_motions);
-    tcase_add_test(cases, frictions);
-    tcase_add_test(cases, probes_of_contact);
-    tcase_add_test(cases, huge_and_tiny_normals);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -107,7 +107,7 @@ static void check_rule(const struct scene_rule *rule, struct structure *in)
         check_items(key, rule, in);
 }
 
-START_TEST(rules_fit_their_fields)
+UNIT_TEST(rules_fit_their_fields)
 {
     struct structure model = {NULL, sizeof(struct model)}, pick = {NULL, sizeof(struct model_pick)};
     check_rule(&scene_root, &model);
@@ -117,7 +117,6 @@ START_TEST(rules_fit_their_fields)
     ck_assert_uint_ge(n_fields, 90);
     ck_assert_uint_ge(n_places, 8);
 }
-END_TEST
 
 /* A word that means two things, or two words for one thing. */
 static void check_words(const struct model_word *words)
@@ -140,7 +139,7 @@ static void check_all_words(const struct scene_rule *rule)
         check_all_words(rule->inside);
 }
 
-START_TEST(words_mean_one_thing)
+UNIT_TEST(words_mean_one_thing)
 {
     check_all_words(&scene_root);
     for (int i = 0; i < MODEL_INTEGRATORS; i++) {
@@ -150,7 +149,6 @@ START_TEST(words_mean_one_thing)
         ck_assert(known);
     }
 }
-END_TEST
 
 /* The map of a rule, and the maps around it. */
 struct scope {
@@ -202,12 +200,11 @@ static void check_examples(const struct scene_rule *map, const struct scope *up)
     }
 }
 
-START_TEST(examples_are_allowed)
+UNIT_TEST(examples_are_allowed)
 {
     check_examples(&scene_root, NULL);
     ck_assert_uint_ge(n_examples, 25);
 }
-END_TEST
 
 static unsigned n_terms;
 
@@ -277,21 +274,8 @@ static void check_all_needs(const struct scene_rule *rule, const struct scope *u
         check_all_needs(rule->inside, scope);
 }
 
-START_TEST(needs_are_keys_or_facts)
+UNIT_TEST(needs_are_keys_or_facts)
 {
     check_all_needs(&scene_root, NULL);
     ck_assert_uint_ge(n_terms, 25);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("scene rules");
-    TCase *cases = tcase_create("rules");
-    tcase_add_test(cases, rules_fit_their_fields);
-    tcase_add_test(cases, words_mean_one_thing);
-    tcase_add_test(cases, examples_are_allowed);
-    tcase_add_test(cases, needs_are_keys_or_facts);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -57,10 +57,10 @@ static struct model read_scene(const char *stitches, const char *keys)
 
 /* The sides of the front sewn to the same sides of the back, which faces the other way: the threads
  * go across the bag, and through each other. */
-START_TEST(seams_that_cross)
+UNIT_LOOP(seams_that_cross, 0, 2)
 {
     static const char *const stitches[] = {SIDES_OF, STITCH(1, 1) ", " STITCH(3, 3)};
-    struct model model = read_scene(stitches[_i], "{state: pulled}");
+    UNIT_OWNED(model_free) struct model model = read_scene(stitches[_i], "{state: pulled}");
     ck_assert_uint_eq(model.n_warnings, (uint32_t)_i);
     if (_i)
         ck_assert_msg(
@@ -69,14 +69,12 @@ START_TEST(seams_that_cross)
                    "'back') and seam 1 of cloth 'bag' (edge 3 of panel 'front', edge 3 of panel "
                    "'back') cross where the run starts: what they pull goes through each other"),
             "%s", model.warnings[0]);
-    model_free(&model);
 }
-END_TEST
 
 /* A bag's corner at the bottom is in two seams: the second has one pair less. */
-START_TEST(joints_of_seams)
+UNIT_TEST(joints_of_seams)
 {
-    struct model model = read_scene(BAG_OF, "{state: pulled}");
+    UNIT_OWNED(model_free) struct model model = read_scene(BAG_OF, "{state: pulled}");
     ck_assert_uint_eq(model.n_joints, 3);
     ck_assert_uint_eq(model.n_pulled, 3);
     const struct model_seam *seam = model.cloths[0].seams.seam;
@@ -97,12 +95,11 @@ START_TEST(joints_of_seams)
                               joint->pairs.end[0].vertices[i]);
         }
     }
-    model_free(&model);
 }
-END_TEST
 
-START_TEST(keys_of_seams)
+UNIT_TEST(keys_of_seams)
 {
+    UNIT_OWNED(model_free)
     struct model model = read_scene(SIDES_OF, "{stiffness: 50, damping: 3, reversed: [1]}");
     ck_assert_double_eq(model.joints[0].stiffness, 50);
     ck_assert_double_eq(model.joints[0].damping, 3);
@@ -118,9 +115,7 @@ START_TEST(keys_of_seams)
     model = read_scene(SIDES_OF, "{state: open}");
     ck_assert_uint_eq(model.n_joints + model.n_welds + model.n_pulled, 0);
     ck_assert_ptr_null(model.contact.apart.joined);
-    model_free(&model);
 }
-END_TEST
 
 /* ---- Some seams that are sewn otherwise than the cloth ---- */
 
@@ -149,10 +144,10 @@ static const struct some SOME[] = {
      7},
     {"{state: welded, some: []}", {0}, {1, 2, 3}, 0, 0}};
 
-START_TEST(some_seams)
+UNIT_LOOP(some_seams, 0, sizeof SOME / sizeof *SOME)
 {
     const struct some *some = SOME + _i;
-    struct model model = read_scene(BAG_OF, some->keys);
+    UNIT_OWNED(model_free) struct model model = read_scene(BAG_OF, some->keys);
     for (uint32_t i = 0; i < 3; i++) {
         ck_assert_uint_eq(i < model.n_joints ? model.joints[i].pairs.seam : 0, some->joint[i]);
         ck_assert_uint_eq(i < model.n_welds ? model.welds[i].pairs.seam : 0, some->weld[i]);
@@ -162,16 +157,14 @@ START_TEST(some_seams)
         ck_assert_double_eq(model.joints[0].stiffness, some->stiffness);
         ck_assert_double_eq_tol(model.joints[0].damping, some->damping, 1e-12);
     }
-    model_free(&model);
 }
-END_TEST
 
 /* The bottom, which is pulled, ends in both sides, which are welded: their pairs stand first. */
-START_TEST(welds_come_before_joints)
+UNIT_TEST(welds_come_before_joints)
 {
+    UNIT_OWNED(model_free)
     struct model model =
         read_scene(BAG_OF, "{tolerance: 0.031, some: [{numbers: [1, 2], state: welded}]}");
-    struct cloth_error error = {0};
     struct flow *flow;
     const struct model_seam *seam = model.cloths[0].seams.seam;
     ck_assert_uint_eq(model.n_joints, 1);
@@ -181,33 +174,29 @@ START_TEST(welds_come_before_joints)
     for (uint32_t s = 0; s < 3; s++)
         for (uint32_t i = 0; i < seam[s].n_pairs; i++)
             ck_assert_uint_eq(vertex[seam[s].pair[i][0]], vertex[seam[s].pair[i][1]]);
-    ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
+    UNIT_FINE(flow_prepare(&flow, &model, 1, &error));
     flow_free(flow);
-    model_free(&model);
 }
-END_TEST
 
 /* Three seams that meet at a corner, as of a box: where two are welded its three vertices are one,
  * and the third has no pair there. */
-START_TEST(corners_of_three_seams)
+UNIT_TEST(corners_of_three_seams)
 {
     static const char *const stitches =
         STITCH(0, 3) ", [{\"panel\": \"back\", \"edge\": 0}, {\"panel\": \"top\", \"edge\": 3}], "
                      "[{\"panel\": \"top\", \"edge\": 0}, {\"panel\": \"front\", \"edge\": 3}]";
+    UNIT_OWNED(model_free)
     struct model model = read_scene(
         stitches, "{tolerance: 4, reversed: [0, 2], some: [{numbers: [0, 1], state: welded}]}");
-    struct cloth_error error = {0};
     struct flow *flow;
     for (int s = 0; s < 3; s++)
         ck_assert(model.cloths[0].seams.seam[s].reversed);
     ck_assert_uint_eq(model.n_welds, 2);
     ck_assert_uint_eq(model.n_joints, 1);
     ck_assert_uint_eq(model.joints[0].pairs.end[0].n, model.cloths[0].seams.seam[2].n_pairs - 1);
-    ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
+    UNIT_FINE(flow_prepare(&flow, &model, 1, &error));
     flow_free(flow);
-    model_free(&model);
 }
-END_TEST
 
 /* Sewn: what the pattern says of it. */
 struct sewn {
@@ -261,13 +250,13 @@ static uint32_t count_edges(const struct mesh *mesh, const uint32_t *root, doubl
 
 static const struct sewn GARMENTS[] = {{SIDES_OF, 0, 0.8}, {BAG_OF, 1, 0.4}, {PILLOW_OF, 2, 0}};
 
-START_TEST(what_is_sewn)
+UNIT_LOOP(what_is_sewn, 0, sizeof GARMENTS / sizeof *GARMENTS)
 {
     const struct sewn *sewn = GARMENTS + _i;
+    UNIT_OWNED(model_free)
     struct model model = read_scene(sewn->stitches, "{state: welded, tolerance: 0.031}");
-    struct cloth_error error = {0};
     struct flow *flow;
-    ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
+    UNIT_FINE(flow_prepare(&flow, &model, 1, &error));
     const struct flow_source *source = &flow->source;
     const struct model_seams *seams = &model.cloths[0].seams;
     const struct mesh *mesh = &model.cloths[0].mesh;
@@ -287,9 +276,7 @@ START_TEST(what_is_sewn)
         mass += source->particles.mass[v];
     ck_assert_double_eq_tol(mass, 0.25 * 2 * 0.2 * 0.3, 1e-12);
     flow_free(flow);
-    model_free(&model);
 }
-END_TEST
 
 struct hinges {
     uint32_t n;
@@ -311,7 +298,7 @@ static void take_hinge(void *to, const struct element *element)
 }
 
 /* They are flat at rest, though the panels lie face to face, and as stiff as the key says. */
-START_TEST(hinges_of_seams)
+UNIT_TEST(hinges_of_seams)
 {
     double stiffness[4];
     static const char *const keys[4] = {"{state: welded, tolerance: 0.031}",
@@ -320,17 +307,15 @@ START_TEST(hinges_of_seams)
                                         ("{state: welded, tolerance: 0.031, bending: 2.0e-5, some: "
                                          "[{numbers: [1], bending: 6e-5}]}")};
     for (int i = 0; i < 4; i++) {
-        struct model model = read_scene(SIDES_OF, keys[i]);
-        struct cloth_error error = {0};
+        UNIT_OWNED(model_free) struct model model = read_scene(SIDES_OF, keys[i]);
         struct flow *flow;
-        ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
+        UNIT_FINE(flow_prepare(&flow, &model, 1, &error));
         struct hinges hinges = {.cloths = &flow->source.elements};
         element_each(&flow->source.elements, take_hinge, &hinges);
         ck_assert_uint_eq(hinges.n, flow->source.elements.n_seams);
         ck_assert_double_eq(hinges.rest, 0);
         stiffness[i] = hinges.stiffness;
         flow_free(flow);
-        model_free(&model);
     }
     ck_assert_double_gt(stiffness[0], 0);
     ck_assert_double_eq_tol(stiffness[1], stiffness[0], 1e-12 * stiffness[0]);
@@ -338,88 +323,4 @@ START_TEST(hinges_of_seams)
     ck_assert_double_gt(stiffness[3],
                         1.9 * stiffness[0]); /* one of two sides, whose meshes differ */
     ck_assert_double_lt(stiffness[3], 2.1 * stiffness[0]);
-}
-END_TEST
-
-static void refused(const char *stitches, const char *keys, const char *error)
-{
-    char *text = scene_of(stitches, keys);
-    scene_expect_error(text, NULL, error);
-    free(text);
-}
-
-START_TEST(seams_that_cannot_be_sewn)
-{
-    refused(SIDES_OF, "{reversed: [2]}",
-            ":6:24: seam 2 is none of cloth 'bag', which has 2 seams, counted from 0");
-    refused(SIDES_OF, "{reversed: [1, 1]}", ":6:27: seam 1 stands twice in seams.reversed");
-    refused(SIDES_OF, "{file: panels.json}",
-            ":6:19: seams.file is of OBJ meshes; the seams of a pattern are its stitches");
-    refused(SIDES_OF, "{some: [{numbers: [0, 2], state: open}]}",
-            ":6:34: seam 2 is none of cloth 'bag', which has 2 seams, counted from 0");
-    refused(
-        SIDES_OF, "{some: [{of: [front, 'b*'], state: open}, {of: [front, 'f*'], state: open}]}",
-        ":6:59: no seam of cloth 'bag' is between a panel 'front' and one 'f*'; a panel's name is "
-        "expected, in which * stands for any characters");
-    refused(SIDES_OF, "{some: [{state: open}]}",
-            ":6:20: cloths[0].seams.some[0] has no numbers or of; one of them is expected");
-    refused(SIDES_OF, "{state: sewn}",
-            ":6:20: cloths[0].seams.state is sewn; pulled or welded or open is expected");
-    refused(SIDES_OF, "{stiffness: 0}",
-            ":6:24: cloths[0].seams.stiffness is 0; a finite number > 0 (N/m) is expected");
-    char *text = scene_changed(scene_right, "material: cotton", "seams: {}\n    material: cotton");
-    scene_expect_error(text, NULL,
-                       ":6:12: the mesh of cloth 'sheet' has no seams; a mesh.pattern, or "
-                       "seams.file is expected");
-    free(text);
-}
-END_TEST
-
-/* What flow_prepare finds. */
-static void not_prepared(const char *keys, const char *more, const char *error)
-{
-    struct model model = read_scene(SIDES_OF, keys);
-    struct cloth_error got = {0};
-    struct flow *flow;
-    struct model_pin pin = {.pick = {.kind = MODEL_PICK_BOX, .box = {{-1, -1, -1}, {1, 1, 1}}}};
-    if (more) {
-        free(model.cloths[0].pins);
-        model.cloths[0].pins = malloc(sizeof pin);
-        ck_assert_ptr_nonnull(model.cloths[0].pins);
-        model.cloths[0].pins[model.cloths[0].n_pins++] = pin;
-    }
-    ck_assert_int_eq(flow_prepare(&flow, &model, 1, &got), CLOTH_E_INPUT);
-    ck_assert_msg(strstr(got.text, error), "%s", got.text);
-    model_free(&model);
-}
-
-START_TEST(seams_that_cannot_be_closed)
-{
-    not_prepared(
-        "{state: welded}", NULL,
-        ":6:12: seam 0 of cloth 'bag' (edge 1 of panel 'front', edge 3 of panel 'back') is "
-        "between vertex ");
-    not_prepared("{state: welded}", NULL,
-                 "which start 0.03 m from each other; at most 0.002 m are expected (tolerance)");
-    not_prepared("{state: pulled}", "pinned",
-                 "both of which pins hold: nothing can bring them together");
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("seams");
-    TCase *cases = tcase_create("seams");
-    tcase_add_loop_test(cases, seams_that_cross, 0, 2);
-    tcase_add_test(cases, joints_of_seams);
-    tcase_add_test(cases, keys_of_seams);
-    tcase_add_loop_test(cases, some_seams, 0, sizeof SOME / sizeof *SOME);
-    tcase_add_test(cases, welds_come_before_joints);
-    tcase_add_test(cases, corners_of_three_seams);
-    tcase_add_loop_test(cases, what_is_sewn, 0, sizeof GARMENTS / sizeof *GARMENTS);
-    tcase_add_test(cases, hinges_of_seams);
-    tcase_add_test(cases, seams_that_cannot_be_sewn);
-    tcase_add_test(cases, seams_that_cannot_be_closed);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -6,9 +6,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-START_TEST(sets_change_values)
+UNIT_TEST(sets_change_values)
 {
-    struct model model = scene_read_set("time.h=0.002");
+    UNIT_OWNED(model_free) struct model model = scene_read_set("time.h=0.002");
     ck_assert_double_eq(model.h, 0.002);
     model_free(&model);
     model = scene_read_set("cloths[0].mesh.grid.nx=40");
@@ -47,12 +47,11 @@ START_TEST(sets_change_values)
     model_free(&model);
     model = scene_read_set("name=a=b");
     ck_assert_str_eq(model.name, "a=b");
-    model_free(&model);
 }
-END_TEST
 
-START_TEST(sets_make_and_append)
+UNIT_TEST(sets_make_and_append)
 {
+    UNIT_OWNED(model_free)
     struct model model = scene_read_set("materials.cotton.damping.viscous=2");
     ck_assert_double_eq(model.materials[0].damping_viscous, 2);
     ck_assert_double_eq(model.materials[0].damping_mass, 0.1);
@@ -74,12 +73,10 @@ START_TEST(sets_make_and_append)
                                      {.text = "materials.wool.density=3"}};
     model = scene_read_right(scene_right, 3, both);
     ck_assert_double_eq(model.materials[model.cloths[0].material].density, 3);
-    model_free(&model);
 }
-END_TEST
 
 /* The last one of those that exclude each other; what an alias shares has its own. */
-START_TEST(a_choice_replaces_a_choice)
+UNIT_TEST(a_choice_replaces_a_choice)
 {
     char *text = scene_changed(scene_right, "time:", "solver: {stop: {relative: 0.1}}\ntime:");
     const struct scene_set sets[] = {{.text = "solver.stop.mass_norm=0.2"},
@@ -89,14 +86,14 @@ START_TEST(a_choice_replaces_a_choice)
                                            MODEL_STOP_RELATIVE};
     static const double tolerance[] = {0.2, 0.3, 0.4};
     for (size_t n = 1; n <= 3; n++) {
-        struct model model = scene_read_right(text, n, sets);
+        UNIT_OWNED(model_free) struct model model = scene_read_right(text, n, sets);
         ck_assert_int_eq(model.stop, stop[n - 1]);
         ck_assert_double_eq(model.tolerance, tolerance[n - 1]);
-        model_free(&model);
     }
     free(text);
     text = scene_changed(scene_right, "[{vertices: [0, 3]}]",
                          "[&p {vertices: [0, 3], motion: {times: [0]}}, *p]");
+    UNIT_OWNED(model_free)
     struct model model = scene_read_right(
         text, 1, &(struct scene_set){.text = "cloths[0].pins[1].nearest=[1, 2, 3]"});
     ck_assert_int_eq(model.cloths[0].pins[0].pick.kind, MODEL_PICK_VERTICES);
@@ -104,13 +101,11 @@ START_TEST(a_choice_replaces_a_choice)
     ck_assert_ptr_null(model.cloths[0].pins[1].pick.vertices);
     ck_assert_double_eq(model.cloths[0].pins[1].pick.point[2], 3);
     ck_assert_uint_eq(model.n_motions, 2);
-    model_free(&model);
     free(text);
 }
-END_TEST
 
 /* Also one inside what the file or an earlier set has. */
-START_TEST(the_last_choice_is_inside)
+UNIT_TEST(the_last_choice_is_inside)
 {
     char *text = scene_changed(scene_right, "plane: {point: [0, -1, 0], normal: [0, 3, 4]}",
                                "sphere: {centre: [0, -1, 0], radius: 0.5}");
@@ -120,16 +115,14 @@ START_TEST(the_last_choice_is_inside)
         {.text = "obstacles[0].box.size[1]=2"}};
     static const char *const kind[] = {"box", "sphere", "box"};
     for (size_t n = 1; n <= 3; n++) {
-        struct model model = scene_read_right(text, n, sets);
+        UNIT_OWNED(model_free) struct model model = scene_read_right(text, n, sets);
         ck_assert_str_eq(contact_kinds[model.obstacles[0].kind]->name, kind[n - 1]);
         ck_assert_double_eq(model.obstacles[0].value[4], n == 2 ? 0 : n == 3 ? 2 : 1);
-        model_free(&model);
     }
     free(text);
 }
-END_TEST
 
-START_TEST(sets_leave_aliases_alone)
+UNIT_TEST(sets_leave_aliases_alone)
 {
     char *text =
         scene_changed(scene_right, "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}",
@@ -137,25 +130,10 @@ START_TEST(sets_leave_aliases_alone)
                       "  other: *c");
     const struct scene_set sets[] = {{.text = "materials.other.damping.mass=9"},
                                      {.text = "materials.cotton.stretch=1"}};
-    struct model model = scene_read_right(text, 2, sets);
+    UNIT_OWNED(model_free) struct model model = scene_read_right(text, 2, sets);
     ck_assert_double_eq(model.materials[0].damping_mass, 0.1);
     ck_assert_double_eq(model.materials[0].stretch, 1);
     ck_assert_double_eq(model.materials[1].damping_mass, 9);
     ck_assert_double_eq(model.materials[1].stretch, 50);
-    model_free(&model);
     free(text);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("scene sets");
-    TCase *cases = tcase_create("sets");
-    tcase_add_test(cases, sets_change_values);
-    tcase_add_test(cases, sets_make_and_append);
-    tcase_add_test(cases, a_choice_replaces_a_choice);
-    tcase_add_test(cases, the_last_choice_is_inside);
-    tcase_add_test(cases, sets_leave_aliases_alone);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

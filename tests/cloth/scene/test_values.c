@@ -23,9 +23,9 @@ static void same_vector(const double *a, double x, double y, double z)
     ck_assert_double_eq(a[2], z);
 }
 
-START_TEST(world_and_time)
+UNIT_TEST(world_and_time)
 {
-    struct model model = scene_read_right(scene_right, 0, NULL);
+    UNIT_OWNED(model_free) struct model model = scene_read_right(scene_right, 0, NULL);
     ck_assert_str_eq(model.name, "scene");
     same_vector(model.gravity, 0, -9.81, 0);
     ck_assert_double_eq(model.h, 0.001);
@@ -43,13 +43,11 @@ START_TEST(world_and_time)
     ck_assert_uint_eq(model.n_obstacles, 1);
     same_vector(model.obstacles[0].value, 0, -1, 0);
     same_vector(model.obstacles[0].value + 3, 0, 3. / 4 / 1.25, 1 / 1.25);
-    model_free(&model);
 }
-END_TEST
 
-START_TEST(cloth_and_material)
+UNIT_TEST(cloth_and_material)
 {
-    struct model model = scene_read_right(scene_right, 0, NULL);
+    UNIT_OWNED(model_free) struct model model = scene_read_right(scene_right, 0, NULL);
     ck_assert_uint_eq(model.n_cloths, 1);
     const struct model_cloth *cloth = &model.cloths[0];
     ck_assert_str_eq(cloth->name, "sheet");
@@ -81,9 +79,7 @@ START_TEST(cloth_and_material)
     ck_assert_double_eq(material->damping_mass, 0.1);
     ck_assert_double_eq(material->damping_stiffness, 0);
     ck_assert_int_eq(material->both_diagonals, 1);
-    model_free(&model);
 }
-END_TEST
 
 static void same_fabric(const struct model_material *m, double density, double warp, double weft,
                         double shear, double rigidity)
@@ -100,7 +96,7 @@ static void same_fabric(const struct model_material *m, double density, double w
 
 /* Those that no scene need write, with some of their values changed, and one of the scene's own of
  * the same name. */
-START_TEST(named_fabrics)
+UNIT_TEST(named_fabrics)
 {
     static const char *const sets[] = {
         "cloths[0].material=denim", "cloths[0].material=silk",
@@ -111,7 +107,7 @@ START_TEST(named_fabrics)
                                     {.text = sets[2]},
                                     {.text = sets[3]},
                                     {.text = sets[4]}};
-    struct model model = scene_read_right(scene_right, 1, set);
+    UNIT_OWNED(model_free) struct model model = scene_read_right(scene_right, 1, set);
     ck_assert_uint_eq(model.n_materials, 2);
     ck_assert_str_eq(model.materials[1].name, "denim");
     ck_assert_uint_eq(model.cloths[0].material, 1);
@@ -129,23 +125,20 @@ START_TEST(named_fabrics)
     model = scene_read_right(scene_right, 2, set + 3); /* its own */
     ck_assert_uint_eq(model.n_materials, 1);
     ck_assert_double_eq(model.materials[0].density, 0.5);
-    model_free(&model);
 }
-END_TEST
 
 /* A density is wanted only where it is needed. */
-START_TEST(mass_without_density)
+UNIT_TEST(mass_without_density)
 {
     const struct scene_set set[] = {{.text = "materials={cotton: {stretch: 50}}"},
                                     {.text = "cloths[0].mass_per_vertex=0.1"}};
-    struct model model = scene_read_right(scene_right, 2, set);
+    UNIT_OWNED(model_free) struct model model = scene_read_right(scene_right, 2, set);
     ck_assert_double_eq(model.materials[0].density, 0);
-    model_free(&model);
 }
-END_TEST
 
-START_TEST(every_other_key)
+UNIT_TEST(every_other_key)
 {
+    UNIT_OWNED(model_free)
     struct model model = scene_read_changed(
         "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
         "  silk: &silk {density: 1, stretch: 2, shear: 3, bend: 4, diagonals: one,\n"
@@ -179,26 +172,23 @@ START_TEST(every_other_key)
         ck_assert_double_eq(material->damping_stiffness, 7);
         ck_assert_int_eq(material->both_diagonals, 0);
     }
-    model_free(&model);
 }
-END_TEST
 
-START_TEST(slopes)
+UNIT_TEST(slopes)
 {
     static const char *const words[] = {"definite", "full", "absolute"};
     static const int kind[] = {PHYS_DEFINITE, PHYS_FULL, PHYS_ABSOLUTE};
     for (int i = 0; i < 3; i++) {
         char set[60];
         snprintf(set, sizeof set, "solver.jacobian=%s", words[i]);
-        struct model model = scene_read_set(set);
+        UNIT_OWNED(model_free) struct model model = scene_read_set(set);
         ck_assert_int_eq(model.full_slope, kind[i]);
-        model_free(&model);
     }
 }
-END_TEST
 
-START_TEST(triangles_and_bending)
+UNIT_TEST(triangles_and_bending)
 {
+    UNIT_OWNED(model_free)
     struct model model = scene_read_changed(
         "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
         "  cotton: {density: 1, model: triangles, stretch: [30, 20], shear: 3, poisson: -0.5,\n"
@@ -234,11 +224,9 @@ START_TEST(triangles_and_bending)
     ck_assert_double_eq(model_rest(model.cloths)->position[3 * 11], 1);
     ck_assert_double_eq(model_rest(model.cloths)->position[3 * 11 + 1], 2);
     ck_assert_double_eq(model.cloths[0].mesh.position[3 * 11], 1.5);
-    model_free(&model);
 }
-END_TEST
 
-START_TEST(cloths_of_every_mesh)
+UNIT_TEST(cloths_of_every_mesh)
 {
     const char *triangle = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n";
     char *text = scene_changed(
@@ -254,7 +242,7 @@ START_TEST(cloths_of_every_mesh)
         "  - {mesh: {disc: {radius: 0.5, rings: 2}}, material: cotton}\n"
         "materials:\n  wire: {density: 1, ea: 7}\n");
     scene_write_file("a.obj", triangle, strlen(triangle));
-    struct model model = scene_read_right(text, 0, NULL);
+    UNIT_OWNED(model_free) struct model model = scene_read_right(text, 0, NULL);
     ck_assert_uint_eq(model.n_cloths, 5);
     ck_assert_str_eq(model.cloths[1].name, "cloth2");
     ck_assert_uint_eq(model.cloths[1].mesh.n_triangles, 1);
@@ -273,13 +261,12 @@ START_TEST(cloths_of_every_mesh)
     same_vector(model.cloths[3].mesh.position + 6, 0, 0, 2);
     ck_assert_uint_eq(model.cloths[4].mesh.n_vertices, 19);
     same_vector(model.cloths[4].mesh.position + 21, 0.5, 0, 0);
-    model_free(&model);
     free(text);
 }
-END_TEST
 
-START_TEST(starts_and_masses)
+UNIT_TEST(starts_and_masses)
 {
+    UNIT_OWNED(model_free)
     struct model model = scene_read_changed(
         "material: cotton",
         "material: cotton\n    masses: [{vertices: [3, 5], mass: 0.25}]\n"
@@ -310,19 +297,16 @@ START_TEST(starts_and_masses)
     ck_assert_double_eq(full->wave.phase, 0.5);
     same_vector(full->wave.translate, 0, 0, 0);
     same_vector(full->wave.velocity, 4, 5, 6);
-    model_free(&model);
 }
-END_TEST
 
-START_TEST(probes_and_rest)
+UNIT_TEST(probes_and_rest)
 {
-    struct model model;
+    UNIT_OWNED(model_free) struct model model;
     char *text = scene_changed(
         scene_right, "\ntime: {h: 0.001, end: 0.1",
         "\nprobes: [{vertices: [3, 1]}, {box: [[-9, -9, -9], [9, 9, 9]], name: all-1, cloth: "
         "sheet, values: [total, velocity]}]\ntime: {h: 0.001, end: 0.1, rest: {hold: 0}");
-    struct cloth_error error = {0};
-    ck_assert_msg(scene_read_text(&model, text, 0, NULL, &error) == 0, "%s", error.text);
+    UNIT_FINE(scene_read_text(&model, text, 0, NULL, &error));
     ck_assert_double_eq(model.rest.speed, 0.001);
     ck_assert_double_eq(model.rest.hold, 0);
     ck_assert_uint_eq(model.n_probes, 2);
@@ -334,13 +318,12 @@ START_TEST(probes_and_rest)
     ck_assert_str_eq(probe[1].name, "all-1");
     ck_assert(!probe[1].position && probe[1].velocity && !probe[1].reaction && probe[1].total);
     ck_assert_int_eq(probe[1].pick.kind, MODEL_PICK_BOX);
-    model_free(&model);
     free(text);
 }
-END_TEST
 
-START_TEST(drape_test)
+UNIT_TEST(drape_test)
 {
+    UNIT_OWNED(model_free)
     struct model model = scene_read_changed("\ntime: {h", "\ndrape: {radius: 0.5}\ntime: {h");
     ck_assert_double_eq(model.drape.radius, 0.5);
     ck_assert_double_eq_tol(model_disc(&model.drape), acos(-1) / 4, 1e-15);
@@ -354,11 +337,9 @@ START_TEST(drape_test)
     model_free(&model);
     model = scene_read_right(scene_right, 0, NULL);
     ck_assert_double_eq(model.drape.radius, 0);
-    model_free(&model);
 }
-END_TEST
 
-START_TEST(numbers_of_every_form)
+UNIT_TEST(numbers_of_every_form)
 {
     static const struct {
         const char *text;
@@ -368,44 +349,19 @@ START_TEST(numbers_of_every_form)
     for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
         char set[64];
         snprintf(set, sizeof set, "gravity[0]=%s", forms[i].text);
-        struct model model = scene_read_set(set);
+        UNIT_OWNED(model_free) struct model model = scene_read_set(set);
         ck_assert_double_eq(model.gravity[0], forms[i].value);
-        model_free(&model);
     }
 }
-END_TEST
 
-START_TEST(shared_empty_map_takes_defaults)
+UNIT_TEST(shared_empty_map_takes_defaults)
 {
     char *text = scene_changed(scene_right, "    material: cotton",
                                "    transform: &e {}\n    material: cotton");
     char *more = scene_changed(text, "damping: {mass: 0.1}", "damping: *e");
-    struct model model = scene_read_right(more, 0, NULL);
+    UNIT_OWNED(model_free) struct model model = scene_read_right(more, 0, NULL);
     ck_assert_double_eq(model.materials[0].damping_mass, 0);
     ck_assert_double_eq(model.cloths[0].mesh.position[0], -0.5);
-    model_free(&model);
     free(text);
     free(more);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("scene values");
-    TCase *cases = tcase_create("values");
-    tcase_add_test(cases, world_and_time);
-    tcase_add_test(cases, cloth_and_material);
-    tcase_add_test(cases, named_fabrics);
-    tcase_add_test(cases, mass_without_density);
-    tcase_add_test(cases, every_other_key);
-    tcase_add_test(cases, slopes);
-    tcase_add_test(cases, triangles_and_bending);
-    tcase_add_test(cases, cloths_of_every_mesh);
-    tcase_add_test(cases, starts_and_masses);
-    tcase_add_test(cases, probes_and_rest);
-    tcase_add_test(cases, drape_test);
-    tcase_add_test(cases, numbers_of_every_form);
-    tcase_add_test(cases, shared_empty_map_takes_defaults);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -8,7 +8,7 @@
 
 enum { N = 24 };
 
-START_TEST(the_last_pass_at_every_size)
+UNIT_TEST(the_last_pass_at_every_size)
 {
     for (size_t n = 0; n < 12; n++) {
         phys_vec p[12] = {{0}}, q[12] = {{0}}, dv[12] = {{0}}, r[12] = {{0}};
@@ -25,10 +25,9 @@ START_TEST(the_last_pass_at_every_size)
             ck_assert(dv[i][2] == 6 && r[i][0] == (double)i - 2);
     }
 }
-END_TEST
 
 /* What a neighbour sees of some rows, through packed numbers in another order, has their bits. */
-START_TEST(ghosts_keep_the_bits)
+UNIT_TEST(ghosts_keep_the_bits)
 {
     static const uint32_t halo[] = {1, 4, 5, 7}, at[] = {3, 0, 2};
     phys_vec p[8], q[8], r[8], ghost_r[3], ghost_p[3];
@@ -51,7 +50,6 @@ START_TEST(ghosts_keep_the_bits)
         ck_assert_int_eq(memcmp(ghost_p + i, p + halo[at[i]], sizeof *p), 0);
     }
 }
-END_TEST
 
 /* A system with a diagonal matrix whose entries lie far apart. */
 static double entry(int i)
@@ -141,7 +139,7 @@ static int solve(struct run *run, const struct solve_stop *stop, double size)
 }
 
 /* alpha and beta from the squares of residuals that are there. */
-START_TEST(factors_are_those_of_two_reductions)
+UNIT_TEST(factors_are_those_of_two_reductions)
 {
     struct run run;
     const struct solve_stop stop = {.relative = true, .tolerance = 1e-8, .max = 100};
@@ -155,9 +153,8 @@ START_TEST(factors_are_those_of_two_reductions)
         ck_assert_double_eq_tol(now.beta, beta, 1e-12 * beta);
     }
 }
-END_TEST
 
-START_TEST(the_residual_is_true)
+UNIT_TEST(the_residual_is_true)
 {
     struct run run;
     const struct solve_stop stop = {.relative = true, .tolerance = 1e-13, .max = 1000};
@@ -170,9 +167,8 @@ START_TEST(the_residual_is_true)
             ck_assert_double_eq_tol(entry(i) * run.dv[i][c], b[c], 1e-12);
     }
 }
-END_TEST
 
-START_TEST(every_way_to_stop)
+UNIT_TEST(every_way_to_stop)
 {
     struct run run, other;
     struct solve_stop stop = {.count = true, .max = 5};
@@ -192,7 +188,6 @@ START_TEST(every_way_to_stop)
     ck_assert_int_eq(solve(&other, &stop, 1), SOLVE_OK);
     ck_assert_double_ne(other.dv[1][0], 0);
 }
-END_TEST
 
 /* Solves with a confirmation; before pass `at` the recurrence loses the residual, in which r gets
  * something by mistake, or in every check where `at` is negative. */
@@ -216,7 +211,7 @@ static const struct solve_stop CONFIRMED[] = {
     {.mass_norm = true, .confirm = true, .tolerance = 1e-3, .max = 100}};
 
 /* Two passes more, the same dv, and the true residual in r. */
-START_TEST(what_is_right_is_confirmed)
+UNIT_LOOP(what_is_right_is_confirmed, 0, 3)
 {
     struct run run, alone;
     struct solve_stop stop = CONFIRMED[_i];
@@ -232,10 +227,9 @@ START_TEST(what_is_right_is_confirmed)
             ck_assert_double_eq_tol(run.r[i][c],
                                     run.free[i] * (run.b[i][c] - entry(i) * run.dv[i][c]), 1e-15);
 }
-END_TEST
 
 /* The solve goes on from dv and gets there. */
-START_TEST(what_is_wrong_is_found)
+UNIT_LOOP(what_is_wrong_is_found, 0, 3)
 {
     struct run run;
     ck_assert_int_eq(lie(&run, CONFIRMED + _i, 3), SOLVE_OK);
@@ -250,10 +244,9 @@ START_TEST(what_is_wrong_is_found)
     stop.max = (uint32_t)run.scalars.iterations;
     ck_assert_int_eq(lie(&run, &stop, 3), SOLVE_NOT_CONVERGED);
 }
-END_TEST
 
 /* A residual that no restart makes smaller. */
-START_TEST(what_stays_wrong_is_said)
+UNIT_LOOP(what_stays_wrong_is_said, 0, 3)
 {
     struct run run;
     ck_assert_int_eq(lie(&run, CONFIRMED + _i, -1), SOLVE_STALLED);
@@ -261,11 +254,10 @@ START_TEST(what_stays_wrong_is_said)
     ck_assert_double_eq(run.scalars.phase, SOLVE_DONE);
     ck_assert_double_eq(run.scalars.restarts, 1);
 }
-END_TEST
 
 /* The true residual may be twice as large as what was asked for, and no more: its square is 4 times
  * as large. */
-START_TEST(how_much_more_the_true_residual_may_be)
+UNIT_LOOP(how_much_more_the_true_residual_may_be, 0, 3)
 {
     static const struct solve_stop stops[] = {
         {.confirm = true, .tolerance = 1e-3},
@@ -288,10 +280,9 @@ START_TEST(how_much_more_the_true_residual_may_be)
         ck_assert_double_eq(after.restarts, part[i] < 4 ? 0 : 1);
     }
 }
-END_TEST
 
 /* Nothing on the right side, or so little that its square is nothing. */
-START_TEST(nothing_to_solve)
+UNIT_TEST(nothing_to_solve)
 {
     static const double sizes[] = {0, 1e-150, 1e-170};
     for (int i = 0; i < 3; i++) {
@@ -305,10 +296,9 @@ START_TEST(nothing_to_solve)
         ck_assert_double_eq(run.dv[1][0], 0);
     }
 }
-END_TEST
 
 /* A matrix that is negative, and one beyond all numbers. */
-START_TEST(breakdowns)
+UNIT_TEST(breakdowns)
 {
     const struct solve_stop stop = {.relative = true, .tolerance = 1e-3, .max = 9};
     struct run run;
@@ -321,11 +311,10 @@ START_TEST(breakdowns)
         code = pass(&run, &stop, 1);
     ck_assert_int_eq(code, SOLVE_BREAKDOWN);
 }
-END_TEST
 
 /* What rounding leaves of a guess that was right is no breakdown, against what there was to solve;
  * more than that is one. */
-START_TEST(little_left_of_a_guess)
+UNIT_TEST(little_left_of_a_guess)
 {
     const struct solve_stop stop = {.relative = true, .tolerance = 1e-20, .max = 9};
     const double left[] = {1e-30, 1e-20};
@@ -341,10 +330,9 @@ START_TEST(little_left_of_a_guess)
                          i == 0 ? SOLVE_OK : SOLVE_BREAKDOWN);
     }
 }
-END_TEST
 
 /* A number that is infinite, or a step that is none, would stay so for all iterations. */
-START_TEST(nothing_moves)
+UNIT_TEST(nothing_moves)
 {
     const struct solve_stop stop = {.relative = true, .tolerance = 1e-3, .max = 9};
     const double product[] = {1, INFINITY, 1e-200}, curvature[] = {INFINITY, 1, 1e200};
@@ -355,26 +343,4 @@ START_TEST(nothing_moves)
             [SOLVE_RR] = 1, [SOLVE_RZ] = product[i], [SOLVE_PQ] = curvature[i]};
         ck_assert_int_eq(solve_scalars_next(&stop, dots, &before, &after), SOLVE_BREAKDOWN);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("cg");
-    TCase *cases = tcase_create("cg");
-    tcase_add_test(cases, the_last_pass_at_every_size);
-    tcase_add_test(cases, ghosts_keep_the_bits);
-    tcase_add_test(cases, factors_are_those_of_two_reductions);
-    tcase_add_test(cases, the_residual_is_true);
-    tcase_add_test(cases, every_way_to_stop);
-    tcase_add_loop_test(cases, what_is_right_is_confirmed, 0, 3);
-    tcase_add_loop_test(cases, what_is_wrong_is_found, 0, 3);
-    tcase_add_loop_test(cases, what_stays_wrong_is_said, 0, 3);
-    tcase_add_loop_test(cases, how_much_more_the_true_residual_may_be, 0, 3);
-    tcase_add_test(cases, nothing_to_solve);
-    tcase_add_test(cases, breakdowns);
-    tcase_add_test(cases, little_left_of_a_guess);
-    tcase_add_test(cases, nothing_moves);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

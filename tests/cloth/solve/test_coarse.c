@@ -46,7 +46,7 @@ static void check_coupling(uint32_t b, uint32_t other, const double *matrix)
     }
 }
 
-START_TEST(matrix_is_of_the_filtered_system)
+UNIT_LOOP(matrix_is_of_the_filtered_system, 0, 6)
 {
     srand(1);
     sys.format = (enum solve_format)(_i % 3);
@@ -63,11 +63,10 @@ START_TEST(matrix_is_of_the_filtered_system)
         two_level_free(&level);
     }
 }
-END_TEST
 
 /* P C^-1 P' A of anything that P spans is that: rigid motion and motion that is affine in u and v.
  */
-START_TEST(what_it_spans_is_solved_at_once)
+UNIT_LOOP(what_it_spans_is_solved_at_once, 0, 6)
 {
     srand(2);
     sys.format = (enum solve_format)(_i % 3);
@@ -91,9 +90,8 @@ START_TEST(what_it_spans_is_solved_at_once)
         two_level_free(&level);
     }
 }
-END_TEST
 
-START_TEST(basis_has_every_affine_motion_of_a_flat_block)
+UNIT_TEST(basis_has_every_affine_motion_of_a_flat_block)
 {
     enum { ROWS = 30 };
     phys_vec position[ROWS], basis[ROWS];
@@ -125,10 +123,9 @@ START_TEST(basis_has_every_affine_motion_of_a_flat_block)
     const double q = (phys_dot(&e, &e) * s[1] * s[1] - phys_dot(&d, &d) * t[1] * t[1]) / m;
     ck_assert_double_eq_tol(p * w[1] * w[1] + q * w[2] * w[2], phys_dot(&f, &f), 1e-8);
 }
-END_TEST
 
 /* A block that is held gives nine; a line of vertices has no v, a point neither u nor v. */
-START_TEST(columns_that_add_nothing)
+UNIT_TEST(columns_that_add_nothing)
 {
     srand(4);
     system_sheet(&sys, 8, 8, 20);
@@ -160,7 +157,6 @@ START_TEST(columns_that_add_nothing)
         ck_assert(y[a][0] == 0 && y[a][1] == 0 && y[a][2] == 0);
     two_level_free(&level);
 }
-END_TEST
 
 /* ---- The sparse factor by itself ---- */
 
@@ -227,8 +223,7 @@ static void check_factor(uint32_t n)
     static double x[SOLVE_COARSE * BLOCKS], y[SOLVE_COARSE * BLOCKS];
     static _Alignas(32) double back[SOLVE_COARSE_STRIDE * BLOCKS];
     struct solve_pattern pattern;
-    struct cloth_error error = {0};
-    ck_assert_int_eq(solve_pattern_make(&pattern, n, first, neighbour, &error), 0);
+    UNIT_FINE(solve_pattern_make(&pattern, n, first, neighbour, &error));
     double *factor = aligned_alloc(32, solve_coarse_doubles(&pattern) * sizeof *factor);
     ck_assert(factor != NULL);
     for (uint32_t i = 0; i < SOLVE_COARSE * n; i++)
@@ -250,7 +245,7 @@ static void check_factor(uint32_t n)
     free(factor);
 }
 
-START_TEST(sparse_factor_of_every_graph)
+UNIT_TEST(sparse_factor_of_every_graph)
 {
     srand(5);
     static const uint32_t n[] = {1, 2, 3, 17, 64, 65, BLOCKS};
@@ -261,30 +256,12 @@ START_TEST(sparse_factor_of_every_graph)
             check_factor(n[k]);
         }
 }
-END_TEST
 
 /* The middle of a star goes last, so it has no fill. */
-START_TEST(least_degree_first)
+UNIT_TEST(least_degree_first)
 {
-    struct solve_pattern pattern;
-    struct cloth_error error = {0};
+    UNIT_OWNED(solve_pattern_free) struct solve_pattern pattern;
     uint32_t star_first[] = {0, 4, 5, 6, 7, 8}, star[] = {1, 2, 3, 4, 0, 0, 0, 0};
-    ck_assert_int_eq(solve_pattern_make(&pattern, 5, star_first, star, &error), 0);
+    UNIT_FINE(solve_pattern_make(&pattern, 5, star_first, star, &error));
     ck_assert_uint_eq(pattern.first[5], 4);
-    solve_pattern_free(&pattern);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("coarse");
-    TCase *cases = tcase_create("coarse");
-    tcase_add_loop_test(cases, matrix_is_of_the_filtered_system, 0, 6);
-    tcase_add_loop_test(cases, what_it_spans_is_solved_at_once, 0, 6);
-    tcase_add_test(cases, basis_has_every_affine_motion_of_a_flat_block);
-    tcase_add_test(cases, columns_that_add_nothing);
-    tcase_add_test(cases, sparse_factor_of_every_graph);
-    tcase_add_test(cases, least_degree_first);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

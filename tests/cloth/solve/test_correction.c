@@ -52,7 +52,7 @@ static void random_edge(struct solve_edge *edge, struct solve_end end[2], double
 }
 
 /* Without pins it ends at its limit, with the momentum and the angular momentum that it had. */
-START_TEST(an_edge_ends_at_its_limit)
+UNIT_TEST(an_edge_ends_at_its_limit)
 {
     const double t = 0.01;
     const struct solve_correction correction = {.h = t, .t = t};
@@ -85,10 +85,9 @@ START_TEST(an_edge_ends_at_its_limit)
         }
     }
 }
-END_TEST
 
 /* One that turns by more than 60 degrees in the step is pulled along where it is. */
-START_TEST(an_edge_that_turns_far_ends_at_its_limit)
+UNIT_TEST(an_edge_that_turns_far_ends_at_its_limit)
 {
     const struct solve_edge edge = {.length = 1, .most = 1.1, .slack = 0.01};
     const struct solve_correction correction = {.h = 0.01, .t = 0.01};
@@ -102,11 +101,10 @@ START_TEST(an_edge_that_turns_far_ends_at_its_limit)
     ck_assert_double_eq_tol(length_of(&d), 1.1, 1e-14);
     ck_assert_double_eq_tol(d[0] * 2, d[1] * 0.1, 1e-14);
 }
-END_TEST
 
 /* An end that is held does not move, one in a plane stays there, and an edge that nothing can make
  * shorter does not count. */
-START_TEST(pins_hold)
+UNIT_TEST(pins_hold)
 {
     const struct solve_edge edge = {.length = 1, .most = 1.1, .slack = 0.01};
     const struct solve_correction correction = {.h = 0.01, .t = 0.01};
@@ -126,10 +124,9 @@ START_TEST(pins_hold)
     ck_assert(!solve_correct(&correction, &edge, end, 1, move, &excess));
     ck_assert_double_eq(excess.most, 0);
 }
-END_TEST
 
 /* b falls to b / (1 + h / 0.01 s) in a step, or to less than the tolerance. */
-START_TEST(what_is_too_long_comes_back)
+UNIT_TEST(what_is_too_long_comes_back)
 {
     const struct solve_correction correction = {.h = 0.005, .t = 0.005, .part = 1};
     const struct solve_edge edge = {.length = 1, .most = 1.1, .slack = 0.01};
@@ -149,7 +146,6 @@ START_TEST(what_is_too_long_comes_back)
     }
     ck_assert_double_le(length, 1.11);
 }
-END_TEST
 
 /* ---- Nets ---- */
 
@@ -225,7 +221,7 @@ static void sums_of(const struct net *net, double sum[7])
 
 /* Rounds end with every edge within its limit and the tolerance; momentum and angular momentum
  * stay, and the kinetic energy falls by what is said. */
-START_TEST(rounds_of_a_net_end)
+UNIT_TEST(rounds_of_a_net_end)
 {
     const double t = 0.05;
     double most_rounds = 0, turned = 0;
@@ -261,11 +257,10 @@ START_TEST(rounds_of_a_net_end)
            turned);
     ck_assert_double_le(turned, 1e-11);
 }
-END_TEST
 
 /* The first round corrects all, later ones what is over by more than the tolerance. One that
  * corrects nothing is the last; after as many as are allowed one looks. */
-START_TEST(rounds_are_counted)
+UNIT_TEST(rounds_are_counted)
 {
     const struct solve_excess some = {0.3, 1}, none = {0.004, 0};
     struct solve_rounds rounds = solve_rounds_start(0.1, 0.2, 3);
@@ -287,19 +282,4 @@ START_TEST(rounds_are_counted)
     ck_assert_double_eq(rounds.unmet, 1);
     other = solve_rounds_next(&rounds, &none, 2);
     ck_assert_double_eq(other.unmet, 1);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("correction");
-    TCase *cases = tcase_create("edges");
-    tcase_add_test(cases, an_edge_ends_at_its_limit);
-    tcase_add_test(cases, an_edge_that_turns_far_ends_at_its_limit);
-    tcase_add_test(cases, pins_hold);
-    tcase_add_test(cases, what_is_too_long_comes_back);
-    tcase_add_test(cases, rounds_of_a_net_end);
-    tcase_add_test(cases, rounds_are_counted);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

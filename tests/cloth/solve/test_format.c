@@ -38,7 +38,7 @@ static void multiply(const phys_vec *x, phys_vec *q)
     }
 }
 
-START_TEST(product_is_that_of_the_dense_matrix)
+UNIT_LOOP(product_is_that_of_the_dense_matrix, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
 {
     for (uint32_t n_blocks = 1; n_blocks <= 5; n_blocks += 2)
         for (int hold = 0; hold < 10; hold += 5) {
@@ -52,9 +52,8 @@ START_TEST(product_is_that_of_the_dense_matrix)
                     ck_assert_double_eq_tol(q[a][c], y[a][c], 2e-13);
         }
 }
-END_TEST
 
-START_TEST(product_is_symmetric)
+UNIT_LOOP(product_is_symmetric, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
 {
     phys_vec x[SYSTEM_ROWS], y[SYSTEM_ROWS], ax[SYSTEM_ROWS], ay[SYSTEM_ROWS];
     make(_i, 4, 5, 1e4);
@@ -67,10 +66,9 @@ START_TEST(product_is_symmetric)
         ck_assert_double_eq_tol(system_dot(&sys, x, ay), system_dot(&sys, y, ax), 1e-14 * size);
     }
 }
-END_TEST
 
 /* The sum over A v is that over M v, to 1e-14 of the sum of all |A_ij v_j|. */
-START_TEST(what_moves_as_a_whole_keeps_its_momentum)
+UNIT_LOOP(what_moves_as_a_whole_keeps_its_momentum, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
 {
     static const double stiffness[] = {1e-3, 1, 1e3, 1e9};
     for (int k = 0; k < 4; k++) {
@@ -89,7 +87,6 @@ START_TEST(what_moves_as_a_whole_keeps_its_momentum)
             ck_assert_double_le(fabs(left[c]), 1e-14 * size);
     }
 }
-END_TEST
 
 /* Of a block the entries between a free row here and a held one, each by its free row. */
 static uint32_t find_held(const struct system_block *block, uint32_t (*held)[2])
@@ -110,7 +107,7 @@ static uint32_t find_held(const struct system_block *block, uint32_t (*held)[2])
     return n;
 }
 
-START_TEST(lost_is_the_sum_of_the_residual)
+UNIT_LOOP(lost_is_the_sum_of_the_residual, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
 {
     phys_vec dv[SYSTEM_ROWS], b[SYSTEM_ROWS], q[SYSTEM_ROWS], sum = {0};
     double lost[3] = {0};
@@ -131,11 +128,10 @@ START_TEST(lost_is_the_sum_of_the_residual)
         ck_assert_double_eq_tol(lost[c], sum[c], 1e-12);
     }
 }
-END_TEST
 
 /* Pairs of elements, as who makes them was told to turn them, add what they are; those of others
  * nothing. */
-START_TEST(pairs_of_elements)
+UNIT_TEST(pairs_of_elements)
 {
     const struct phys_pair pair[3] = {{{{1, 5, 9, 0}, {2, 6, 7, 0}, {3, 4, 8, 0}}},
                                       {{{9, 9, 9, 0}, {9, 9, 9, 0}, {9, 9, 9, 0}}},
@@ -150,10 +146,9 @@ START_TEST(pairs_of_elements)
         ck_assert_double_eq(sums[k / 12].cyclic[k / 4 % 3][k % 4],
                             expected[k / 12].cyclic[k / 4 % 3][k % 4]);
 }
-END_TEST
 
 /* Turned or not, from either side, nine numbers are the same ones. */
-START_TEST(assembly_from_both_sides)
+UNIT_TEST(assembly_from_both_sides)
 {
     const double n[3][3] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
     const double here[SOLVE_NINE] = {1, 5, 9, 2, 6, 7, 3, 4, 8};
@@ -175,20 +170,4 @@ START_TEST(assembly_from_both_sides)
         ck_assert_double_eq(y[c], n[c][0] - 2 * n[c][1] + 0.5 * n[c][2]);
         ck_assert_double_eq(transposed[c], n[0][c] - 2 * n[1][c] + 0.5 * n[2][c]);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("format");
-    TCase *cases = tcase_create("format");
-    const int end = SOLVE_HALF_FLOAT + 1;
-    tcase_add_loop_test(cases, product_is_that_of_the_dense_matrix, SOLVE_SPRINGS, end);
-    tcase_add_loop_test(cases, product_is_symmetric, SOLVE_SPRINGS, end);
-    tcase_add_loop_test(cases, what_moves_as_a_whole_keeps_its_momentum, SOLVE_SPRINGS, end);
-    tcase_add_loop_test(cases, lost_is_the_sum_of_the_residual, SOLVE_SPRINGS, end);
-    tcase_add_test(cases, assembly_from_both_sides);
-    tcase_add_test(cases, pairs_of_elements);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -70,12 +70,10 @@ static void draw_matrix(uint32_t held)
 static void make_level(uint32_t of_group, bool lowest)
 {
     uint32_t start[NODES + 1];
-    struct cloth_error error = {0};
     for (uint32_t g = 0; g <= NODES / of_group; g++)
         start[g] = of_group * g;
-    ck_assert_int_eq(
-        solve_level_make(&level, NODES, first, neighbour, NODES / of_group, start, lowest, &error),
-        0);
+    UNIT_FINE(
+        solve_level_make(&level, NODES, first, neighbour, NODES / of_group, start, lowest, &error));
 }
 
 static void make(uint32_t of_group)
@@ -132,7 +130,7 @@ static void multiply(const double *x, double *y)
         y[i] = dot(dense[i], x);
 }
 
-START_TEST(one_group_is_the_system_itself)
+UNIT_TEST(one_group_is_the_system_itself)
 {
     static double x[ALL], y[ALL], back[ALL];
     srand(1);
@@ -149,9 +147,8 @@ START_TEST(one_group_is_the_system_itself)
         ck_assert_double_eq_tol(back[i], x[i], 1e-5); /* T is in float */
     solve_level_free(&level);
 }
-END_TEST
 
-START_TEST(levels_above_count_more)
+UNIT_TEST(levels_above_count_more)
 {
     static double x[ALL], lowest[ALL], higher[ALL], one[ALL], top[ALL];
     srand(3);
@@ -177,9 +174,8 @@ START_TEST(levels_above_count_more)
         ck_assert_double_eq(top[i], 2 * one[i]);
     }
 }
-END_TEST
 
-START_TEST(groups_are_symmetric_and_definite)
+UNIT_LOOP(groups_are_symmetric_and_definite, 0, 3)
 {
     static const uint32_t helds[] = {NODES + 1, 5, 3};
     static double x[ALL], y[ALL], bx[ALL], by[ALL];
@@ -203,9 +199,8 @@ START_TEST(groups_are_symmetric_and_definite)
     }
     solve_level_free(&level);
 }
-END_TEST
 
-START_TEST(a_cover_has_one_layer_more)
+UNIT_TEST(a_cover_has_one_layer_more)
 {
     join();
     make(GROUP);
@@ -223,7 +218,6 @@ START_TEST(a_cover_has_one_layer_more)
     }
     solve_level_free(&level);
 }
-END_TEST
 
 /* Column j of Q: of group j / 9. */
 static void column_of(uint32_t j, double *y)
@@ -252,7 +246,7 @@ static void check_block(uint32_t k, uint32_t l, const double *block)
     }
 }
 
-START_TEST(groups_have_the_matrix_of_their_motions)
+UNIT_TEST(groups_have_the_matrix_of_their_motions)
 {
     srand(3);
     join();
@@ -277,7 +271,6 @@ START_TEST(groups_have_the_matrix_of_their_motions)
     }
     solve_level_free(&level);
 }
-END_TEST
 
 /* The function of a frame at a point: 1, u or v. */
 static double function_at(const struct solve_frame *frame, int k, const phys_vec *x)
@@ -291,7 +284,7 @@ static double function_at(const struct solve_frame *frame, int k, const phys_vec
     return k ? sum / square : 1;
 }
 
-START_TEST(motions_that_are_affine_are_lifted_exactly)
+UNIT_TEST(motions_that_are_affine_are_lifted_exactly)
 {
     enum { PARTS = 5, POINTS = 30 };
     phys_vec x[PARTS * POINTS];
@@ -320,19 +313,4 @@ START_TEST(motions_that_are_affine_are_lifted_exactly)
     }
     const struct solve_frame none = solve_frame_of(0, x), empty = solve_frame_of_group(1, &none);
     ck_assert(none.n == 0 && empty.n == 0 && empty.centre[0] == 0 && empty.extent[0][0] == 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("levels");
-    TCase *cases = tcase_create("levels");
-    tcase_add_test(cases, one_group_is_the_system_itself);
-    tcase_add_test(cases, levels_above_count_more);
-    tcase_add_loop_test(cases, groups_are_symmetric_and_definite, 0, 3);
-    tcase_add_test(cases, a_cover_has_one_layer_more);
-    tcase_add_test(cases, groups_have_the_matrix_of_their_motions);
-    tcase_add_test(cases, motions_that_are_affine_are_lifted_exactly);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

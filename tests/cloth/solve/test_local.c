@@ -41,7 +41,7 @@ static void check_exact(enum solve_local kind, double tolerance)
 }
 
 /* A chain has no fill, with held rows anywhere. */
-START_TEST(ic0_of_a_chain_is_exact)
+UNIT_LOOP(ic0_of_a_chain_is_exact, SOLVE_SPRINGS, SOLVE_HALF + 1)
 {
     srand(1);
     sys.format = (enum solve_format)_i;
@@ -53,10 +53,9 @@ START_TEST(ic0_of_a_chain_is_exact)
         check_exact(SOLVE_IC0, FLOAT);
     }
 }
-END_TEST
 
 /* So has a triangle, all of whose rows meet each other. */
-START_TEST(ic0_of_a_triangle_is_exact)
+UNIT_LOOP(ic0_of_a_triangle_is_exact, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
 {
     srand(2);
     sys.format = (enum solve_format)_i;
@@ -77,9 +76,8 @@ START_TEST(ic0_of_a_triangle_is_exact)
     system_cut(&sys, 1);
     check_exact(SOLVE_IC0, FLOAT);
 }
-END_TEST
 
-START_TEST(jacobi_inverts_the_diagonal)
+UNIT_LOOP(jacobi_inverts_the_diagonal, SOLVE_SPRINGS, SOLVE_HALF + 1)
 {
     srand(3);
     sys.format = (enum solve_format)_i;
@@ -93,11 +91,10 @@ START_TEST(jacobi_inverts_the_diagonal)
                 sys.dense[i][j] = 0;
     check_exact(SOLVE_JACOBI, 1e-12);
 }
-END_TEST
 
 /* Springs into other blocks belong to the diagonal: block 0 of two is the dense matrix of its rows.
  */
-START_TEST(cut_springs_are_on_the_diagonal)
+UNIT_LOOP(cut_springs_are_on_the_diagonal, SOLVE_SPRINGS, SOLVE_HALF + 1)
 {
     srand(4);
     sys.format = (enum solve_format)_i;
@@ -114,7 +111,6 @@ START_TEST(cut_springs_are_on_the_diagonal)
                 sys.dense[i][j] = 0;
     check_exact(SOLVE_JACOBI, 1e-12);
 }
-END_TEST
 
 static void check_symmetric(enum solve_local kind)
 {
@@ -133,7 +129,7 @@ static void check_symmetric(enum solve_local kind)
     }
 }
 
-START_TEST(symmetric_and_positive)
+UNIT_LOOP(symmetric_and_positive, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
 {
     srand(5);
     sys.format = (enum solve_format)_i;
@@ -149,9 +145,8 @@ START_TEST(symmetric_and_positive)
         check_symmetric(SOLVE_IC0);
     }
 }
-END_TEST
 
-START_TEST(all_rows_held)
+UNIT_TEST(all_rows_held)
 {
     phys_vec q[SYSTEM_ROWS] = {{0}}, s[SYSTEM_ROWS];
     srand(6);
@@ -164,11 +159,10 @@ START_TEST(all_rows_held)
     for (uint32_t a = 0; a < sys.n; a++)
         ck_assert(s[a][0] == 0 && s[a][1] == 0 && s[a][2] == 0);
 }
-END_TEST
 
 /* Springs that only resist along themselves, hardly any mass: pivots of IC(0) fail. What it falls
  * back to is still symmetric and positive. */
-START_TEST(pivots_that_fail)
+UNIT_TEST(pivots_that_fail)
 {
     int tried[SOLVE_SSOR + 1] = {0};
     srand(7);
@@ -185,7 +179,6 @@ START_TEST(pivots_that_fail)
     ck_assert_int_gt(tried[0], 0);
     ck_assert_int_gt(tried[1] + tried[2] + tried[3] + tried[4], 0);
 }
-END_TEST
 
 /* y += A_ab x, the 3 x 3 block of rows a and columns b of the dense matrix. */
 static void add_block(uint32_t a, uint32_t b, const phys_vec *x, phys_vec *y)
@@ -238,7 +231,7 @@ static void over_relaxed(const phys_vec *s, phys_vec *q)
 
 /* Springs of less than no stiffness: each row's own block is small beside the others, and all
  * pivots of IC(0) fail. */
-START_TEST(ssor_is_the_last_resort)
+UNIT_LOOP(ssor_is_the_last_resort, SOLVE_SPRINGS, SOLVE_HALF + 1)
 {
     phys_vec x[SYSTEM_ROWS], s[SYSTEM_ROWS], q[SYSTEM_ROWS];
     srand(10);
@@ -267,10 +260,9 @@ START_TEST(ssor_is_the_last_resort)
         for (int c = 0; c < 3; c++)
             ck_assert_double_eq_tol(q[a][c], x[a][c], FLOAT * max);
 }
-END_TEST
 
 /* It ends for what is no number, too. */
-START_TEST(not_a_number)
+UNIT_TEST(not_a_number)
 {
     srand(8);
     system_sheet(&sys, 4, 4, 1);
@@ -278,10 +270,9 @@ START_TEST(not_a_number)
     system_cut(&sys, 1);
     ck_assert_int_eq(make(SOLVE_IC0), SOLVE_SSOR);
 }
-END_TEST
 
 /* Stiff beside soft: what rounding leaves of a row's own block may be singular. */
-START_TEST(stiff_beside_soft)
+UNIT_TEST(stiff_beside_soft)
 {
     srand(9);
     system_sheet(&sys, 6, 6, 1e12);
@@ -296,24 +287,4 @@ START_TEST(stiff_beside_soft)
     check_symmetric(SOLVE_JACOBI);
     make(SOLVE_IC0);
     check_symmetric(SOLVE_IC0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("local");
-    TCase *cases = tcase_create("local");
-    tcase_add_loop_test(cases, ic0_of_a_chain_is_exact, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1);
-    tcase_add_loop_test(cases, ic0_of_a_triangle_is_exact, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1);
-    tcase_add_loop_test(cases, jacobi_inverts_the_diagonal, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1);
-    tcase_add_loop_test(cases, cut_springs_are_on_the_diagonal, SOLVE_SPRINGS,
-                        SOLVE_HALF_FLOAT + 1);
-    tcase_add_loop_test(cases, symmetric_and_positive, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1);
-    tcase_add_test(cases, all_rows_held);
-    tcase_add_test(cases, pivots_that_fail);
-    tcase_add_loop_test(cases, ssor_is_the_last_resort, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1);
-    tcase_add_test(cases, not_a_number);
-    tcase_add_test(cases, stiff_beside_soft);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

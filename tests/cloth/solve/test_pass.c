@@ -138,37 +138,34 @@ static void check(size_t n, uint32_t far, int halo)
         ck_assert_double_eq_tol(dots[i], right[i], 1e-12 * (1 + right[SOLVE_QQ]));
 }
 
-START_TEST(pass_of_every_size)
+UNIT_TEST(pass_of_every_size)
 {
     static const size_t n[] = {1, 2, 63, 64, 65, 127, 128, 129, 200, MAX};
     srand(11);
     for (size_t i = 0; i < sizeof n / sizeof *n; i++)
         check(n[i], 20, 10);
 }
-END_TEST
 
 /* Springs that end beyond the next stretch, or nowhere but beside. */
-START_TEST(pass_of_every_reach)
+UNIT_TEST(pass_of_every_reach)
 {
     static const uint32_t far[] = {3, 30, 100, MAX};
     srand(12);
     for (size_t i = 0; i < sizeof far / sizeof *far; i++)
         check(MAX, far[i], 10);
 }
-END_TEST
 
-START_TEST(pass_of_every_halo)
+UNIT_TEST(pass_of_every_halo)
 {
     static const int halo[] = {0, 1, 50, 100};
     srand(13);
     for (size_t i = 0; i < sizeof halo / sizeof *halo; i++)
         check(MAX, 20, halo[i]);
 }
-END_TEST
 
 /* Where M is the identity, with vectors z and s of their own, all is to the bit what it is without
  * a preconditioner, where z is r and s is q. */
-START_TEST(identity_is_none)
+UNIT_TEST(identity_is_none)
 {
     static struct whole other;
     static phys_vec z[MAX], s[MAX];
@@ -191,17 +188,4 @@ START_TEST(identity_is_none)
     ck_assert_mem_eq(other.r, whole.r, sizeof whole.r);
     ck_assert_mem_eq(other.p, whole.p, sizeof whole.p);
     ck_assert_mem_eq(other.q, whole.q, sizeof whole.q);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("pass");
-    TCase *cases = tcase_create("pass");
-    tcase_add_test(cases, pass_of_every_size);
-    tcase_add_test(cases, pass_of_every_reach);
-    tcase_add_test(cases, pass_of_every_halo);
-    tcase_add_test(cases, identity_is_none);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -96,7 +96,7 @@ static void couple_next(uint32_t b, uint32_t n, struct solve_couplings *own,
                              basis + block->first, basis, &others, own, off_diagonal);
 }
 
-START_TEST(matrix_of_patches)
+UNIT_LOOP(matrix_of_patches, 0, 6)
 {
     static struct solve_couplings own, off_diagonal;
     srand(1);
@@ -116,10 +116,9 @@ START_TEST(matrix_of_patches)
             }
     }
 }
-END_TEST
 
 /* So many entries between two patches that they are added in several goes. */
-START_TEST(many_entries)
+UNIT_TEST(many_entries)
 {
     static struct solve_couplings own;
     const struct patch one = {0, 0, 2}, two = {0, 1, 2};
@@ -141,9 +140,8 @@ START_TEST(many_entries)
     check(&one, &two, own.matrix[0][1]);
     check(&two, &two, own.matrix[1][1]);
 }
-END_TEST
 
-START_TEST(rows_of_patches)
+UNIT_TEST(rows_of_patches)
 {
     for (uint32_t rows = 0; rows < 10; rows++)
         for (uint32_t n = 1; n <= SOLVE_MAX_PATCHES; n++) {
@@ -157,16 +155,4 @@ START_TEST(rows_of_patches)
                 ck_assert(patches.start[k] <= a && a < patches.start[k + 1]);
             }
         }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("patches");
-    TCase *cases = tcase_create("patches");
-    tcase_add_loop_test(cases, matrix_of_patches, 0, 6);
-    tcase_add_test(cases, many_entries);
-    tcase_add_test(cases, rows_of_patches);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

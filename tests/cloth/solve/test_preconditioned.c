@@ -181,7 +181,7 @@ static void check_all(double stiffness, uint32_t n_blocks, int hold)
     ck_assert_double_le(iterations[IC0_COARSE], iterations[COARSE]);
 }
 
-START_TEST(every_preconditioner_solves)
+UNIT_LOOP(every_preconditioner_solves, 0, 6)
 {
     srand(1);
     sys.format = (enum solve_format)(_i % 3);
@@ -192,10 +192,9 @@ START_TEST(every_preconditioner_solves)
             check_all(1000, n_blocks, hold);
         }
 }
-END_TEST
 
 /* A chain in one block: IC(0) is exact but for its T in float. */
-START_TEST(a_chain_at_once)
+UNIT_TEST(a_chain_at_once)
 {
     const struct solve_stop stop = {.relative = true, .tolerance = 1e-5, .max = 1};
     phys_vec b[SYSTEM_ROWS];
@@ -207,11 +206,10 @@ START_TEST(a_chain_at_once)
     system_draw_rows(&sys, b);
     ck_assert_int_eq(solve(&run, IC0, b, &stop), SOLVE_OK);
 }
-END_TEST
 
 /* Rigid and affine motion of stiff blocks is what a block alone does not see, and the coarse space
  * has. */
-START_TEST(rigid_and_affine_motion)
+UNIT_TEST(rigid_and_affine_motion)
 {
     const struct solve_stop stop = {.relative = true, .tolerance = 1e-6, .max = 2000};
     static struct run run;
@@ -230,10 +228,9 @@ START_TEST(rigid_and_affine_motion)
     ck_assert_double_le(2 * run.scalars.iterations, alone);
     ck_assert_double_lt(distance(run.dv, x), 1e-4);
 }
-END_TEST
 
 /* The stop by the mass norm keeps its word, and what it says of the error is no less than it. */
-START_TEST(error_in_the_mass_norm)
+UNIT_TEST(error_in_the_mass_norm)
 {
     srand(4);
     for (int k = 0; k < 30; k++) {
@@ -259,11 +256,10 @@ START_TEST(error_in_the_mass_norm)
                                        1e-16 * size);
     }
 }
-END_TEST
 
 /* A guess: of any length a right one needs no iteration; a wrong one is taken as far as it is
  * right, and in a filtered system it is filtered. */
-START_TEST(guesses)
+UNIT_LOOP(guesses, 0, 2)
 {
     const struct solve_stop stop = {.relative = true, .tolerance = 1e-9, .max = 2000};
     static const double factor_of[] = {1, -3, 0};
@@ -289,10 +285,9 @@ START_TEST(guesses)
         }
     sys.filtered = false;
 }
-END_TEST
 
 /* So many iterations of what was solved long before leave it as it is. */
-START_TEST(on_and_on)
+UNIT_TEST(on_and_on)
 {
     const struct solve_stop stop = {.count = true, .max = 200};
     phys_vec b[SYSTEM_ROWS], x[SYSTEM_ROWS];
@@ -309,9 +304,8 @@ START_TEST(on_and_on)
         ck_assert_double_lt(distance(run.dv, x), 1e-9);
     }
 }
-END_TEST
 
-START_TEST(nothing_to_solve)
+UNIT_TEST(nothing_to_solve)
 {
     const struct solve_stop stops[] = {{.relative = true, .tolerance = 1e-3, .max = 9},
                                        {.mass_norm = true, .tolerance = 0.01, .max = 9}};
@@ -325,20 +319,4 @@ START_TEST(nothing_to_solve)
             ck_assert_int_eq(solve(&run, kind, b, stops + i), SOLVE_OK);
             ck_assert_double_eq(run.scalars.iterations, 0);
         }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("preconditioned");
-    TCase *cases = tcase_create("preconditioned");
-    tcase_add_loop_test(cases, every_preconditioner_solves, 0, 6);
-    tcase_add_test(cases, a_chain_at_once);
-    tcase_add_test(cases, rigid_and_affine_motion);
-    tcase_add_test(cases, error_in_the_mass_norm);
-    tcase_add_loop_test(cases, guesses, 0, 2);
-    tcase_add_test(cases, on_and_on);
-    tcase_add_test(cases, nothing_to_solve);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

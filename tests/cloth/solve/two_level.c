@@ -55,7 +55,6 @@ static void couple(struct two_level *level, uint32_t b)
 
 void two_level_make(struct two_level *level, const struct system *system)
 {
-    struct cloth_error error = {0};
     *level = (struct two_level){.system = system};
     find_neighbours(level);
     for (uint32_t b = 0; b < system->n_blocks; b++) {
@@ -66,9 +65,8 @@ void two_level_make(struct two_level *level, const struct system *system)
     }
     for (uint32_t b = 0; b < system->n_blocks; b++)
         couple(level, b);
-    ck_assert_int_eq(solve_pattern_make(&level->pattern, system->n_blocks, level->first,
-                                        level->neighbour, &error),
-                     0);
+    UNIT_FINE(solve_pattern_make(&level->pattern, system->n_blocks, level->first, level->neighbour,
+                                 &error));
     level->factor =
         aligned_alloc(32, solve_coarse_doubles(&level->pattern) * sizeof *level->factor);
     ck_assert(level->factor != NULL);

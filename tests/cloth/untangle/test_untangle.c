@@ -91,7 +91,6 @@ static size_t count_pairs(const phys_vec *at)
 {
     static double place[SHEETS * POINTS][3];
     struct cloth_list pairs = {0};
-    struct cloth_error error = {0};
     for (uint32_t p = 0; p < sheets * POINTS; p++)
         for (int c = 0; c < 3; c++)
             place[p][c] = verify_coordinate(at[p][c]);
@@ -100,7 +99,7 @@ static size_t count_pairs(const phys_vec *at)
                                      .n_first = count_triangles(),
                                      .x = (const double(*)[3])place,
                                      .corner = (const uint32_t(*)[3])corner};
-    ck_assert_msg(verify_pairs(&soup, &pairs, &error) == 0, "%s", error.text);
+    UNIT_FINE(verify_pairs(&soup, &pairs, &error));
     free(pairs.items);
     return pairs.n;
 }
@@ -146,9 +145,8 @@ static struct untangle_result run(void)
     const struct untangle_cloths cloths = {
         .soup = &soup, .layer = layer, .held = held, .apart = ignored, .thickness = THICKNESS};
     struct untangle_result result;
-    struct cloth_error error = {0};
     memcpy(x, start, sizeof x);
-    ck_assert_msg(untangle(&cloths, x, NULL, &result, &error) == 0, "%s", error.text);
+    UNIT_FINE(untangle(&cloths, x, NULL, &result, &error));
     return result;
 }
 
@@ -171,7 +169,7 @@ static int seeds(void)
     return unit_quick() ? 3 : 12;
 }
 
-START_TEST(sheets_through_each_other)
+UNIT_TEST(sheets_through_each_other)
 {
     make_sheets(2);
     for (int seed = 1; seed <= seeds(); seed++) {
@@ -183,9 +181,8 @@ START_TEST(sheets_through_each_other)
         expect_free(seed, &result);
     }
 }
-END_TEST
 
-START_TEST(a_sheet_through_itself)
+UNIT_TEST(a_sheet_through_itself)
 {
     make_sheets(1);
     for (int seed = 1; seed <= seeds(); seed++) {
@@ -196,11 +193,10 @@ START_TEST(a_sheet_through_itself)
         expect_free(seed, &result);
     }
 }
-END_TEST
 
 /* The upper sheet is the inner one, all of it or part. The outer one goes down through it: up is
  * where triangles face. */
-START_TEST(layers)
+UNIT_TEST(layers)
 {
     make_sheets(2);
     for (int seed = 1; seed <= seeds(); seed++) {
@@ -217,10 +213,9 @@ START_TEST(layers)
         ck_assert(!memcmp(x + POINTS, start + POINTS, sizeof x / 2) || result.moved > 0);
     }
 }
-END_TEST
 
 /* Every fifth vertex of the first sheet. */
-START_TEST(what_is_held_stays)
+UNIT_TEST(what_is_held_stays)
 {
     make_sheets(2);
     for (uint32_t p = 0; p < POINTS; p += 5)
@@ -232,9 +227,8 @@ START_TEST(what_is_held_stays)
     for (uint32_t p = 0; p < POINTS; p += 5)
         ck_assert(!memcmp(x + p, start + p, sizeof *x));
 }
-END_TEST
 
-START_TEST(the_same_bits)
+UNIT_TEST(the_same_bits)
 {
     static phys_vec first[SHEETS * POINTS];
     make_sheets(2);
@@ -245,9 +239,8 @@ START_TEST(the_same_bits)
     run();
     ck_assert(!memcmp(first, x, sizeof x));
 }
-END_TEST
 
-START_TEST(a_free_start_stays)
+UNIT_TEST(a_free_start_stays)
 {
     make_sheets(2);
     random_seed = 3;
@@ -257,9 +250,8 @@ START_TEST(a_free_start_stays)
     ck_assert_uint_eq(result.moved, 0);
     ck_assert(!memcmp(x, start, sizeof x));
 }
-END_TEST
 
-START_TEST(what_does_not_meet_stays)
+UNIT_TEST(what_does_not_meet_stays)
 {
     static unsigned char table[SHEETS * SHEETS] = {0, 1, 1, 0};
     const struct contact_apart all = {.n_cloths = SHEETS, .apart = table};
@@ -271,11 +263,10 @@ START_TEST(what_does_not_meet_stays)
     ignored = NULL;
     ck_assert_uint_eq(result.moved, 0);
 }
-END_TEST
 
 /* Sheets that cut into each other from their borders, upright ones: nothing is cut off, and the
  * contour tells the way. */
-START_TEST(borders_that_cut_each_other)
+UNIT_TEST(borders_that_cut_each_other)
 {
     make_sheets(2);
     for (uint32_t s = 0; s < 2; s++)
@@ -288,21 +279,4 @@ START_TEST(borders_that_cut_each_other)
     ck_assert(count_pairs(start) > 0);
     const struct untangle_result result = run();
     expect_free(0, &result);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("untangle");
-    TCase *all = tcase_create("starts");
-    tcase_add_test(all, sheets_through_each_other);
-    tcase_add_test(all, a_sheet_through_itself);
-    tcase_add_test(all, layers);
-    tcase_add_test(all, what_is_held_stays);
-    tcase_add_test(all, the_same_bits);
-    tcase_add_test(all, a_free_start_stays);
-    tcase_add_test(all, what_does_not_meet_stays);
-    tcase_add_test(all, borders_that_cut_each_other);
-    suite_add_tcase(suite, all);
-    return unit_run(suite);
 }

@@ -77,10 +77,8 @@ static void check_place(const struct place *place, int count[3])
     static const uint32_t corner[1][3] = {{0, 1, 2}};
     const struct verify_soup soup = {3, 1, 1, place->x, corner, NULL};
     struct cloth_list list = {0};
-    struct cloth_error error = {0};
     phys_vec normal;
-    ck_assert_int_eq(verify_enter(&soup, place->shape, &place->pose, DEPTH, &list, &error),
-                     CLOTH_OK);
+    UNIT_FINE(verify_enter(&soup, place->shape, &place->pose, DEPTH, &list, &error));
     const double gap = least_gap(place, -1, &normal);
     const bool shallow = gap > -0.99 * DEPTH, deep = gap < -2.01 * DEPTH;
     ck_assert_msg(!shallow || !list.n, "%s: found at gap %.17g",
@@ -91,7 +89,7 @@ static void check_place(const struct place *place, int count[3])
     free(list.items);
 }
 
-START_TEST(enter)
+UNIT_TEST(enter)
 {
     static const double deep[] = {1e-2, 4e-6, 1e-6, 0.5e-6, 0, -1e-6, -1e-3};
     const int n = unit_quick() ? TRIANGLES / 10 : TRIANGLES;
@@ -109,10 +107,9 @@ START_TEST(enter)
         ck_assert(count[0] > n / 5 && count[2] > n / 10);
     }
 }
-END_TEST
 
 /* A cloth that lies on a face of a box and hangs over its edge; and one that lies on the edge. */
-START_TEST(edges)
+UNIT_TEST(edges)
 {
     const struct contact_shape box = {.kind = 2, .value = {0, -.5, 0, 1, 1, 1, 1, 0, 0, 0}};
     ck_assert_str_eq(contact_kinds[box.kind]->name, "box");
@@ -129,10 +126,9 @@ START_TEST(edges)
             ck_assert_int_eq(count[k < 0 ? 2 : 0], 1);
         }
 }
-END_TEST
 
 /* Only the first triangles count, by number. */
-START_TEST(numbers)
+UNIT_TEST(numbers)
 {
     const struct contact_shape ball = {.kind = 1, .value = {0, 0, 0, 1}};
     const double x[9][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},  {2, 0, 0},  {2, 1, 0},
@@ -141,14 +137,12 @@ START_TEST(numbers)
     const struct verify_soup soup = {9, 4, 3, x, corner, NULL};
     const struct contact_pose pose = {0};
     struct cloth_list list = {0};
-    struct cloth_error error = {0};
-    ck_assert_int_eq(verify_enter(&soup, &ball, &pose, 1e-9, &list, &error), CLOTH_OK);
+    UNIT_FINE(verify_enter(&soup, &ball, &pose, 1e-9, &list, &error));
     ck_assert_uint_eq(list.n, 2);
     ck_assert_uint_eq(((uint32_t *)list.items)[0], 0);
     ck_assert_uint_eq(((uint32_t *)list.items)[1], 2);
     free(list.items);
 }
-END_TEST
 
 /* ---- Closed surfaces ---- */
 
@@ -158,7 +152,7 @@ static bool is_in_ring(const double at[3], double radius, double tube, double sl
     return sqrt(far * far + at[1] * at[1]) < tube * (1 + slack);
 }
 
-START_TEST(inside)
+UNIT_TEST(inside)
 {
     static struct surface s;
     int count[2] = {0};
@@ -181,10 +175,9 @@ START_TEST(inside)
     }
     ck_assert(count[0] > 100 && count[1] > 100);
 }
-END_TEST
 
 /* The first line that is tried goes through a corner. */
-START_TEST(touched)
+UNIT_TEST(touched)
 {
     const double x[6][3] = {{.5, .25 * (2 * 0.0123), .25 * (2 * 0.0317)},
                             {-1, 0, 0},
@@ -200,18 +193,4 @@ START_TEST(touched)
     const struct verify_soup soup = {6, 8, 8, x, (const uint32_t(*)[3])corner, NULL};
     ck_assert(verify_inside(&soup, 0, 8, at[0]));
     ck_assert(!verify_inside(&soup, 0, 8, at[1]));
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("verify enter");
-    TCase *shapes = tcase_create("shapes");
-    tcase_add_test(shapes, enter);
-    tcase_add_test(shapes, edges);
-    tcase_add_test(shapes, numbers);
-    tcase_add_test(shapes, inside);
-    tcase_add_test(shapes, touched);
-    suite_add_tcase(suite, shapes);
-    return unit_run(suite);
 }

@@ -122,7 +122,7 @@ static void make_flat(int k, double x[4][3])
     }
 }
 
-START_TEST(signs)
+UNIT_TEST(signs)
 {
     int count[3] = {0}, seen[3] = {0};
     for (int k = 0; k < repeats(SIGNS); k++) {
@@ -141,10 +141,9 @@ START_TEST(signs)
     for (int i = 0; i < 3; i++)
         ck_assert(count[i] > repeats(SIGNS) / 50 && seen[i] > repeats(SIGNS) / 50);
 }
-END_TEST
 
 /* At the ends of what is allowed, with differences that are 400 binary orders apart. */
-START_TEST(sizes)
+UNIT_TEST(sizes)
 {
     for (int k = 0; k < repeats(SIGNS); k++) {
         double x[4][3];
@@ -163,7 +162,6 @@ START_TEST(sizes)
         ck_assert_int_eq(verify_orient(x[0], x[1], x[2], x[3]), sign_of((const double(*)[3])x));
     }
 }
-END_TEST
 
 /* ---- Convex bodies ---- */
 
@@ -303,7 +301,7 @@ static void make_pair(int kind, double x[6][3])
     }
 }
 
-START_TEST(pairs)
+UNIT_TEST(pairs)
 {
     int count[KINDS][2] = {{0}};
     for (int k = 0; k < repeats(PAIRS); k++) {
@@ -321,16 +319,4 @@ START_TEST(pairs)
     }
     for (int i = 0; i < KINDS; i++)
         ck_assert(count[i][0] > repeats(PAIRS) / 100 && count[i][1] > repeats(PAIRS) / 100);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("verify exact");
-    TCase *exact = tcase_create("against rational numbers");
-    tcase_add_test(exact, signs);
-    tcase_add_test(exact, sizes);
-    tcase_add_test(exact, pairs);
-    suite_add_tcase(suite, exact);
-    return unit_run(suite);
 }

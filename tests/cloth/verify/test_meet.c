@@ -139,15 +139,14 @@ static void check_pair(const struct pair *pair, const double (*x)[3])
     }
 }
 
-START_TEST(known)
+UNIT_TEST(known)
 {
     for (size_t i = 0; i < sizeof PAIRS / sizeof *PAIRS; i++)
         check_pair(PAIRS + i, PAIRS[i].x);
 }
-END_TEST
 
 /* Axes renamed. Half sizes and signs are exact. */
-START_TEST(turned)
+UNIT_TEST(turned)
 {
     for (size_t i = 0; i < sizeof PAIRS / sizeof *PAIRS; i++)
         for (int k = 0; k < 6; k++) {
@@ -158,10 +157,9 @@ START_TEST(turned)
             check_pair(PAIRS + i, (const double(*)[3])x);
         }
 }
-END_TEST
 
 /* Far from the origin coordinates are coarse: steps of 2^-36 m at 65,536 m. */
-START_TEST(far_away)
+UNIT_TEST(far_away)
 {
     const double far[3] = {65536, -65536, 98304}, step = 0x1p-36;
     for (int k = -2; k <= 2; k++) {
@@ -174,11 +172,10 @@ START_TEST(far_away)
         check_pair(&pair, (const double(*)[3])x);
     }
 }
-END_TEST
 
 /* Corners that are next to a slanted plane: rounding has put each of them on some side of it, but
  * some ulps below the nearest double, and above it, no doubt is left. */
-START_TEST(slanted)
+UNIT_TEST(slanted)
 {
     static const uint32_t a[3] = {0, 1, 2}, b[3] = {3, 4, 5};
     for (int k = 1; k < 200; k++) {
@@ -195,17 +192,4 @@ START_TEST(slanted)
         x[3][2] = high;
         ck_assert(!verify_meet((const double(*)[3])x, a, b));
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("verify meet");
-    TCase *known_case = tcase_create("pairs");
-    tcase_add_test(known_case, known);
-    tcase_add_test(known_case, turned);
-    tcase_add_test(known_case, far_away);
-    tcase_add_test(known_case, slanted);
-    suite_add_tcase(suite, known_case);
-    return unit_run(suite);
 }

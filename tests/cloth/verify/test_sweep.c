@@ -45,8 +45,7 @@ static struct verify_soup *make(struct soup *soup, const double box[3], double s
 static size_t check_soup(const struct verify_soup *soup)
 {
     struct cloth_list list = {0};
-    struct cloth_error error = {0};
-    ck_assert_msg(verify_pairs(soup, &list, &error) == 0, "%s", error.text);
+    UNIT_FINE(verify_pairs(soup, &list, &error));
     const struct verify_pair *pair = list.items;
     size_t n = 0;
     for (uint32_t a = 0; a < soup->n_first; a++)
@@ -62,7 +61,7 @@ static size_t check_soup(const struct verify_soup *soup)
     return n;
 }
 
-START_TEST(soups)
+UNIT_TEST(soups)
 {
     static struct soup soup;
     static const double boxes[][3] = {{1, 1, 1}, {1, 1, 0.01},   {0.01, 3, 0.01}, {1, 0, 1},
@@ -78,9 +77,8 @@ START_TEST(soups)
         }
     ck_assert_uint_gt(least, 0);
 }
-END_TEST
 
-START_TEST(far_away)
+UNIT_TEST(far_away)
 {
     static struct soup soup;
     struct verify_soup *made = make(&soup, (const double[3]){1, 1, 1}, 0.1, 0, false);
@@ -88,9 +86,8 @@ START_TEST(far_away)
         soup.x[p][p % 3] = 1e6;
     ck_assert_uint_gt(check_soup(made), 0);
 }
-END_TEST
 
-START_TEST(few)
+UNIT_TEST(few)
 {
     static struct soup soup;
     struct verify_soup *made = make(&soup, (const double[3]){1, 1, 1}, 1, 0, false);
@@ -102,10 +99,9 @@ START_TEST(few)
     made->n_first = 0;
     ck_assert_uint_eq(check_soup(made), 0);
 }
-END_TEST
 
 /* What no exact answer exists for is refused; what is smaller than it can have is 0. */
-START_TEST(bounds)
+UNIT_TEST(bounds)
 {
     static struct soup soup;
     static const double wrong[] = {NAN, INFINITY, -INFINITY, 1e61};
@@ -127,10 +123,9 @@ START_TEST(bounds)
     ck_assert_uint_eq(list.n, 1);
     free(list.items);
 }
-END_TEST
 
 /* Two triangles that cross are a pair, unless a corner of one is sewn to one of the other. */
-START_TEST(sewn)
+UNIT_TEST(sewn)
 {
     static struct soup soup;
     static const uint32_t joined[3][6] = {
@@ -142,24 +137,9 @@ START_TEST(sewn)
     made->n_triangles = made->n_first = 2;
     for (int i = -1; i < 3; i++) {
         struct cloth_list list = {0};
-        struct cloth_error error = {0};
         made->joined = i < 0 ? NULL : joined[i];
-        ck_assert_int_eq(verify_pairs(made, &list, &error), CLOTH_OK);
+        UNIT_FINE(verify_pairs(made, &list, &error));
         ck_assert_uint_eq(list.n, i != 1);
         free(list.items);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("verify sweep");
-    TCase *sweep = tcase_create("sweep");
-    tcase_add_test(sweep, soups);
-    tcase_add_test(sweep, far_away);
-    tcase_add_test(sweep, few);
-    tcase_add_test(sweep, bounds);
-    tcase_add_test(sweep, sewn);
-    suite_add_tcase(suite, sweep);
-    return unit_run(suite);
 }

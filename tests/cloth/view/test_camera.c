@@ -60,7 +60,7 @@ static void cloud_bounds(const struct view_camera *camera, double low[3], double
     }
 }
 
-START_TEST(fits_tightly)
+UNIT_LOOP(fits_tightly, 0, 5)
 {
     struct view_camera camera;
     double low[3], high[3];
@@ -74,9 +74,8 @@ START_TEST(fits_tightly)
     ck_assert_double_eq_tol(max, MARGIN, 1e-4);
     ck_assert(low[2] > -1 && high[2] < 1);
 }
-END_TEST
 
-START_TEST(zooms)
+UNIT_TEST(zooms)
 {
     struct view_camera camera;
     double low[3], high[3];
@@ -84,9 +83,8 @@ START_TEST(zooms)
     cloud_bounds(&camera, low, high);
     ck_assert_double_eq_tol(fmax(high[0], high[1]), 2 * MARGIN, 1e-3);
 }
-END_TEST
 
-START_TEST(looks_from_where_it_is_told)
+UNIT_LOOP(looks_from_where_it_is_told, 0, 4)
 {
     static const double from[4][2] = {{0, 0}, {90, 0}, {0, 89}, {180, 0}};
     static const int axis[4] = {2, 0, 1, 2}, sign[4] = {1, 1, 1, -1};
@@ -111,9 +109,8 @@ START_TEST(looks_from_where_it_is_told)
     ck_assert(_i == 2 || at[1][1] > at[0][1] + 0.05); /* up is up, and nothing is mirrored */
     ck_assert(at[2][0] > at[0][0] + 0.05);
 }
-END_TEST
 
-START_TEST(one_point_is_enough)
+UNIT_TEST(one_point_is_enough)
 {
     struct view_fit fit;
     struct view_camera camera;
@@ -125,10 +122,9 @@ START_TEST(one_point_is_enough)
     project(&camera, point, at);
     ck_assert(fabs(at[0]) < 1e-2 && fabs(at[1]) < 1e-2 && fabs(at[2]) < 1);
 }
-END_TEST
 
 /* A floor just below is in the picture, one far below does not push the camera away. */
-START_TEST(shows_the_near_floor)
+UNIT_TEST(shows_the_near_floor)
 {
     struct view_camera alone, near, far;
     struct view_fit fit;
@@ -149,7 +145,6 @@ START_TEST(shows_the_near_floor)
     project(&alone, foot, at);
     ck_assert(at[1] < -0.9);
 }
-END_TEST
 
 static void orbit_cloud(struct view_orbit *orbit)
 {
@@ -162,7 +157,7 @@ static void orbit_cloud(struct view_orbit *orbit)
 }
 
 /* A full turn ends where it began; the target stays in the middle, at the same distance. */
-START_TEST(turns_around_the_target)
+UNIT_TEST(turns_around_the_target)
 {
     struct view_orbit orbit;
     struct view_camera camera, first;
@@ -184,10 +179,9 @@ START_TEST(turns_around_the_target)
     view_orbit_turn(&orbit, 0, 500);
     ck_assert_double_eq(orbit.elevation, 89);
 }
-END_TEST
 
 /* What is in the middle moves by the parts of the height that are asked for, at any zoom. */
-START_TEST(pans_by_parts_of_the_height)
+UNIT_LOOP(pans_by_parts_of_the_height, 0, 2)
 {
     struct view_orbit orbit;
     struct view_camera camera;
@@ -201,10 +195,9 @@ START_TEST(pans_by_parts_of_the_height)
     ck_assert_double_eq_tol(at[0], 0.2 * 2 / 1.5, 1e-4);
     ck_assert_double_eq_tol(at[1], -0.1 * 2, 1e-4);
 }
-END_TEST
 
 /* Whatever the direction, nothing that was fitted is cut off by the near or the far plane. */
-START_TEST(keeps_depths_when_it_turns)
+UNIT_LOOP(keeps_depths_when_it_turns, 0, 9)
 {
     struct view_orbit orbit;
     struct view_camera camera;
@@ -217,21 +210,4 @@ START_TEST(keeps_depths_when_it_turns)
         project(&camera, position + 3 * v, at);
         ck_assert(at[2] > -1 && at[2] < 1);
     }
-}
-END_TEST
-
-int main(void)
-{
-    TCase *c = tcase_create("camera");
-    tcase_add_loop_test(c, fits_tightly, 0, 5);
-    tcase_add_test(c, zooms);
-    tcase_add_loop_test(c, looks_from_where_it_is_told, 0, 4);
-    tcase_add_test(c, one_point_is_enough);
-    tcase_add_test(c, shows_the_near_floor);
-    tcase_add_test(c, turns_around_the_target);
-    tcase_add_loop_test(c, pans_by_parts_of_the_height, 0, 2);
-    tcase_add_loop_test(c, keeps_depths_when_it_turns, 0, 9);
-    Suite *s = suite_create("camera");
-    suite_add_tcase(s, c);
-    return unit_run(s);
 }

@@ -38,7 +38,9 @@ static double area(const uint32_t *of)
     return 0.5 * ((x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]));
 }
 
-START_TEST(a_grid)
+UNIT_FIXTURE(setup, NULL)
+
+UNIT_TEST(a_grid)
 {
     uint32_t n = TRIANGLES;
     for (int round = 0; round < 2; round++) {
@@ -54,30 +56,15 @@ START_TEST(a_grid)
         ck_assert_double_le(sum, (N - 1) * (N - 1));
     }
 }
-END_TEST
 
-START_TEST(long_edges_stay)
+UNIT_TEST(long_edges_stay)
 {
     const uint32_t n = draw_coarsen(N * N, vertex[0], 0.9f, join, TRIANGLES, triangle);
     ck_assert_uint_eq(n, TRIANGLES);
 }
-END_TEST
 
-START_TEST(small_pieces)
+UNIT_TEST(small_pieces)
 {
     uint32_t two[2][3] = {{0, 1, N}, {3, 4, N + 3}}; /* become points */
     ck_assert_uint_eq(draw_coarsen(N * N, vertex[0], 2, join, 2, two), 0);
-}
-END_TEST
-
-int main(void)
-{
-    TCase *cases = tcase_create("coarse");
-    tcase_add_checked_fixture(cases, setup, NULL);
-    tcase_add_test(cases, a_grid);
-    tcase_add_test(cases, long_edges_stay);
-    tcase_add_test(cases, small_pieces);
-    Suite *suite = suite_create("coarse");
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

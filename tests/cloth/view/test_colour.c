@@ -23,7 +23,7 @@ static void refuses(const char *text, const char *reason)
     ck_assert_msg(wrong && strstr(wrong, reason), "%s: %s", text, wrong ? wrong : "taken");
 }
 
-START_TEST(words_and_scales_are_read)
+UNIT_TEST(words_and_scales_are_read)
 {
     takes("cloth", VIEW_COLOUR_CLOTH, false, 0, 0);
     takes("block", VIEW_COLOUR_BLOCK, false, 0, 0);
@@ -33,9 +33,8 @@ START_TEST(words_and_scales_are_read)
     takes("strain,0.01:0.05", VIEW_COLOUR_STRAIN, true, 0.01, 0.05);
     takes("stress,-10:1e3", VIEW_COLOUR_STRESS, true, -10, 1000);
 }
-END_TEST
 
-START_TEST(others_are_refused_with_what_is_allowed)
+UNIT_TEST(others_are_refused_with_what_is_allowed)
 {
     static const char *const words[] = {"", "red", "strains", "strai", "Rank", " rank", ",1"};
     static const char *const scales[] = {"strain,",   "strain,x",    "strain,1x",    "strain,1:",
@@ -51,9 +50,8 @@ START_TEST(others_are_refused_with_what_is_allowed)
     refuses("rank,3", "with strain (m/m), stress (N/m) and contact (N) only");
     refuses("cloth,3", "only");
 }
-END_TEST
 
-START_TEST(every_colour_has_a_word_and_a_title)
+UNIT_TEST(every_colour_has_a_word_and_a_title)
 {
     for (enum view_colour by = 0; by < VIEW_COLOURS; by++) {
         takes(view_colour_word(by), by, false, 0, 0);
@@ -61,7 +59,6 @@ START_TEST(every_colour_has_a_word_and_a_title)
     }
     ck_assert_ptr_null(view_colour_word(VIEW_COLOURS));
 }
-END_TEST
 
 static double linear(double c)
 {
@@ -76,7 +73,7 @@ static double lightness(const float c[3])
     return y > 0.008856 ? 116 * cbrt(y) - 16 : 903.3 * y;
 }
 
-START_TEST(the_map_begins_and_ends_as_viridis)
+UNIT_TEST(the_map_begins_and_ends_as_viridis)
 {
     static const int first[] = {0x44, 0x01, 0x54}, last[] = {0xfd, 0xe7, 0x25};
     float c[3];
@@ -89,9 +86,8 @@ START_TEST(the_map_begins_and_ends_as_viridis)
             ck_assert_int_eq((int)lround(255 * (double)c[k]), last[k]);
     }
 }
-END_TEST
 
-START_TEST(its_lightness_grows_evenly)
+UNIT_TEST(its_lightness_grows_evenly)
 {
     float c[3];
     view_map_at(0, c);
@@ -108,9 +104,8 @@ START_TEST(its_lightness_grows_evenly)
         before = now;
     }
 }
-END_TEST
 
-START_TEST(a_scale_ends_where_it_says)
+UNIT_TEST(a_scale_ends_where_it_says)
 {
     const struct view_scale scale = {-2, 6};
     ck_assert_double_eq(view_scale_part(&scale, -2), 0);
@@ -119,9 +114,8 @@ START_TEST(a_scale_ends_where_it_says)
     ck_assert_double_eq(view_scale_part(&scale, -9), 0);
     ck_assert_double_eq(view_scale_part(&scale, 1e9), 1);
 }
-END_TEST
 
-START_TEST(a_scale_goes_up_to_the_next_round_number)
+UNIT_TEST(a_scale_goes_up_to_the_next_round_number)
 {
     static const double round[][2] = {{0.9, 1},     {1, 1},       {1.01, 2}, {2, 2},
                                       {3, 5},       {5.1, 10},    {99, 100}, {0.0123, 0.02},
@@ -133,7 +127,6 @@ START_TEST(a_scale_goes_up_to_the_next_round_number)
     }
     ck_assert_double_eq(view_scale_up_to((double)NAN).max, 1);
 }
-END_TEST
 
 static void has_ticks(double min, double max, size_t n, const char *first, const char *last)
 {
@@ -145,7 +138,7 @@ static void has_ticks(double min, double max, size_t n, const char *first, const
     ck_assert_str_eq(ticks.text[n - 1], last);
 }
 
-START_TEST(marks_are_round_numbers)
+UNIT_TEST(marks_are_round_numbers)
 {
     has_ticks(0, 1, 6, "0.0", "1.0");
     has_ticks(0, 0.05, 6, "0.00", "0.05");
@@ -156,9 +149,8 @@ START_TEST(marks_are_round_numbers)
     has_ticks(0, 1e-5, 6, "0", "1e-05");
     has_ticks(0.103, 0.117, 3, "0.105", "0.115");
 }
-END_TEST
 
-START_TEST(any_scale_has_some_marks_within)
+UNIT_TEST(any_scale_has_some_marks_within)
 {
     for (double max = 1e-12; max < 1e12; max *= 1.37)
         for (double min = -3; min < 1; min += 0.21) {
@@ -174,7 +166,6 @@ START_TEST(any_scale_has_some_marks_within)
             }
         }
 }
-END_TEST
 
 enum { SIDE = 40 };
 static uint32_t triangle[6 * (SIDE - 1) * (SIDE - 1)];
@@ -199,7 +190,7 @@ static uint32_t make_squares(int size)
     return n;
 }
 
-START_TEST(neighbours_differ)
+UNIT_TEST(neighbours_differ)
 {
     unsigned char hue[SIDE * SIDE];
     unsigned near[SIDE * SIDE];
@@ -213,9 +204,8 @@ START_TEST(neighbours_differ)
         }
     }
 }
-END_TEST
 
-START_TEST(a_few_parts_have_the_colours_of_their_numbers)
+UNIT_TEST(a_few_parts_have_the_colours_of_their_numbers)
 {
     unsigned char hue[VIEW_HUES];
     unsigned near[VIEW_HUES];
@@ -224,24 +214,4 @@ START_TEST(a_few_parts_have_the_colours_of_their_numbers)
     view_hues_spread(sizeof triangle / sizeof *triangle / 3, triangle, part, 4, hue, near);
     for (unsigned p = 0; p < 4; p++)
         ck_assert_uint_eq(hue[p], p);
-}
-END_TEST
-
-int main(void)
-{
-    TCase *tests = tcase_create("colour");
-    tcase_add_test(tests, words_and_scales_are_read);
-    tcase_add_test(tests, others_are_refused_with_what_is_allowed);
-    tcase_add_test(tests, every_colour_has_a_word_and_a_title);
-    tcase_add_test(tests, the_map_begins_and_ends_as_viridis);
-    tcase_add_test(tests, its_lightness_grows_evenly);
-    tcase_add_test(tests, a_scale_ends_where_it_says);
-    tcase_add_test(tests, a_scale_goes_up_to_the_next_round_number);
-    tcase_add_test(tests, marks_are_round_numbers);
-    tcase_add_test(tests, any_scale_has_some_marks_within);
-    tcase_add_test(tests, neighbours_differ);
-    tcase_add_test(tests, a_few_parts_have_the_colours_of_their_numbers);
-    Suite *suite = suite_create("colour");
-    suite_add_tcase(suite, tests);
-    return unit_run(suite);
 }

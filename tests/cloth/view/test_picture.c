@@ -43,8 +43,7 @@ static void make_sheet(void)
 
 static void draw_beside(double elevation, size_t n, const struct contact_shape *beside)
 {
-    struct cloth_error error = {0};
-    ck_assert_int_eq(view_obstacles_make(&obstacles, n, beside, NULL, NULL, &error), 0);
+    UNIT_FINE(view_obstacles_make(&obstacles, n, beside, NULL, NULL, &error));
     struct view_shape shape = {.n_vertices = N * N,
                                .n_triangles = 2 * (N - 1) * (N - 1),
                                .triangle = triangle,
@@ -54,10 +53,10 @@ static void draw_beside(double elevation, size_t n, const struct contact_shape *
     view_fit_add(&fit, N * N, position);
     view_fit_planes(&fit, obstacles.n_planes, (const double(*)[6])obstacles.plane);
     view_fit_camera(&fit, &camera);
-    ck_assert_msg(view_scene_new(&scene, &shape, &error) == 0, "%s", error.text);
-    ck_assert_msg(view_scene_move(scene, position, &error) == 0, "%s", error.text);
+    UNIT_FINE(view_scene_new(&scene, &shape, &error));
+    UNIT_FINE(view_scene_move(scene, position, &error));
     picture = (struct view_picture){WIDTH, HEIGHT, NULL};
-    ck_assert_msg(view_picture_draw(&picture, scene, &camera, &error) == 0, "%s", error.text);
+    UNIT_FINE(view_picture_draw(&picture, scene, &camera, &error));
 }
 
 static void draw(double elevation, size_t n_planes)
@@ -67,8 +66,7 @@ static void draw(double elevation, size_t n_planes)
 
 static void start(void)
 {
-    struct cloth_error error = {0};
-    ck_assert_msg(view_context_open(&context, &error) == 0, "%s", error.text);
+    UNIT_FINE(view_context_open(&context, &error));
     make_sheet();
 }
 
@@ -111,7 +109,9 @@ static int brightness(int x, int y)
     return p[0] + p[1] + p[2];
 }
 
-START_TEST(cloth_is_where_the_camera_says)
+UNIT_FIXTURE(start, end)
+
+UNIT_LOOP(cloth_is_where_the_camera_says, 0, 2)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, at[2];
     int left = WIDTH, right = -1, top = HEIGHT, bottom = -1, n = 0;
@@ -138,9 +138,8 @@ START_TEST(cloth_is_where_the_camera_says)
     ck_assert_double_eq_tol(top, low[1], 2.5);
     ck_assert_double_eq_tol(bottom + 1, high[1], 2.5);
 }
-END_TEST
 
-START_TEST(throws_a_shadow)
+UNIT_TEST(throws_a_shadow)
 {
     static const double shaded[3] = {0.28, -0.3, -0.05}, lit[3] = {-0.9, -0.3, 0.2};
     double at[2][2];
@@ -153,7 +152,6 @@ START_TEST(throws_a_shadow)
     int light = brightness((int)at[1][0], (int)at[1][1]);
     ck_assert_msg(dark < 0.75 * light, "%d in the shadow, %d beside it", dark, light);
 }
-END_TEST
 
 static int near_cloth(int x, int y)
 {
@@ -166,7 +164,7 @@ static int near_cloth(int x, int y)
 
 /* Neither grain nor edges of single lights: on the ground a pixel is the mean of its neighbours,
  * but for rounding, noise of half a step against bands, and the bend of the shadow's border. */
-START_TEST(shadows_are_smooth)
+UNIT_TEST(shadows_are_smooth)
 {
     double sum = 0;
     int n = 0;
@@ -186,7 +184,6 @@ START_TEST(shadows_are_smooth)
     ck_assert_int_gt(n, 5000);
     ck_assert_double_lt(grain, 0.8);
 }
-END_TEST
 
 static void forget_picture(void)
 {
@@ -197,7 +194,7 @@ static void forget_picture(void)
 }
 
 /* Sides that are seen from inside are not drawn. */
-START_TEST(a_box_around_the_eye)
+UNIT_TEST(a_box_around_the_eye)
 {
     struct contact_shape box = {.kind = 2, .value = {0, 0, 0, 1, 1, 1, 1, 0, 0, 0}};
     double at[2];
@@ -209,9 +206,8 @@ START_TEST(a_box_around_the_eye)
     pixel_of(position + 3 * (N * N / 2 + N / 2), at);
     ck_assert(is_cloth((int)at[0], (int)at[1]));
 }
-END_TEST
 
-START_TEST(front_and_back_differ)
+UNIT_TEST(front_and_back_differ)
 {
     unsigned char seen[2][3];
     double at[2];
@@ -224,12 +220,10 @@ START_TEST(front_and_back_differ)
     double hue[2] = {(double)seen[0][1] / seen[0][0], (double)seen[1][1] / seen[1][0]};
     ck_assert_msg(hue[1] > hue[0] + 0.1, "green to red is %g, %g", hue[0], hue[1]);
 }
-END_TEST
 
 /* A chain of two edges without triangles. */
-START_TEST(draws_lines)
+UNIT_TEST(draws_lines)
 {
-    struct cloth_error error = {0};
     static const uint32_t line[4] = {0, 1, 1, 2};
     static const double place[9] = {0, 0, 0, 0.5, 0.2, 0, 1, 0, 0};
     struct view_shape shape = {.n_vertices = 3, .n_lines = 2, .line = line};
@@ -237,22 +231,20 @@ START_TEST(draws_lines)
     view_fit_start(&fit, 0, 0, (double)WIDTH / HEIGHT, 1);
     view_fit_add(&fit, 3, place);
     view_fit_camera(&fit, &camera);
-    ck_assert_int_eq(view_scene_new(&scene, &shape, &error), 0);
-    ck_assert_int_eq(view_scene_move(scene, place, &error), 0);
+    UNIT_FINE(view_scene_new(&scene, &shape, &error));
+    UNIT_FINE(view_scene_move(scene, place, &error));
     picture = (struct view_picture){WIDTH, HEIGHT, NULL};
-    ck_assert_msg(view_picture_draw(&picture, scene, &camera, &error) == 0, "%s", error.text);
+    UNIT_FINE(view_picture_draw(&picture, scene, &camera, &error));
     int n = 0;
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         n += is_cloth(i % WIDTH, i / WIDTH);
     ck_assert_int_gt(n, 150);
     ck_assert_int_lt(n, 2000);
 }
-END_TEST
 
 /* Two triangles beside each other, each a cloth. */
-START_TEST(cloths_differ_in_colour)
+UNIT_TEST(cloths_differ_in_colour)
 {
-    struct cloth_error error = {0};
     static const uint32_t apart[6] = {0, 1, 2, 3, 4, 5}, end[2] = {3, 6};
     static const double place[18] = {0,   0, 0, 0.4, 0, 0, 0.2, 0.4, 0,
                                      0.6, 0, 0, 1,   0, 0, 0.8, 0.4, 0};
@@ -262,10 +254,10 @@ START_TEST(cloths_differ_in_colour)
     view_fit_start(&fit, 0, 0, (double)WIDTH / HEIGHT, 1);
     view_fit_add(&fit, 6, place);
     view_fit_camera(&fit, &camera);
-    ck_assert_int_eq(view_scene_new(&scene, &shape, &error), 0);
-    ck_assert_int_eq(view_scene_move(scene, place, &error), 0);
+    UNIT_FINE(view_scene_new(&scene, &shape, &error));
+    UNIT_FINE(view_scene_move(scene, place, &error));
     picture = (struct view_picture){WIDTH, HEIGHT, NULL};
-    ck_assert_msg(view_picture_draw(&picture, scene, &camera, &error) == 0, "%s", error.text);
+    UNIT_FINE(view_picture_draw(&picture, scene, &camera, &error));
     int red = 0, blue = 0;
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
         const unsigned char *pixel = picture.rgb + (size_t)3 * (size_t)i;
@@ -275,15 +267,13 @@ START_TEST(cloths_differ_in_colour)
     ck_assert_int_gt(red, 500);
     ck_assert_int_gt(blue, 500);
 }
-END_TEST
 
-START_TEST(png_holds_the_picture)
+UNIT_TEST(png_holds_the_picture)
 {
-    struct cloth_error error = {0};
     char path[] = "/tmp/duite-view.XXXXXX";
     close(mkstemp(path));
     draw(20, 1);
-    ck_assert_msg(view_picture_write(&picture, path, &error) == 0, "%s", error.text);
+    UNIT_FINE(view_picture_write(&picture, path, &error));
     png_image image = {.version = PNG_IMAGE_VERSION};
     ck_assert_int_ne(png_image_begin_read_from_file(&image, path), 0);
     ck_assert(image.width == WIDTH && image.height == HEIGHT);
@@ -294,9 +284,8 @@ START_TEST(png_holds_the_picture)
     free(back);
     unlink(path);
 }
-END_TEST
 
-START_TEST(refuses_what_it_cannot_write)
+UNIT_TEST(refuses_what_it_cannot_write)
 {
     struct cloth_error error = {0};
     draw(20, 1);
@@ -311,7 +300,6 @@ START_TEST(refuses_what_it_cannot_write)
     ck_assert_int_eq(view_picture_draw(&huge, scene, &camera, &error), CLOTH_E_INPUT);
     ck_assert_ptr_null(huge.rgb);
 }
-END_TEST
 
 /* In a process of its own, so that the tests' processes start without a driver's threads. */
 static int has_egl(void)
@@ -333,20 +321,5 @@ static int has_egl(void)
 
 int main(void)
 {
-    if (!has_egl())
-        return 77;
-    TCase *c = tcase_create("picture");
-    tcase_add_checked_fixture(c, start, end);
-    tcase_add_loop_test(c, cloth_is_where_the_camera_says, 0, 2);
-    tcase_add_test(c, throws_a_shadow);
-    tcase_add_test(c, shadows_are_smooth);
-    tcase_add_test(c, a_box_around_the_eye);
-    tcase_add_test(c, front_and_back_differ);
-    tcase_add_test(c, draws_lines);
-    tcase_add_test(c, cloths_differ_in_colour);
-    tcase_add_test(c, png_holds_the_picture);
-    tcase_add_test(c, refuses_what_it_cannot_write);
-    Suite *s = suite_create("picture");
-    suite_add_tcase(s, c);
-    return unit_run(s);
+    return has_egl() ? unit_main() : 77;
 }

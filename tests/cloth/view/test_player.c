@@ -9,16 +9,15 @@ static void start(uint64_t n, uint64_t frame)
     view_player_start(&player, n, frame, 25);
 }
 
-START_TEST(stands_until_it_plays)
+UNIT_TEST(stands_until_it_plays)
 {
     start(50, 7);
     ck_assert_uint_eq(view_player_at(&player, 1), 7);
     ck_assert_uint_eq(view_player_at(&player, 100), 7);
     ck_assert(!player.playing);
 }
-END_TEST
 
-START_TEST(plays_by_the_clock)
+UNIT_TEST(plays_by_the_clock)
 {
     start(50, 7);
     view_player_toggle(&player, 10);
@@ -27,9 +26,8 @@ START_TEST(plays_by_the_clock)
     ck_assert_uint_eq(view_player_at(&player, 99), 49);
     ck_assert_msg(!player.playing, "playing ends at the last frame");
 }
-END_TEST
 
-START_TEST(pauses_and_goes_on)
+UNIT_TEST(pauses_and_goes_on)
 {
     start(50, 0);
     view_player_toggle(&player, 0);
@@ -38,18 +36,16 @@ START_TEST(pauses_and_goes_on)
     view_player_toggle(&player, 9);
     ck_assert_uint_eq(view_player_at(&player, 9.5), 24);
 }
-END_TEST
 
-START_TEST(plays_again_from_the_first_at_the_last)
+UNIT_TEST(plays_again_from_the_first_at_the_last)
 {
     start(50, 49);
     view_player_toggle(&player, 3);
     ck_assert_uint_eq(view_player_at(&player, 3), 0);
     ck_assert(player.playing);
 }
-END_TEST
 
-START_TEST(steps_stop_within_the_run)
+UNIT_TEST(steps_stop_within_the_run)
 {
     start(50, 45);
     view_player_toggle(&player, 0);
@@ -63,9 +59,8 @@ START_TEST(steps_stop_within_the_run)
     view_player_step(&player, 7, -100);
     ck_assert_uint_eq(view_player_at(&player, 7), 0);
 }
-END_TEST
 
-START_TEST(seeks_and_plays_on)
+UNIT_TEST(seeks_and_plays_on)
 {
     start(101, 0);
     view_player_seek(&player, 0, 0.5);
@@ -77,9 +72,8 @@ START_TEST(seeks_and_plays_on)
     view_player_seek(&player, 8, 2);
     ck_assert_uint_eq(view_player_at(&player, 8), 100);
 }
-END_TEST
 
-START_TEST(speed_changes_where_it_is)
+UNIT_TEST(speed_changes_where_it_is)
 {
     start(1000, 0);
     view_player_toggle(&player, 0);
@@ -91,30 +85,12 @@ START_TEST(speed_changes_where_it_is)
     view_player_faster(&player, 3.02, 1e-9);
     ck_assert_double_eq(player.rate, 0.1);
 }
-END_TEST
 
-START_TEST(a_single_frame_is_all)
+UNIT_TEST(a_single_frame_is_all)
 {
     start(1, 0);
     view_player_toggle(&player, 0);
     ck_assert_uint_eq(view_player_at(&player, 1), 0);
     view_player_seek(&player, 1, 1);
     ck_assert_uint_eq(view_player_at(&player, 2), 0);
-}
-END_TEST
-
-int main(void)
-{
-    TCase *tests = tcase_create("player");
-    tcase_add_test(tests, stands_until_it_plays);
-    tcase_add_test(tests, plays_by_the_clock);
-    tcase_add_test(tests, pauses_and_goes_on);
-    tcase_add_test(tests, plays_again_from_the_first_at_the_last);
-    tcase_add_test(tests, steps_stop_within_the_run);
-    tcase_add_test(tests, seeks_and_plays_on);
-    tcase_add_test(tests, speed_changes_where_it_is);
-    tcase_add_test(tests, a_single_frame_is_all);
-    Suite *suite = suite_create("player");
-    suite_add_tcase(suite, tests);
-    return unit_run(suite);
 }

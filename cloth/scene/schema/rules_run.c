@@ -20,7 +20,7 @@ const struct scene_rule scene_time_keys[] = {
      PLACE(struct model, h_place),
      .about = "of a step"},
     {"end", SCENE_NUMBER, "s", .required = true, .range = SCENE_POSITIVE, INTO(struct model, end),
-     .about = "round(end / h) steps are made"},
+     .about = "round(end / h) steps are made, more where steps are halved"},
     {"fps", SCENE_NUMBER, "1/s", "25", .range = SCENE_POSITIVE, INTO(struct model, fps),
      PLACE(struct model, fps_place),
      .about = "frames a second; frame 0 is the start",
@@ -40,15 +40,15 @@ const struct scene_rule scene_time_keys[] = {
      "grow by so much in a step, else it is halved; 0: by any", .needs = "halving = on"},
     {"stretch_limit", SCENE_NUMBER, .fallback = "0", .range = SCENE_NOT_NEGATIVE,
      INTO(struct model, stretch_limit),
-     .about = "no step may end with a larger stretch, unless it began with one; 0: no limit"},
+     .about = "no step may end with a larger stretch, and higher than it began; 0: no limit"},
     {"energy_growth", SCENE_NUMBER, .fallback = "0.005", .range = SCENE_NOT_NEGATIVE,
      INTO(struct model, energy_growth),
-     .about = "an implicit step may end so much above an earlier energy, where nothing does work "
-     "on the cloth, as part of the energy of motion and strain, or of what weights and loads can "
-     "set free; 0: by any",
-     .more = "The energy is the largest so far. A step that ends higher is made again: first by "
+     .about = "how far the energy of an implicit step may end above an earlier one where nothing "
+     "does work on the cloth; 0: not checked",
+     .more = "It is a part of the energy of motion and strain, or of what weights and loads can "
+     "set free. The earlier energy is the largest so far. A step that ends higher is made again: first by "
      "implicit Euler if it was by `bdf2`, then with half the length, down to h/16 "
-     "([physics.md](physics.md#integrators)). In a step in which contact moved vertices beyond "
+     "([physics.md](physics.md#energy)). In a step in which contact moved vertices beyond "
      "what was solved it does not count.", .needs = NEEDS_GUARDED},
     {"rest", SCENE_MAP, .inside = rest_keys, INTO(struct model, rest),
      .about = "the run ends when the cloth is at rest, and at `end` at the latest",
@@ -127,7 +127,7 @@ const struct scene_rule scene_solver_keys[] = {
     {"format", SCENE_CHOICE, .fallback = "springs", INTO(struct model, format),
      WORDS({"springs", SOLVE_SPRINGS}, {"half", SOLVE_HALF}, {"half_float", SOLVE_HALF_FLOAT}),
      .about = "how the matrix is kept: four numbers a spring, or nine a pair of vertices, in "
-     "double or float; what is more than springs takes half for springs",
+     "double or float; half in place of springs where a cloth has more than springs",
      .more = "With `half_float` vectors and the diagonal are in double.",
      .needs = "springs: " NEEDS_ONLY_SPRINGS},
     {"jacobian", SCENE_CHOICE, .fallback = "definite", INTO(struct model, full_slope),

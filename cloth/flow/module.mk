@@ -102,7 +102,6 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/solver/pass.c \
     cloth/flow/solver/pattern.c \
     cloth/flow/solver/pieces.c \
-    cloth/flow/solver/preconditioner.c \
     cloth/flow/solver/solve.h \
     cloth/flow/solver/solver.h \
     cloth/flow/solver/system.c \

@@ -11,7 +11,7 @@
 #include "cloth/physics/curve.h"
 #include "cloth/physics/motion.h"
 #include "cloth/physics/spring.h"
-#include "cloth/solve/format.h"
+#include "cloth/solve/local.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -102,6 +102,12 @@ enum model_preconditioner {
     MODEL_COARSE,    /* Jacobi and a coarse space, affine on each patch of a block */
     MODEL_IC0_COARSE /* IC(0) and that coarse space */
 };
+/* Its parts: a row of model_conditioners. */
+struct model_conditioner {
+    enum solve_local local; /* of each block alone */
+    bool coarse;
+};
+extern const struct model_conditioner model_conditioners[];
 
 struct model {
     char *name; /* of the scene */
@@ -303,12 +309,16 @@ static inline int model_stops_by_norms(const struct model *model)
 /* True if its solves have a coarse space; the number of its patches in a block. The default is
  * four, or two if one factor can then take all patches: one task solves with it after those of the
  * blocks. */
-bool model_is_coarse(const struct model *model);
+static inline bool model_is_coarse(const struct model *model)
+{
+    return model_conditioners[model->preconditioner].coarse;
+}
 enum { MODEL_ONE_FACTOR = 256 }; /* more patches are solved by groups (cloth/solve/levels.h) */
 uint32_t model_patches(const struct model *model, uint32_t n_blocks);
 
 /* Their names in scenes. */
 extern const struct model_word model_integrators[];
+extern const struct model_word model_preconditioners[];
 extern const struct model_word model_contact_modes[];
 const char *model_contact_name(const struct model *model);
 

@@ -48,7 +48,7 @@ static int basis_ghosts_body(const duite_call *call, const struct basis_ghosts_f
 int flow_coarse_initialise(struct flow_state *state)
 {
     struct flow_block_args args;
-    if (!flow_is_coarse(state->flow))
+    if (!state->flow->conditioner.coarse)
         return DUITE_OK;
     const int code = flow_fork_each(state, &flow_kernel_basis, &args);
     return code ? code : flow_fork_each(state, &flow_kernel_basis_ghosts, &args);
@@ -240,7 +240,7 @@ static int fork_factor(struct flow_state *state)
 
 int flow_coarse_start(struct flow_state *state)
 {
-    if (!flow_is_coarse(state->flow))
+    if (!state->flow->conditioner.coarse)
         return DUITE_OK;
     int code = model_is_filtered(state->flow->model) ? flow_coarse_initialise(state) : DUITE_OK;
     if (!code)

@@ -1,7 +1,8 @@
-/* The pattern of the coarse matrix (coarse.c): the patches that anything joins, later ties too. It
- * is the same on every rank, and is made once a run. */
+/* The preconditioner of a run, and the pattern of its coarse matrix (coarse.c): the patches that
+ * anything joins, later ties too. It is the same on every rank, and is made once a run. */
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/solver/levels.h"
+#include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
 
 #include "cloth/base/memory.h"
@@ -197,16 +198,27 @@ size_t flow_coupling_at(const struct flow *flow, uint32_t p, uint32_t q)
     return at;
 }
 
-int flow_coarse_prepare(struct flow_state *state)
+void flow_preconditioner_choose(struct flow *flow, uint32_t n_blocks)
+{
+    const struct model *model = flow->model;
+    flow->conditioner =
+        model_conditioners[model_is_implicit(model) ? model->preconditioner : MODEL_PLAIN];
+    flow->patches = model_patches(model, n_blocks);
+}
+
+int flow_preconditioner_prepare(struct flow_state *state)
 {
     struct flow *flow = state->flow;
+    flow_preconditioner_choose(flow, flow->tables.n_blocks);
+    if (!flow->conditioner.coarse)
+        return DUITE_OK;
     make_pattern(flow);
     if (flow->n_levels && !flow->trouble.code)
         flow_levels_take(state);
     return flow_memory_agree(state);
 }
 
-void flow_coarse_free(struct flow *flow)
+void flow_preconditioner_free(struct flow *flow)
 {
     solve_pattern_free(&flow->pattern);
     for (uint32_t l = 0; l < flow->n_levels; l++)

@@ -176,7 +176,7 @@ static size_t matrix(const struct flow_state *state, uint32_t block)
 static size_t factor(const struct flow_state *state, uint32_t block)
 {
     const struct flow_table *t = table_of(state, block);
-    return solve_local_doubles(t->n, t->n_entries, flow_local(state->flow));
+    return solve_local_doubles(t->n, t->n_entries, state->flow->conditioner.local);
 }
 
 static size_t part(const struct flow_state *state, uint32_t block)
@@ -347,7 +347,7 @@ static bool plain_solve(const struct flow_state *state, uint32_t block)
 static bool coarse_run(const struct flow_state *state, uint32_t block)
 {
     (void)block;
-    return flow_is_coarse(state->flow);
+    return state->flow->conditioner.coarse;
 }
 
 static bool by_levels(const struct flow_state *state, uint32_t block)

@@ -10,14 +10,16 @@ static void lay_list(const struct flow_table *t, int i, struct flow_room *room,
                      struct element_list *list)
 {
     const struct element_kind *kind = element_kinds[i];
-    const size_t n = t->n_elements[i], n_materials = n ? t->n_materials : 0;
-    list->n = t->n_elements[i];
+    const size_t n = t->n_elements[i];
+    *list = (struct element_list){.n = t->n_elements[i]};
+    if (!n)
+        return;
     list->corner = flow_room_next(room, n * sizeof *list->corner);
     list->at = flow_room_next(room, kind->pairs * n * sizeof *list->at);
     list->vector = flow_room_next(room, kind->vectors * n * sizeof *list->vector);
     for (uint32_t k = 0; k < ELEMENT_NUMBERS; k++)
         list->number[k] = flow_room_next(room, k < kind->numbers ? n * sizeof(double) : 0);
-    list->material = flow_room_next(room, n_materials * kind->material_bytes);
+    list->material = flow_room_next(room, t->n_materials * kind->material_bytes);
 }
 
 static void lay(const struct flow_table *t, struct flow_room *room, struct flow_layout *layout)

@@ -1,7 +1,5 @@
 /* The command line of duite-cloth. Every rank reads it, after MPI has started, and only rank 0
  * prints: a mistake is said once, and all ranks end with the same code. */
-#include "cloth/app/run/environment.h"
-#include "cloth/app/run/shipped.h"
 #include "cloth/app/simulate.h"
 #include "cloth/base/simd.h"
 

@@ -1,6 +1,8 @@
 /* A model owns all that its pointers reach; a zeroed model owns nothing. */
 #include "cloth/model/model.h"
 
+#include "cloth/base/memory.h"
+#include "cloth/base/sets.h"
 #include "cloth/physics/limit.h"
 #include "cloth/solve/patches.h"
 
@@ -369,4 +371,39 @@ double model_curve_end(const struct model *model, uint32_t curve)
         return 0;
     const struct model_curve *c = model->curves + curve - 1;
     return c->n ? model->curve_keys[c->first + c->n - 1].time : INFINITY;
+}
+
+/* Gives each vertex of all cloths the lowest vertex that it is welded to. NULL: no memory. */
+static uint32_t *find_welded(const struct model *model, struct cloth_error *error)
+{
+    const uint32_t n = model_first(model, model->n_cloths);
+    uint32_t *same = cloth_alloc(n, sizeof *same, error);
+    if (!same)
+        return NULL;
+    cloth_sets_start(same, n);
+    for (uint32_t w = 0; w < model->n_welds; w++) {
+        const struct model_end *end = model->welds[w].pairs.end;
+        for (uint32_t i = 0; i < end[0].n; i++) {
+            const uint32_t a = model_first(model, end[0].cloth) + end[0].vertices[i];
+            const uint32_t b = model_first(model, end[1].cloth) + end[1].vertices[i];
+            cloth_sets_join(same, a, b);
+        }
+    }
+    for (uint32_t v = 0; v < n; v++)
+        same[v] = cloth_sets_root(same, v);
+    return same;
+}
+
+int model_soup(const struct model *model, struct contact_soup *soup, struct cloth_error *error)
+{
+    *soup = (struct contact_soup){0};
+    const struct mesh **mesh = cloth_alloc(model->n_cloths, sizeof *mesh, error);
+    uint32_t *same = mesh ? find_welded(model, error) : NULL;
+    for (uint32_t i = 0; i < model->n_cloths && same; i++)
+        mesh[i] = &model->cloths[i].mesh;
+    const int code = same ? contact_soup_make(soup, model->n_cloths, mesh, same, model->n_obstacles,
+                                              model->obstacles, &model->bodies, error)
+                          : CLOTH_E_MEMORY;
+    free(mesh);
+    return code;
 }

@@ -4,6 +4,7 @@
 #include "cloth/base/error.h"
 #include "cloth/contact/apart.h"
 #include "cloth/contact/shape.h"
+#include "cloth/contact/soup.h"
 #include "cloth/mesh/elastic.h"
 #include "cloth/model/cloth.h"
 #include "cloth/model/hdf5.h"
@@ -419,6 +420,10 @@ static inline uint32_t model_first(const struct model *model, uint32_t cloth)
         first += model->cloths[c].mesh.n_vertices;
     return first;
 }
+
+/* The soup of a model's cloths and bodies, with its welds; to be freed in any case. Errors: as of
+ * contact_soup_make. While there are meshes. */
+int model_soup(const struct model *model, struct contact_soup *soup, struct cloth_error *error);
 
 /* Makes a cloth start as `start` says (model_cloth.start, which the cloth then owns), whatever it
  * had before. */

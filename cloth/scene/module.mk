@@ -42,6 +42,8 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/unusual.c \
 	cloth/scene/build/joint.c \
 	cloth/scene/build/load.c \
+	cloth/scene/build/made.c \
+	cloth/scene/build/made.h \
 	cloth/scene/build/mannequin.c \
 	cloth/scene/build/region.c \
 	cloth/scene/build/settings.c \

@@ -51,7 +51,7 @@ golden "zara.yaml" "$scenes/zara.yaml"
 golden "zara.yaml, explicit" "$scenes/zara.yaml" --set integrator=explicit_euler
 golden "fabrics.yaml, half a second" "$scenes/fabrics.yaml" --end 0.5
 golden "push.yaml, until the ball pushes" "$scenes/push.yaml" --end 0.7 --set 'cloths[0].mesh.grid.nx=33' --set 'cloths[0].mesh.grid.ny=41'
-golden "shirt.yaml of 700 vertices, sewn, five steps" "$scenes/shirt.yaml" --set 'cloths[0].mesh.pattern.vertices=700' --grain 100 --set 'phases[1].set={time.end: 0.005}'
+golden "shirt.yaml of 700 vertices, sewn, five steps" "$scenes/shirt.yaml" --set 'cloths[0].mesh.pattern.vertices=700' --grain 100 --set 'phases[1].set.time.end=0.005'
 golden "states.yaml, twenty steps" "$srcdir/bench/cg/states.yaml" --end 0.02
 
 triangles='materials.cloth={model: triangles, density: 0.2, stretch: [3000, 1000], shear: 100, poisson: 0.3, damping: {stiffness: 0.01}'

@@ -4,7 +4,6 @@
 
 #include "cloth/app/run/keeper.h"
 #include "cloth/app/run/outputs_setup.h"
-#include "cloth/app/run/restart.h"
 #include "cloth/base/memory.h"
 #include "cloth/output/output.h"
 
@@ -124,7 +123,7 @@ static int open_keeper(struct outputs *to, const struct phases *phases, bool res
     to->phases = phases;
     if (!(options->checkpoint > 0))
         return CLOTH_OK;
-    to->settings = restart_settings(phases, error);
+    to->settings = phases_settings(phases, error);
     return to->settings ? keeper_open(&to->keeper, options->output, options->checkpoint,
                                       to->settings, to->settler, to->hdf5.frames, error)
                         : error->code;

@@ -102,6 +102,11 @@ int scene_build_unusual(struct model *model, const struct scene_tree *tree,
 int scene_build_warn_seams(struct model *model, const struct scene_tree *tree,
                            struct cloth_error *error);
 
+/* The settings of a node, a line each: its path and its value. To be freed. NULL: CLOTH_E_MEMORY.
+ */
+char *scene_build_text(const struct scene_tree *tree, int node, const char *path,
+                       struct cloth_error *error);
+
 /* Writes the settings of the model. Error: CLOTH_E_MEMORY. */
 int scene_build_settings(struct model *model, const struct scene_tree *tree,
                          struct cloth_error *error);

@@ -393,6 +393,7 @@ int scene_build_seams(struct model *model, const struct scene_tree *tree, struct
         return scene_tree_fail(tree, scene_tree_get(tree, scene_tree_get(tree, 1, "time"), "sewn"),
                                error,
                                "time.sewn waits for pulled seams, and the scene has none: a cloth "
-                               "with seams: {state: pulled} is expected");
+                               "with seams: {state: pulled} is expected, or time.sewn: null in a "
+                               "phase that has welded them");
     return code ? code : find_joined(model, error);
 }

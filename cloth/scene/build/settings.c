@@ -78,18 +78,27 @@ static int sort(const char *text, char **sorted, struct cloth_error *error)
     return bad || closed ? cloth_fail(error, CLOTH_E_MEMORY, "no memory for the settings") : 0;
 }
 
-int scene_build_settings(struct model *model, const struct scene_tree *tree,
-                         struct cloth_error *error)
+char *scene_build_text(const struct scene_tree *tree, int node, const char *path,
+                       struct cloth_error *error)
 {
     char *text = NULL;
     size_t size;
     FILE *file = open_memstream(&text, &size);
-    if (!file)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the settings of the scene");
-    put_node(file, tree, 1, "");
-    const int bad = ferror(file) != 0, closed = fclose(file);
-    const int code = bad || closed ? cloth_fail(error, CLOTH_E_MEMORY, "no memory for the settings")
-                                   : sort(text, &model->settings, error);
+    if (file)
+        put_node(file, tree, node, path);
+    const int bad = !file || ferror(file), closed = file ? fclose(file) : 0;
+    if (!bad && !closed)
+        return text;
+    free(text);
+    cloth_fail(error, CLOTH_E_MEMORY, "no memory for the settings of the scene");
+    return NULL;
+}
+
+int scene_build_settings(struct model *model, const struct scene_tree *tree,
+                         struct cloth_error *error)
+{
+    char *text = scene_build_text(tree, 1, "", error);
+    const int code = text ? sort(text, &model->settings, error) : CLOTH_E_MEMORY;
     free(text);
     return code;
 }

@@ -394,7 +394,7 @@ static const struct scene_rule joint = {
 static const struct scene_rule phase_keys[] = {
     {"name", SCENE_TEXT, .required = true, INTO(struct model_phase, name),
      .about = "of the phase, in messages and in the report"},
-    {"set", SCENE_EDITS, .fallback = "{}", .about = "keys of the scene that are others in it"},
+    {"set", SCENE_EDITS, .fallback = "{}", .about = "keys of the scene that are others from it on; null: the default again"},
     {0}};
 static const struct scene_rule phase = {
     .type = SCENE_MAP, .inside = phase_keys, PLACE(struct model_phase, place)};

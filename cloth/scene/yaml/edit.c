@@ -177,8 +177,14 @@ static int put_key(struct edit *edit, int node)
         if (key && strlen(key) == length && !strncmp(key, name, length))
             break;
     }
+    const bool ends = edit->value ? !name[length] : name[length] == '=';
     edit->at = name + length;
     int value = put(edit, i < n ? scene_tree_pair(tree, map, i).value : 0);
+    if (value && ends && scene_tree_empty(tree, value)) { /* the key has its default again */
+        if (i < n)
+            scene_edit_remove(tree, map, i);
+        return map;
+    }
     int key = value ? add_key(edit, name, length) : 0;
     if (key && i < n)
         scene_tree_node(tree, map)->data.mapping.pairs.start[i] = (yaml_node_pair_t){key, value};
@@ -293,8 +299,8 @@ static int edit_by_phase(struct scene_tree *tree, uint32_t phase, struct cloth_e
 int scene_edit_sets(struct scene_tree *tree, uint32_t phase, struct cloth_error *error)
 {
     int code = edit_by_options(tree, true, error);
-    if (!code)
-        code = edit_by_phase(tree, phase, error);
+    for (uint32_t i = 0; i <= phase && !code; i++)
+        code = edit_by_phase(tree, i, error);
     return code ? code : edit_by_options(tree, false, error);
 }
 

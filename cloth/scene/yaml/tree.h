@@ -16,6 +16,7 @@ struct scene_tree {
     const char *path;             /* of the file, as the user wrote it */
     size_t n_sets;                /* of the caller */
     const struct scene_set *sets; /* of the caller */
+    struct scene_made *made;      /* what the phases of a scene share (cloth/scene/build/made.h) */
 };
 
 /* The origin of a node that is not from the file. It is kept in its mark: index is one of these,

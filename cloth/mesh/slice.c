@@ -1,5 +1,5 @@
 /* Segments are joined where they end on the same edge of the mesh. */
-#include "cloth/garment/detail/slice.h"
+#include "cloth/mesh/slice.h"
 #include "cloth/base/memory.h"
 #include "cloth/base/sets.h"
 
@@ -7,30 +7,32 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void cut(struct slice_end *end, const double (*x)[3], uint32_t a, uint32_t b, double y)
+static void cut_edge(struct slice_end *end, const struct slice_mesh *mesh, uint32_t a, uint32_t b)
 {
-    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
-    end->part = (y - x[low][1]) / (x[high][1] - x[low][1]);
-    end->edge = (uint64_t)low << 32 | high;
+    const double p = mesh->height[a], q = mesh->height[b], part = p / (p - q);
+    end->part = a < b ? part : 1 - part;
+    end->edge = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
     end->open = true;
-    for (int k = 0; k < 2; k++)
-        end->place[k] = x[low][2 * k] + end->part * (x[high][2 * k] - x[low][2 * k]);
+    for (int k = 0; k < 3; k++)
+        end->place[k] = mesh->x[a][k] + part * (mesh->x[b][k] - mesh->x[a][k]);
 }
 
-/* Whether a triangle is cut, and where. */
-static bool cut_triangle(struct slice_segment *segment, const struct girth_mesh *mesh, uint32_t t,
-                         double y)
+/* False: the plane does not cut the triangle. */
+static bool cut_triangle(struct slice_segment *segment, const struct slice_mesh *mesh, uint32_t t)
 {
     const uint32_t *v = mesh->triangle[t];
     int n = 0;
     for (int i = 0; i < 3; i++) {
         const uint32_t a = v[i], b = v[(i + 1) % 3];
-        if ((mesh->x[a][1] > y) != (mesh->x[b][1] > y))
-            cut(&segment->end[n++], mesh->x, a, b, y);
+        if ((mesh->height[a] < 0) != (mesh->height[b] < 0))
+            cut_edge(&segment->end[n++], mesh, a, b);
     }
-    if (n == 2)
-        segment->length = hypot(segment->end[0].place[0] - segment->end[1].place[0],
-                                segment->end[0].place[1] - segment->end[1].place[1]);
+    double square = 0;
+    for (int k = 0; k < 3 && n == 2; k++) {
+        const double d = segment->end[0].place[k] - segment->end[1].place[k];
+        square += d * d;
+    }
+    segment->length = sqrt(square);
     return n == 2;
 }
 
@@ -70,15 +72,14 @@ static int join(struct slice *slice, struct cloth_error *error)
     return CLOTH_OK;
 }
 
-int slice_make(struct slice *slice, const struct girth_mesh *mesh, double y,
-               struct cloth_error *error)
+int slice_make(struct slice *slice, const struct slice_mesh *mesh, struct cloth_error *error)
 {
     struct cloth_list list = {0};
     struct slice_segment segment;
     int code = CLOTH_OK;
     *slice = (struct slice){0};
     for (uint32_t t = 0; t < mesh->n_triangles && !code; t++)
-        if (cut_triangle(&segment, mesh, t, y)) {
+        if (cut_triangle(&segment, mesh, t)) {
             struct slice_segment *next = cloth_list_add(&list, sizeof segment, 1, error);
             code = next ? CLOTH_OK : CLOTH_E_MEMORY;
             if (next)

@@ -30,8 +30,6 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/state/forks.c \
     cloth/flow/state/kernel.h \
     cloth/flow/state/kernels.h \
-    cloth/flow/state/life.c \
-    cloth/flow/state/life.h \
     cloth/flow/state/objects.c \
     cloth/flow/state/room.h \
     cloth/flow/state/state.c \

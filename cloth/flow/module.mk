@@ -11,7 +11,6 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/run/neighbours.c \
     cloth/flow/run/particles.c \
     cloth/flow/run/picks.c \
-    cloth/flow/run/pieces.c \
     cloth/flow/run/run.c \
     cloth/flow/run/settle.c \
     cloth/flow/run/setup.h \
@@ -21,7 +20,6 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/run/status.c \
     cloth/flow/run/step.c \
     cloth/flow/run/step.h \
-    cloth/flow/run/varying.c \
     cloth/flow/run/warn.c \
     cloth/flow/state/bodies.h \
     cloth/flow/state/fields.c \
@@ -39,7 +37,6 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/springs/correct.c \
     cloth/flow/springs/sides.c \
     cloth/flow/springs/springs.c \
-    cloth/flow/springs/stretch.c \
     cloth/flow/elements/elements.c \
     cloth/flow/elements/members.c \
     cloth/flow/joints/adopted.c \
@@ -52,8 +49,6 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/joints/ties.h \
     cloth/flow/joints/weld_hinges.c \
     cloth/flow/joints/welds.c \
-    cloth/flow/pins/anchor.c \
-    cloth/flow/pins/anchor.h \
     cloth/flow/pins/follow.c \
     cloth/flow/pins/pins.c \
     cloth/flow/pins/sliders.h \

@@ -252,10 +252,10 @@ static void fill_sides(const struct flow_source *source, const struct flow_table
         }
         if (!first || free_here == free_there || (side[i].other && !free_here))
             continue; /* neither end is held, or the free row is the neighbour's */
-        layout->held[held][0] = free_here ? here : there;
-        layout->held[held++][1] = entries - 1;
+        layout->held_at[held][0] = free_here ? here : there;
+        layout->held_at[held++][1] = entries - 1;
     }
-    *layout->n_held = held;
+    *layout->held_entries = held;
 }
 
 /* The limits of a block's edges. An edge between blocks makes the share of its correction that lets

@@ -34,7 +34,7 @@ static void place_all(const struct model *model, uint32_t obstacle, phys_vec *pl
         place_vertex(model, obstacle, v, 0, place + v);
 }
 
-static void cross(const phys_vec *a, const phys_vec *b, phys_vec *to)
+static void cross_product(const phys_vec *a, const phys_vec *b, phys_vec *to)
 {
     const phys_vec u = *a, v = *b;
     *to = (phys_vec){u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
@@ -42,7 +42,7 @@ static void cross(const phys_vec *a, const phys_vec *b, phys_vec *to)
 }
 
 /* Makes a vector one of length 1; one of length 0 becomes another. */
-static void normalise(phys_vec *x, const phys_vec *other)
+static void normalise_axis(phys_vec *x, const phys_vec *other)
 {
     const double square = phys_dot(x, x);
     *x = square > 0 ? *x / sqrt(square) : *other;
@@ -53,10 +53,10 @@ static void find_axes(const phys_vec x[3], phys_vec axis[3])
 {
     const phys_vec first = {1, 0, 0, 0}, last = {0, 0, 1, 0}, side = x[2] - x[0];
     axis[0] = x[1] - x[0];
-    cross(axis, &side, axis + 2);
-    normalise(axis, &first);
-    normalise(axis + 2, &last);
-    cross(axis + 2, axis, axis + 1);
+    cross_product(axis, &side, axis + 2);
+    normalise_axis(axis, &first);
+    normalise_axis(axis + 2, &last);
+    cross_product(axis + 2, axis, axis + 1);
 }
 
 /* Finds the anchor of a vertex at x, m, when a run starts: the nearest point of the body, of equals

@@ -78,7 +78,7 @@ static int keep_unused(struct flow *flow, const struct flow_particles *particles
     return CLOTH_OK;
 }
 
-static int build(struct flow *flow, int ranks, struct cloth_error *error)
+static int build_source(struct flow *flow, int ranks, struct cloth_error *error)
 {
     const int code = flow_source_make(&flow->source, flow->model, ranks, error);
     if (code)
@@ -123,7 +123,7 @@ int flow_prepare(struct flow **flow, const struct model *model, int ranks,
                           "end / h makes %g steps; at most 4294967294 are possible",
                           model->end / model->h);
     if (!code)
-        code = build(*flow, ranks, error);
+        code = build_source(*flow, ranks, error);
     if (code) {
         flow_free(*flow);
         *flow = NULL;
@@ -203,7 +203,7 @@ const char *flow_warning(const struct flow *flow, size_t i)
 
 /* ---- Running ---- */
 
-static void describe(const struct flow_state *state)
+static void describe_cloth(const struct flow_state *state)
 {
     const struct flow *flow = state->flow;
     *state->report = (struct flow_report){.vertices = flow->n_vertices,
@@ -216,7 +216,7 @@ static void describe(const struct flow_state *state)
 /* Makes objects, then tables, which go to the ranks of their objects. Everything that bodies find
  * by their context is made before waiting for the tables. A rank that is ahead may send tasks here
  * that this rank's main program has not reached. */
-static int make(struct flow_state *state)
+static int make_objects(struct flow_state *state)
 {
     flow_objects_make(state);
     if (model_is_implicit(state->flow->model))
@@ -238,7 +238,7 @@ int flow_run_begin(struct flow_state *state)
     int code = flow_share_head(state);
     if (code)
         return code;
-    describe(state);
+    describe_cloth(state);
     state->report->rest_seconds = state->report->sewn_seconds = NAN;
     state->report->seams = flow->model->n_pulled;
     state->report->correction_excess = flow->model->correction_rounds ? 0 : NAN;
@@ -248,7 +248,7 @@ int flow_run_begin(struct flow_state *state)
     if (!code)
         code = flow_preconditioner_prepare(state);
     if (!code)
-        code = make(state);
+        code = make_objects(state);
     for (uint32_t i = 0; flow->room && i < flow->unused.n; i++)
         memcpy(flow->room + 3 * (size_t)flow->unused.vertex[i], flow->unused.position[i],
                sizeof flow->unused.position[i]);
@@ -257,7 +257,7 @@ int flow_run_begin(struct flow_state *state)
 }
 
 /* Starts a run that does not go on from a checkpoint. */
-static int start(struct flow_state *state)
+static int start_anew(struct flow_state *state)
 {
     int code = flow_initialise(state);
     if (!code && model_certifies(state->flow->model))
@@ -277,7 +277,7 @@ static int run_steps(struct flow_state *state)
     if (!code && implicit && !state->solve.generation)
         code = flow_cg_record(state);
     if (!code)
-        code = state->head.resumed_bytes ? flow_resume_blocks(state) : start(state);
+        code = state->head.resumed_bytes ? flow_resume_blocks(state) : start_anew(state);
     if (!code && !state->complete)
         code = flow_steps(state);
     if (!code && implicit && state->report->steps && state->output && state->output->system)

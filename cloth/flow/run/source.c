@@ -117,7 +117,7 @@ static int cut_roots(struct flow_source *source, const struct mesh_pairs *pairs,
     return code ? code : flow_names_make(&source->names, &p->welds, &source->blocks, error);
 }
 
-static int cut(struct flow_source *source, int ranks, struct cloth_error *error)
+static int cut_blocks(struct flow_source *source, int ranks, struct cloth_error *error)
 {
     const struct mesh_pairs pairs = {&source->springs, each_pair};
     const struct mesh_blocks *blocks = &source->blocks;
@@ -133,21 +133,21 @@ static int cut(struct flow_source *source, int ranks, struct cloth_error *error)
 
 /* ---- Shapes ---- */
 
-static void widen(struct flow_table *shape, uint32_t v)
+static void widen_range(struct flow_table *shape, uint32_t v)
 {
     shape->lowest = v < shape->lowest ? v : shape->lowest;
     shape->highest = v > shape->highest ? v : shape->highest;
 }
 
-static void find_range(const struct flow_source *source, struct flow_table *shape)
+static void find_vertices(const struct flow_source *source, struct flow_table *shape)
 {
     const struct flow_names *names = &source->names;
     const uint32_t end = flow_names_from(names, shape->first + shape->n);
     shape->lowest = UINT32_MAX;
     for (uint32_t i = 0; i < shape->n; i++)
-        widen(shape, source->blocks.vertex[shape->first + i]);
+        widen_range(shape, source->blocks.vertex[shape->first + i]);
     for (uint32_t i = flow_names_from(names, shape->first); i < end; i++)
-        widen(shape, names->name[i][1]);
+        widen_range(shape, names->name[i][1]);
 }
 
 /* Counts the watched vertices of each block. */
@@ -183,7 +183,7 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
         shape->format = source->model->format;
         shape->first = blocks->start[b];
         shape->n = blocks->start[b + 1] - blocks->start[b];
-        find_range(source, shape);
+        find_vertices(source, shape);
         shape->n_moved = count_numbered(source, shape, source->particles.motion);
         shape->n_sliding = count_numbered(source, shape, source->particles.slider);
         shape->n_loose = count_numbered(source, shape, source->particles.piece);
@@ -220,7 +220,7 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
     if (!code && model_is_implicit(model))
         code = make_pieces(source, error);
     if (!code)
-        code = cut(source, ranks, error);
+        code = cut_blocks(source, ranks, error);
     if (!code)
         code = flow_watched_make(&source->watched, source, error);
     if (!code)

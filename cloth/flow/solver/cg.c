@@ -91,7 +91,7 @@ static int fork_scalars(struct flow_state *state)
     return code ? code : flow_levels_fork_top(state, &flow_kernel_cg_scalars, &args, false);
 }
 
-static int build(duite *rt, void *context)
+static int build_round(duite *rt, void *context)
 {
     struct flow_state *state = context;
     int code = DUITE_OK;
@@ -109,7 +109,7 @@ static int build(duite *rt, void *context)
 
 int flow_cg_record(struct flow_state *state)
 {
-    return duite_graph_new(state->rt, build, state, &state->solve);
+    return duite_graph_new(state->rt, build_round, state, &state->solve);
 }
 
 /* ---- The scalars, on every rank ---- */
@@ -213,7 +213,7 @@ static void add_parts(const struct flow *flow, const duite_param *part, double d
 
 /* The coarse part: the motion that belongs to the q of the pass, if that made a new one. Returns
  * its share in q.s. */
-static double move(const struct flow *flow, const struct cg_scalars_fields *on)
+static double move_patches(const struct flow *flow, const struct cg_scalars_fields *on)
 {
     if (flow_coarse_moves(on->scalars))
         return flow_coarse_motion(flow, on->coarse, on->part, on->motion_next);
@@ -232,6 +232,6 @@ static int cg_scalars_body(const duite_call *call, const struct cg_scalars_field
         add_parts(flow, on->part, dots);
     }
     if (on->motion_next)
-        dots[SOLVE_QQ] += move(flow, on);
+        dots[SOLVE_QQ] += move_patches(flow, on);
     return next_scalars(call, dots, on->scalars, on->scalars_next);
 }

@@ -85,7 +85,7 @@ static struct solve_rows rows_of(phys_vec *dv, phys_vec *r, phys_vec *p, phys_ve
 /* ---- The begin of a solve ---- */
 
 /* Makes the vectors, and the halo that neighbours read. */
-static void begin(struct pass *pass, double *ghosts, size_t n_ghosts)
+static void begin_solve(struct pass *pass, double *ghosts, size_t n_ghosts)
 {
     const struct flow_table *t = &pass->table;
     const struct solve_rows *rows = &pass->rows;
@@ -117,7 +117,7 @@ static int cg_start_body(const duite_call *call, const struct cg_start_fields *o
                               .factor = on->factor,
                               .basis = on->basis}};
     pass.m.table = &pass.table;
-    begin(&pass, (double *)on->ghosts, duite_count(call, FLOW_INDEX_OF(cg_start, ghosts)));
+    begin_solve(&pass, (double *)on->ghosts, duite_count(call, FLOW_INDEX_OF(cg_start, ghosts)));
     return 0;
 }
 
@@ -228,7 +228,7 @@ static void iterate(struct pass *pass, double dots[SOLVE_DOTS])
 }
 
 /* SOLVE_LAST, and the first half of SOLVE_AGAIN. Returns r.r. */
-static double finish(const struct pass *pass)
+static double finish_solve(const struct pass *pass)
 {
     const struct solve_rows *rows = &pass->rows;
     return solve_finish(pass->table.n, pass->scalars->alpha, rows->q, rows->p, rows->dv, rows->r);
@@ -260,7 +260,7 @@ static void multiply(struct pass *pass, double dots[SOLVE_DOTS])
 static void begin_again(struct pass *pass, double dots[SOLVE_DOTS])
 {
     const struct solve_rows *rows = &pass->rows;
-    finish(pass);
+    finish_solve(pass);
     solve_again(pass->table.n, rows->r, rows->p, rows->q);
     const size_t ghosts = (size_t)pass->table.n_ghosts + pass->ties.room.rows;
     memset(pass->z_ghosts, 0, 2 * ghosts * sizeof *pass->z_ghosts);
@@ -276,7 +276,7 @@ static void run_phase(struct pass *pass)
     if (phase == SOLVE_ON)
         iterate(pass, dots);
     else if (phase == SOLVE_LAST)
-        dots[SOLVE_RR] = finish(pass);
+        dots[SOLVE_RR] = finish_solve(pass);
     else if (phase == SOLVE_SHOW)
         flow_pack_halo(&pass->table, pass->rows.dv, pass->halo);
     else if (phase == SOLVE_CHECK || phase == SOLVE_OPEN)

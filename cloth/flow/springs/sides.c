@@ -3,6 +3,7 @@
 #include "cloth/flow/run/source.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -18,20 +19,15 @@ struct flow_side {
     const struct model_correction *correction;
 };
 
-static int compare_u32(uint32_t a, uint32_t b)
-{
-    return (a > b) - (a < b);
-}
-
 static int compare_sides(const void *va, const void *vb)
 {
     const struct flow_side *a = va, *b = vb;
-    int order = compare_u32(a->other, b->other);
+    int order = cloth_compare_u32(a->other, b->other);
     if (!order)
-        order = compare_u32(a->here, b->here);
+        order = cloth_compare_u32(a->here, b->here);
     if (!order)
-        order = compare_u32(a->there, b->there);
-    return order ? order : compare_u32(a->spring, b->spring);
+        order = cloth_compare_u32(a->there, b->there);
+    return order ? order : cloth_compare_u32(a->spring, b->spring);
 }
 
 /* The sides of the group: counted from the shapes, then put where their block's part goes on. */

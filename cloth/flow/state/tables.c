@@ -22,7 +22,8 @@ static void lay_list(const struct flow_table *t, int i, struct flow_room *room,
     list->material = flow_room_next(room, t->n_materials * kind->material_bytes);
 }
 
-static void lay(const struct flow_table *t, struct flow_room *room, struct flow_layout *layout)
+static void lay_table(const struct flow_table *t, struct flow_room *room,
+                      struct flow_layout *layout)
 {
     const size_t sides = (size_t)t->n_inner + t->n_cut;
 #define LAY(type, name, rows) layout->name = flow_room_next(room, (rows) * sizeof *layout->name);
@@ -36,7 +37,7 @@ size_t flow_table_bytes(const struct flow_table *table)
 {
     struct flow_room room = {0};
     struct flow_layout layout;
-    lay(table, &room, &layout);
+    lay_table(table, &room, &layout);
     return room.used;
 }
 
@@ -44,7 +45,7 @@ struct flow_layout flow_table_layout(const struct flow_table *table, void *memor
 {
     struct flow_room room = {.base = memory};
     struct flow_layout arrays;
-    lay(table, &room, &arrays);
+    lay_table(table, &room, &arrays);
     return arrays;
 }
 

@@ -4,8 +4,8 @@
 #include "bench/cg/cg.h"
 
 #include "bench/tasks/tasks.h"
-#include "cloth/flow/contact/certify.h"
 #include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"
@@ -92,7 +92,7 @@ int cg_stop(struct flow_state *run, bool begun, duite **rt, struct flow **flow, 
 
 static int end(struct cg_session *s, int code)
 {
-    if (*s->settings && model_certifies(&s->plan.model))
+    if (*s->settings && model_promise(&s->plan.model).apart)
         flow_contact_free_objects(&s->run);
     code = cg_stop(&s->run, *s->settings, &s->rt, &s->flow, code);
     free(s->solution);
@@ -126,7 +126,7 @@ static int begin(struct cg_session *s)
     if (!code)
         code = flow_initialise(&s->run);
     if (!code)
-        code = model_certifies(s->flow->model) ? touch(&s->run) : flow_step(&s->run);
+        code = model_promise(s->flow->model).apart ? touch(&s->run) : flow_step(&s->run);
     if (!code)
         code = duite_wait(s->rt);
     return tasks_code(code);

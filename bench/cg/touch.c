@@ -74,7 +74,7 @@ int cg_touch(void *context, struct serve_request *request, double *value)
     struct cg_session *s = context;
     const bool self = serve_number(request, "self") != 0;
     int code = cg_ready(s, request);
-    if (!code && !model_certifies(&s->plan.model))
+    if (!code && !model_promise(&s->plan.model).apart)
         return serve_fail("%s has no contacts", s->state.name);
     *value = 0;
     for (uint32_t b = 0; !code && b < s->flow->tables.n_blocks; b++)

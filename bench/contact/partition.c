@@ -5,7 +5,7 @@
  */
 #include "bench/ranks/sheet.h"
 
-#include "cloth/flow/contact/certify.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"

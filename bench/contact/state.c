@@ -5,8 +5,8 @@
 
 #include "bench/cg/cg.h"
 #include "bench/tasks/tasks.h"
-#include "cloth/flow/contact/certify.h"
 #include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"

@@ -162,7 +162,7 @@ static void open_outputs(struct run *run, struct cloth_error *error)
                         "written into the folder of --output; there is none\n");
     if (options->output)
         room_check(run->phases.n, run->phases.models, run->flow, options->output, error);
-    if (!error->code && model_certifies(run->model))
+    if (!error->code && model_promise(run->model).apart)
         start_check(run->model, run->flow, &run->apart, options->scene, error);
     if (!error->code)
         start_welds(run->model, run->flow, &run->apart, options->scene, error);
@@ -212,7 +212,7 @@ static void begin_phase(struct run *run, struct cloth_error *error)
                    "%s: its probes have other columns than those of the first phase",
                    run->options->scene);
     free(columns);
-    if (!error->code && model_certifies(run->model))
+    if (!error->code && model_promise(run->model).apart)
         start_check(run->model, run->flow, &run->apart, run->options->scene, error);
     if (!error->code)
         start_welds(run->model, run->flow, &run->apart, run->options->scene, error);

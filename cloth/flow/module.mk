@@ -54,23 +54,23 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/pins/sliders.h \
     cloth/flow/contact/body.c \
     cloth/flow/contact/body.h \
-    cloth/flow/contact/certify.c \
-    cloth/flow/contact/certify.h \
+    cloth/flow/contact/certified.c \
     cloth/flow/contact/contact.h \
     cloth/flow/contact/cut.c \
     cloth/flow/contact/cut_run.h \
     cloth/flow/contact/force.c \
     cloth/flow/contact/index.c \
-    cloth/flow/contact/maps.c \
-    cloth/flow/contact/maps.h \
+    cloth/flow/contact/image.c \
+    cloth/flow/contact/image.h \
     cloth/flow/contact/meet.c \
     cloth/flow/contact/meet_shape.c \
     cloth/flow/contact/memory.c \
+    cloth/flow/contact/mode.h \
+    cloth/flow/contact/modes.c \
     cloth/flow/contact/pairs.c \
     cloth/flow/contact/pick.c \
     cloth/flow/contact/project.c \
-    cloth/flow/contact/repel.c \
-    cloth/flow/contact/repel.h \
+    cloth/flow/contact/repulsion.c \
     cloth/flow/contact/rows.c \
     cloth/flow/contact/skin.c \
     cloth/flow/contact/skin.h \

@@ -46,6 +46,12 @@ struct model_word {
     const char *word; /* NULL ends a list */
     int value;
 };
+static inline const char *model_word_of(const struct model_word *word, int value)
+{
+    while (word->word && word->value != value)
+        word++;
+    return word->word;
+}
 
 /* A `place` is where the scene says a thing, for messages: "scene.yaml:4:11", or an option; NULL:
  * it does not say. */

@@ -162,53 +162,7 @@ const struct model_scheme model_schemes[] = {INTEGRATORS(ROW_OF)};
 const struct model_word model_preconditioners[] = {PRECONDITIONERS(WORD_OF){0}};
 const struct model_conditioner model_conditioners[] = {PRECONDITIONERS(PARTS_OF)};
 
-const struct model_word model_contact_modes[] = {{"certified", MODEL_CONTACT_CERTIFIED},
-                                                 {"repulsion", MODEL_CONTACT_REPULSION},
-                                                 {"project", MODEL_CONTACT_PROJECT},
-                                                 {0}};
-
-bool model_feels_contact(const struct model *model)
-{
-    bool feels = false;
-    for (uint32_t i = 0; i < model->n_probes; i++) {
-        const struct model_probe *probe = model->probes + i;
-        feels = feels || probe->contact || probe->contact_total || probe->by_obstacle;
-    }
-    return feels && model_certifies(model);
-}
-
-const char *model_contact_name(const struct model *model)
-{
-    const struct model_word *word = model_contact_modes;
-    while (word->word && word->value != (int)model->contact.mode)
-        word++;
-    return word->word;
-}
-
-bool model_meets(const struct model *model, uint32_t cloth, uint32_t other)
-{
-    return !contact_are_apart(&model->contact.apart, cloth, other) &&
-           (cloth != other || model->contact.self);
-}
-
-double model_friction(const struct model *model, uint32_t cloth, uint32_t other)
-{
-    const bool is_cloth = other < model->n_cloths;
-    const uint32_t a = model->cloths[cloth].material;
-    const uint32_t b =
-        is_cloth ? model->cloths[other].material : model->n_materials + (other - model->n_cloths);
-    double friction = sqrt(model->materials[a].friction *
-                           (is_cloth ? model->materials[b].friction
-                                     : model->obstacles[other - model->n_cloths].friction));
-    for (uint32_t i = 0; i < model->contact.n_pairs; i++) {
-        const struct model_rub *pair = model->contact.pairs + i;
-        if ((pair->of[0] == a && pair->of[1] == b) || (pair->of[0] == b && pair->of[1] == a))
-            friction = pair->friction;
-    }
-    return friction;
-}
-
-static bool has_material(const struct model_cloth *cloth, uint32_t material)
+bool model_has_material(const struct model_cloth *cloth, uint32_t material)
 {
     bool found = cloth->material == material;
     for (uint32_t i = 0; i < cloth->n_regions; i++)
@@ -221,7 +175,7 @@ void model_parts(const struct model *model, uint32_t material, bool *triangles, 
     *triangles = *edges = false;
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct model_cloth *cloth = model->cloths + c;
-        const bool has = has_material(cloth, material);
+        const bool has = model_has_material(cloth, material);
         *triangles = *triangles || (has && cloth->mesh.n_triangles);
         *edges = *edges || (has && cloth->mesh.n_bare_edges);
     }
@@ -241,7 +195,7 @@ struct mesh_elastic model_elastic(const struct model *model, uint32_t material)
     if (m->model == MODEL_TRIANGLES)
         return (struct mesh_elastic){m->stretch, model_weft(m), m->shear, m->poisson};
     for (uint32_t c = 0; c < model->n_cloths; c++) {
-        if (!has_material(model->cloths + c, material) || !model->cloths[c].mesh.n_triangles)
+        if (!model_has_material(model->cloths + c, material) || !model->cloths[c].mesh.n_triangles)
             continue;
         const struct mesh_moduli moduli = model_moduli(m);
         const struct mesh_elastic one = mesh_elastic_of(model_rest(model->cloths + c), &moduli);
@@ -251,14 +205,6 @@ struct mesh_elastic model_elastic(const struct model *model, uint32_t material)
                                     common(all.shear, one.shear), common(all.poisson, one.poisson)};
     }
     return all;
-}
-
-const char *model_start_cure(const struct model *model)
-{
-    for (uint32_t c = 0; c < model->n_cloths; c++)
-        if (model->cloths[c].n_unjoined)
-            return "join what lies on another's place, by mesh: {weld: 1e-5}";
-    return "move them apart, or write contact: {untangle: on}";
 }
 
 void model_name_seam(const struct model_cloth *cloth, uint32_t seam, char text[MODEL_SEAM_NAME])

@@ -2,11 +2,11 @@
 #define CLOTH_MODEL_MODEL_H
 
 #include "cloth/base/error.h"
-#include "cloth/contact/apart.h"
 #include "cloth/contact/shape.h"
 #include "cloth/contact/soup.h"
 #include "cloth/mesh/elastic.h"
 #include "cloth/model/cloth.h"
+#include "cloth/model/contact.h"
 #include "cloth/model/hdf5.h"
 #include "cloth/physics/air.h"
 #include "cloth/physics/curve.h"
@@ -55,33 +55,6 @@ struct model_scheme {
     bool linear;     /* its step has one system, of the state that it begins with, if it takes one
                       * Newton step: dv of the step before is a guess of its dv */
     bool falls_back; /* a step that gained energy is made again by implicit Euler */
-};
-enum model_contact_mode {
-    MODEL_CONTACT_PROJECT,   /* vertices in an obstacle are put onto it after the step */
-    MODEL_CONTACT_REPULSION, /* springs push apart near features when a step begins */
-    MODEL_CONTACT_CERTIFIED  /* the solve knows of contacts; a step ends where all are certified */
-};
-/* The coefficient of two sides, in place of theirs. of: numbers of materials; those of obstacles
- * follow. */
-struct model_rub {
-    uint32_t of[2];
-    double friction;
-};
-struct model_contact {
-    enum model_contact_mode mode;
-    bool assumed;     /* it is the default of the scene */
-    bool idle;        /* there is nothing to touch: steps need not look */
-    bool self;        /* a cloth touches itself, too */
-    bool untangle;    /* a start that is not free is made so */
-    bool force;       /* frames have the force of contact on each vertex */
-    double thickness; /* m, > 0: of cloth that touches something, half of it on each side */
-    double friction;  /* coefficient, >= 0, of materials and obstacles that have none of their own;
-                         sides a and b rub on each other by sqrt(a b), */
-    uint32_t n_pairs; /* unless one of these is of them: the last counts */
-    struct model_rub *pairs;
-    struct contact_apart apart; /* sides that do not meet */
-    double stiffness;           /* repulsion: N/m, > 0; 0: as flow_repulsion_of finds */
-    double damping; /* repulsion: >= 0; part of the critical damping of a vertex of mean mass */
 };
 enum model_stop {
     MODEL_STOP_RELATIVE,
@@ -206,26 +179,6 @@ static inline bool model_is_linear(const struct model *model)
     return model_scheme(model)->linear && model->newton_steps <= 1;
 }
 
-/* True if its steps end where all contacts are certified. False if nothing can touch. */
-static inline bool model_certifies(const struct model *model)
-{
-    return model_is_implicit(model) && model->contact.mode == MODEL_CONTACT_CERTIFIED &&
-           !model->contact.idle;
-}
-
-/* The end of a sentence that refuses something with certified contact: how to do without it; empty
- * if the scene chose it. */
-static inline const char *model_contact_cure(const struct model *model)
-{
-    return model->contact.assumed
-               ? "; contact is certified by default in this scene, contact: {mode: project} is "
-                 "the way without"
-               : "";
-}
-
-/* Likewise for a start that certified contact cannot take: the remedy. */
-const char *model_start_cure(const struct model *model);
-
 /* The area of a cloth at rest, m^2; while it has its mesh. */
 static inline double model_area(const struct model_cloth *cloth)
 {
@@ -237,18 +190,10 @@ static inline double model_disc(const struct model_drape *drape)
     return 3.14159265358979323846 * drape->radius * drape->radius;
 }
 
-/* True if a probe reports the force of contact. On the rank that has the probes. */
-bool model_feels_contact(const struct model *model);
-
-static inline bool model_repels(const struct model *model)
-{
-    return model->contact.mode == MODEL_CONTACT_REPULSION;
-}
-
 /* True if the run finds features of cloth that are near each other or near an obstacle. */
 static inline bool model_seeks(const struct model *model)
 {
-    return model_certifies(model) || model_repels(model);
+    return model_promise(model).near;
 }
 
 /* True if its solves are filtered by more than points: by sliders. */
@@ -264,11 +209,6 @@ static inline bool model_follows(const struct model *model)
         follows = follows || model->motions[i].follow;
     return follows;
 }
-
-/* True if a cloth meets another side of contact.apart: an obstacle, another cloth, or itself. The
- * coefficient by which the two rub on each other. On the rank that has the cloths. */
-bool model_meets(const struct model *model, uint32_t cloth, uint32_t other);
-double model_friction(const struct model *model, uint32_t cloth, uint32_t other);
 
 /* True if an obstacle moves: two of its key frames differ. */
 bool model_obstacles_move(const struct model *model);
@@ -289,7 +229,7 @@ bool model_is_guarded(const struct model *model);
  * corrected. */
 static inline bool model_keeps(const struct model *model)
 {
-    return model->halving || model->correction_rounds || model_certifies(model) ||
+    return model->halving || model->correction_rounds || model_promise(model).apart ||
            (model_scheme(model)->falls_back && model_is_guarded(model));
 }
 
@@ -320,8 +260,6 @@ uint32_t model_patches(const struct model *model, uint32_t n_blocks);
 /* Their names in scenes. */
 extern const struct model_word model_integrators[];
 extern const struct model_word model_preconditioners[];
-extern const struct model_word model_contact_modes[];
-const char *model_contact_name(const struct model *model);
 
 /* The shape at rest of a cloth; the modulus along the weft. */
 static inline const struct mesh *model_rest(const struct model_cloth *cloth)
@@ -392,6 +330,9 @@ model_material(const struct model *model, const struct model_cloth *cloth, uint3
  * material, its mesh is no grid, or cloths whose cells make different ones. Before the meshes are
  * freed. */
 struct mesh_elastic model_elastic(const struct model *model, uint32_t material);
+
+/* True if the cloth or a region of it is of the material, by number. */
+bool model_has_material(const struct model_cloth *cloth, uint32_t material);
 
 /* Finds whether cloths that have the material, by number, have triangles, and edges without
  * triangles. */

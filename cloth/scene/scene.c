@@ -7,6 +7,19 @@
 #include "cloth/scene/schema/fabrics.h"
 #include "cloth/scene/yaml/edit.h"
 
+static scene_build_step *const steps[] = {scene_build_phases,        scene_build_world,
+                                          scene_build_cloths,        scene_build_check_obstacles,
+                                          scene_build_sides,         scene_build_contact,
+                                          scene_build_check_contact, scene_build_probes,
+                                          scene_build_contact_idle,  scene_build_hdf5,
+                                          scene_build_drape,         scene_build_joints,
+                                          scene_build_welds,         scene_build_mesh_welds,
+                                          scene_build_seams,         scene_build_pieces,
+                                          scene_build_short_edges,   scene_build_folds,
+                                          scene_build_girths,        scene_build_warn_seams,
+                                          scene_build_unusual,       scene_build_settings,
+                                          scene_build_needs};
+
 static int read_tree(struct model *model, struct scene_tree *tree, uint32_t phase,
                      struct cloth_error *error)
 {
@@ -17,52 +30,8 @@ static int read_tree(struct model *model, struct scene_tree *tree, uint32_t phas
         code = scene_check(model, tree, error);
     if (!code)
         code = scene_build_file(model, tree->path, error);
-    if (!code)
-        code = scene_build_phases(model, error);
-    if (!code)
-        code = scene_build_world(model, tree, error);
-    if (!code)
-        code = scene_build_cloths(model, tree, error);
-    if (!code)
-        code = scene_build_check_obstacles(model, tree, error);
-    if (!code)
-        code = scene_build_sides(model, tree, error);
-    if (!code)
-        scene_build_contact(model, tree);
-    if (!code)
-        code = scene_build_check_contact(model, tree, error);
-    if (!code)
-        code = scene_build_probes(model, tree, error);
-    if (!code)
-        scene_build_contact_idle(model);
-    if (!code)
-        code = scene_build_hdf5(model, tree, error);
-    if (!code)
-        code = scene_build_drape(model, tree, error);
-    if (!code)
-        code = scene_build_joints(model, tree, error);
-    if (!code)
-        code = scene_build_welds(model, tree, error);
-    if (!code)
-        code = scene_build_mesh_welds(model, tree, error);
-    if (!code)
-        code = scene_build_seams(model, tree, error);
-    if (!code)
-        code = scene_build_pieces(model, tree, error);
-    if (!code)
-        code = scene_build_short_edges(model, tree, error);
-    if (!code)
-        code = scene_build_folds(model, tree, error);
-    if (!code)
-        code = scene_build_girths(model, tree, error);
-    if (!code)
-        code = scene_build_warn_seams(model, tree, error);
-    if (!code)
-        code = scene_build_idle(model, tree, error);
-    if (!code)
-        code = scene_build_unusual(model, tree, error);
-    if (!code)
-        code = scene_build_settings(model, tree, error);
+    for (size_t i = 0; i < sizeof steps / sizeof *steps && !code; i++)
+        code = steps[i](model, tree, error);
     return code;
 }
 

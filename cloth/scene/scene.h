@@ -30,4 +30,8 @@ int scene_read_phases(struct model **models, uint32_t *n, const char *path, size
 /* Prints every key of a scene with its kind, unit, range and default, one a line. Local. */
 void scene_print_keys(FILE *file);
 
+/* The same in Markdown, with what each key does in full and with examples: the page docs/scene.md
+ * without its opening. Local. */
+void scene_print_page(FILE *file);
+
 #endif

@@ -190,7 +190,7 @@ ok "frames of all phases are what the disk has room for" room
 warns() {
     run --output frames --set contact.thickness=0.002 --set "phases=[{name: one}, {name: two, set: {integrator: explicit_euler, solver.patches: 2}}]" 2> said
     cat said
-    test "$(grep -c 'contact.thickness means nothing' said)" = 1 && grep -q "^duite-cloth: warning: phase 'two': .*solver means nothing: explicit steps" said
+    test "$(grep -c 'contact.thickness means nothing' said)" = 1 && grep -q "^duite-cloth: warning: phase 'two': .*solver means nothing: it needs integrator" said
 }
 ok "a warning names a later phase, one of both is said once" warns
 

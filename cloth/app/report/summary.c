@@ -172,7 +172,7 @@ static void add_contact(struct output_report *json, const struct summary *summar
     output_report_integer(json, "contact_pairs", report->contact_pairs);
     output_report_integer(json, "contact_solves", report->contact_solves);
     output_report_number(json, "contact_solves_mean",
-                         model_certifies(summary->model) ? summary_solves_mean(report) : NAN);
+                         model_promise(summary->model).apart ? summary_solves_mean(report) : NAN);
     output_report_integer(json, "contact_cuts", report->contact_cuts);
     output_report_number(json, "contact_cut_momentum", report->contact_cut_momentum);
     output_report_integer(json, "contact_cut_run", report->contact_cut_run);

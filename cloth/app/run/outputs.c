@@ -78,7 +78,7 @@ static int open_forces(struct outputs *to, const struct model *model, const stru
                        const uint64_t *n_frames, struct cloth_error *error)
 {
     const char *folder = to->options->output;
-    return model->contact.force && model_certifies(model)
+    return model_shows_contact(model)
                ? output_forces_open(&to->forces, folder, (uint32_t)flow_vertices(flow), n_frames,
                                     to->settler, error)
                : output_forces_forget(folder, error);

@@ -90,11 +90,6 @@ static int check_obstacles(const struct comparison *of)
     return same ? CLOTH_OK : differs(of, "other obstacles, or motions about other points,");
 }
 
-static bool writes_forces(const struct model *model)
-{
-    return model->contact.force && model_certifies(model);
-}
-
 static bool same_hdf5(const struct model_hdf5 *a, const struct model_hdf5 *b)
 {
     return a->velocity == b->velocity && a->block == b->block && a->rank == b->rank &&
@@ -111,7 +106,7 @@ int phases_check(const struct model *first, const struct model *model, uint32_t 
         return differs(&of, "another name of the scene");
     if (first->fps < model->fps || first->fps > model->fps)
         return differs(&of, "another time.fps");
-    if (writes_forces(first) != writes_forces(model))
+    if (model_shows_contact(first) != model_shows_contact(model))
         return differs(&of, "another contact.force, or contact that is not certified in both,");
     if (!same_hdf5(&first->hdf5, &model->hdf5))
         return differs(&of, "another output.hdf5");

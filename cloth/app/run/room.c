@@ -39,7 +39,7 @@ static double output_bytes(const struct extent *all, const struct model *model,
     double columns = header ? 1 : 0;
     for (; header && *header; header++)
         columns += *header == ',';
-    const double vectors = model->contact.force && model_certifies(model) ? 2 : 1;
+    const double vectors = model_shows_contact(model) ? 2 : 1;
     return all->frames * (vectors * 3 * sizeof(float) * (double)flow_vertices(flow) + INDEX +
                           outputs_hdf5_bytes(model)) +
            all->steps * columns * NUMBER + all->colours;

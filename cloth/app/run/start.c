@@ -207,7 +207,7 @@ int start_untangle(struct model *model, struct flow **flow, int ranks, bool says
 {
     struct tangle tangle = {0};
     *result = (struct untangle_result){0};
-    if (!model_certifies(model) || !model->contact.untangle)
+    if (!model_promise(model).apart || !model->contact.untangle)
         return CLOTH_OK;
     int code = make_room(&tangle, model, error);
     if (!code) {

@@ -306,7 +306,7 @@ int start_welds(const struct model *model, const struct flow *flow,
                 const struct contact_apart *apart, const char *scene, struct cloth_error *error)
 {
     struct motion motion = {.model = model, .apart = apart};
-    if (!model_certifies(model) || model->contact.untangle || !flow_unwelded(flow))
+    if (!model_promise(model).apart || model->contact.untangle || !flow_unwelded(flow))
         return CLOTH_OK;
     const int code = certify(&motion, flow, scene, error);
     free_all(&motion);

@@ -3,6 +3,7 @@
 #include "cloth/flow/checkpoint/checkpoint.h"
 
 #include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/mode.h"
 
 #include <math.h>
 #include <string.h>
@@ -99,7 +100,7 @@ static bool has_meetings(const struct flow *flow, const struct flow_saved *saved
                          const struct flow_saved_side *side, const uint32_t *kept)
 {
     const uint32_t n_sides = saved->n_blocks + flow->model->n_obstacles;
-    if (saved->n_kept != (model_certifies(flow->model) ? saved->n_blocks : 0) ||
+    if (saved->n_kept != (flow_contact_mode(flow->model)->carries ? saved->n_blocks : 0) ||
         (saved->n_meetings && !model_seeks(flow->model)))
         return false;
     for (uint32_t i = 0; i < saved->n_meetings; i++)

@@ -5,7 +5,7 @@
 
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
-#include "cloth/flow/contact/repel.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
@@ -238,7 +238,7 @@ static int load_all(struct flow_state *state)
     for (uint32_t b = 0; b <= n_blocks && !code; b++) {
         const struct flow_block_args block = {b};
         args.block = b;
-        args.keeps = b < n_blocks && model_certifies(state->flow->model);
+        args.keeps = b < n_blocks && flow_contact_mode(state->flow->model)->carries;
         const size_t n = (size_t)(flow_saved_objects(state, b, refs) - refs);
         if (n)
             code = duite_fork_at(state->rt, 0, &flow_load_block, &args, n, refs);
@@ -259,10 +259,8 @@ int flow_resume_blocks(struct flow_state *state)
         code = flow_levels_initialise(state);
     if (!code && !model_is_filtered(model))
         code = flow_coarse_initialise(state);
-    if (!code && model_certifies(model))
-        code = flow_bodies_make(state);
-    if (!code && model_repels(model))
-        code = flow_repulsion_start(state);
+    if (!code)
+        code = flow_contact_resume(state);
     const int failed = duite_wait(state->rt); /* the bytes are not read any more */
     return code ? code : failed;
 }

@@ -3,7 +3,7 @@
  * all earlier frames and rows are written when the program gets the checkpoint. */
 #include "cloth/flow/checkpoint/checkpoint.h"
 
-#include "cloth/flow/state/bodies.h"
+#include "cloth/flow/contact/mode.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -95,7 +95,7 @@ static struct flow_saved describe_saved(const struct flow_state *state, bool fin
     saved.has_ties = tied->first != NULL;
     saved.n_others = tied->first ? tied->first[saved.n_blocks] : 0;
     saved.n_meetings = state->contact.meetings.n;
-    saved.n_kept = model_certifies(flow->model) ? saved.n_blocks : 0;
+    saved.n_kept = flow_contact_mode(flow->model)->carries ? saved.n_blocks : 0;
     saved.attempt = state->contact.attempt;
     saved.accepted = state->contact.accepted;
     saved.finished = finished;

@@ -3,6 +3,7 @@
 #include "cloth/flow/checkpoint/checkpoint.h"
 
 #include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/mode.h"
 
 #include <string.h>
 
@@ -81,7 +82,7 @@ duite_object *flow_saved_objects(const struct flow_state *state, uint32_t block,
     for (int field = from; field < to; field++)
         if (is_saved(model, field) && flow_fields[field].exists(state, of_run ? 0 : block))
             *refs++ = flow_field_object(state, (enum flow_field_id)field, of_run ? 0 : block);
-    if (!of_run && model_certifies(model))
+    if (!of_run && flow_contact_mode(model)->carries)
         *refs++ = contact->kept[block].list[contact->begin];
     return refs;
 }

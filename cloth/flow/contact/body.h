@@ -5,11 +5,11 @@
 
 #include "cloth/contact/body_skin.h"
 
-/* Bodies as blocks of cloth meet them, in runs whose contact is certified. Each obstacle that is a
- * body has a skin (cloth/contact/body_skin.h), in fields of the run that all ranks have:
- * `body_skins` the tables, `body_fans` a facet of each vertex, `body_points` where each vertex is
- * at the begin and at the end of a step, `body_boxes` the boxes of its way. In each the bodies come
- * in the order of the obstacles. */
+/* Bodies as blocks of cloth meet them, in runs that certify the ways of steps (mode.h). Each
+ * obstacle that is a body has a skin (cloth/contact/body_skin.h), in fields of the run that all
+ * ranks have: `body_skins` the tables, `body_fans` a facet of each vertex, `body_points` where each
+ * vertex is at the begin and at the end of a step, `body_boxes` the boxes of its way. In each the
+ * bodies come in the order of the obstacles. */
 
 /* Where an obstacle begins in these fields: bytes, vertices, points, bytes; for model->n_obstacles,
  * the end of the last one. Local. */
@@ -18,7 +18,7 @@ struct flow_body_place {
 };
 struct flow_body_place flow_body_place(const struct model *model, uint32_t obstacle);
 
-/* True if a scene has bodies that contact is certified with; if any of them moves or changes its
+/* True if a run has such bodies; if any of them moves or changes its
  * shape. Local. */
 bool flow_bodies_are_met(const struct model *model);
 bool flow_bodies_move(const struct model *model);

@@ -167,6 +167,11 @@ void flow_contact_end(const struct flow *flow, double from, double to,
 void flow_contact_ahead(const struct flow *flow, double from, double to,
                         const struct flow_contact *contact, struct contact_row *row);
 
+/* The difference of the velocities of both sides' points at a contact, tie i, as corners have them.
+ * Local. (rows.c) */
+void flow_contact_speed(const struct flow_ties *ties, const struct flow_view *view, uint32_t i,
+                        phys_vec *speed);
+
 /* N/m: the k of contact_row.h in a step of h. */
 double flow_contact_stiffness(const struct flow *flow, double h);
 

@@ -4,6 +4,7 @@
  * the same for every mapping. */
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/contact/skin.h"
 
 #include "cloth/contact/certificate.h"
@@ -20,6 +21,7 @@ struct meeting {
     const uint32_t *fan;      /* of the body (contact_body_opens) */
     const uint32_t *attached; /* by point of the first skin */
     bool leaves_out;          /* see flow_leaves_out */
+    bool sweeps;              /* as the mode does (mode.h) */
     struct contact_skin skin[2];
     struct contact_side side[2]; /* of a block that meets itself: both */
     struct flow_near *near;
@@ -254,7 +256,7 @@ static void fail(struct meeting *m, const struct contact_candidate *candidate,
 
 static enum contact_passing passing_of(const struct meeting *m, const struct corners *corners)
 {
-    if (!model_certifies(m->model))
+    if (!m->sweeps)
         return CONTACT_PASSES;
     return contact_pass(corners->pair, corners->x, corners->y, m->model->contact.thickness,
                         flow_contact_reach(m->model));
@@ -350,6 +352,7 @@ static int meet(const duite_call *call)
         .flow = flow_of(call),
         .model = flow_of(call)->model,
         .args = args,
+        .sweeps = flow_contact_mode(flow_of(call)->model)->sweeps,
         .leaves_out =
             flow_leaves_out(flow_of(call)->model, args->side[1] >= flow_of(call)->tables.n_blocks),
         .near = (struct flow_near *)(list + 1),

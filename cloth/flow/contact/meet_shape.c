@@ -5,6 +5,7 @@
  * box. */
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/contact/skin.h"
 
 #include "cloth/contact/solid.h"
@@ -18,6 +19,7 @@ struct meeting {
     const struct contact_shape *shape;
     struct contact_pose pose;
     struct contact_solid solid;
+    bool sweeps;              /* as the mode does (mode.h) */
     uint32_t obstacle;        /* behind all cloths */
     const uint32_t *attached; /* by point of the skin */
     struct contact_skin skin;
@@ -142,13 +144,13 @@ static void list_triangle(struct meeting *m, uint32_t triangle, const phys_vec y
     contact_solid_nearest(&m->solid, CONTACT_END, y, &on);
     if (on.feature < CONTACT_ON_EDGE || !(on.gap < flow_contact_reach(m->model)))
         return;
-    if (!model_certifies(m->model) && !(on.gap > 0))
+    if (!m->sweeps && !(on.gap > 0))
         return; /* its corners know the way out */
     memset(&near, 0, sizeof near);
     describe(m, 3, m->skin.corner[triangle], y, &on, &near);
     near.contact.feature[0] = triangle;
     near.contact.feature[1] = FLOW_ON_TRIANGLE;
-    if (!model_certifies(m->model))
+    if (!m->sweeps)
         near.contact.row.slip = (m->args->from - m->args->to) * on.velocity;
     append(m, &near);
 }
@@ -289,6 +291,7 @@ static int meet(const duite_call *call)
     struct flow_list *list = duite_out(call, AT_LIST, struct flow_list);
     struct meeting m = {.flow = flow,
                         .model = flow->model,
+                        .sweeps = flow_contact_mode(flow->model)->sweeps,
                         .args = args,
                         .obstacle = flow->n_cloths + (args->side[1] - flow->tables.n_blocks),
                         .shape = shape,
@@ -305,7 +308,7 @@ static int meet(const duite_call *call)
     m.attached = skin.attached;
     m.x = duite_in(call, AT_POINTS, phys_vec);
     m.y = m.x + m.skin.n_points;
-    if (model_certifies(m.model))
+    if (m.sweeps)
         look(&m);
     else
         look_at_places(&m);

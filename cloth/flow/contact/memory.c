@@ -1,7 +1,7 @@
 /* Memory of contacts besides fields: the main program's, and objects whose number or size changes
  * during the run. */
-#include "cloth/flow/contact/certify.h"
 #include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/run/setup.h"
 
 #include "cloth/base/memory.h"

@@ -7,6 +7,7 @@
 #include "cloth/flow/checkpoint/checkpoint.h"
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/contact/skins.h"
 #include "cloth/flow/run/step.h"
 
@@ -84,13 +85,14 @@ static bool sides_meet(const struct flow_state *state, uint32_t a, uint32_t b)
     return meet;
 }
 
-/* True if a block meets an obstacle by its own triangles and vertices: bodies of certified contact
- * have skins instead. */
+/* True if a block meets an obstacle by its own triangles and vertices: bodies may have skins
+ * instead. */
 static bool is_shape(const struct flow_state *state, uint32_t side)
 {
     const struct model *model = state->flow->model;
     const uint32_t n_blocks = state->flow->tables.n_blocks;
-    return side >= n_blocks && !(model_certifies(model) && model->obstacles[side - n_blocks].body);
+    return side >= n_blocks &&
+           !(flow_contact_mode(model)->sweeps && model->obstacles[side - n_blocks].body);
 }
 
 /* Block a and any side: at some time of the step. */
@@ -332,8 +334,8 @@ static void place_shapes(struct flow_state *state)
 
 int flow_contact_look(struct flow_state *state, struct flow_seen *seen)
 {
-    int code =
-        model_certifies(state->flow->model) ? flow_skins_refit(state) : flow_skins_place(state);
+    int code = flow_contact_mode(state->flow->model)->sweeps ? flow_skins_refit(state)
+                                                             : flow_skins_place(state);
     if (!code)
         code = get_roots(state);
     place_shapes(state);

@@ -1,7 +1,8 @@
 /* The filter by which sliders hold rows in the solve, and the projection out of obstacles after it.
  */
 #include "cloth/contact/meet.h"
-#include "cloth/flow/contact/maps.h"
+#include "cloth/flow/contact/image.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/pins/sliders.h"
 #include "cloth/flow/run/step.h"
 
@@ -138,13 +139,31 @@ static int collide_body(const duite_call *call, const struct collide_fields *on)
     return flow_check(call, t, on->args, on->x, "position", on->status);
 }
 
-/* Bodies with frames move here: tasks of the step before are done, since it has been settled. */
-int flow_contact_project(struct flow_state *state)
+double flow_project_move(struct flow_state *state)
 {
-    struct flow_step_args args = flow_attempt_args(state);
     const struct model *model = state->flow->model;
+    const struct flow_step_args args = flow_attempt_args(state);
     const double from = args.begin * model->h / FLOW_TICKS;
     contact_bodies_move(&model->bodies, from, args.time);
-    const int code = flow_maps_draw(state, from);
-    return code ? code : flow_fork_each(state, &flow_kernel_collide, &args);
+    return from;
 }
+
+int flow_project(struct flow_state *state)
+{
+    struct flow_step_args args = flow_attempt_args(state);
+    return flow_fork_each(state, &flow_kernel_collide, &args);
+}
+
+static int settle_project(struct flow_state *state)
+{
+    flow_project_move(state);
+    return flow_project(state);
+}
+
+static bool has_obstacles(const struct model *model)
+{
+    return model->n_obstacles > 0;
+}
+
+const struct flow_contact_mode flow_contact_project = {.is = has_obstacles,
+                                                       .settle = settle_project};

@@ -5,9 +5,8 @@
  * records and have made room.
  *
  * In reading order: finding them, the record of a block, its table, their part of a system. */
-#include "cloth/contact/repulse.h"
 #include "cloth/flow/contact/contact.h"
-#include "cloth/flow/contact/repel.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"
 
@@ -187,6 +186,7 @@ static void write_rows(const struct flow *flow, const struct flow_step_args *ste
                        struct contact_row *row, uint32_t *obstacle)
 {
     const size_t room = ties->room.ties ? ties->room.ties : 1;
+    const struct flow_contact_mode *mode = flow_contact_mode(flow->model);
     memset(row, 0, room * sizeof *row);
     memset(obstacle, 0, room * sizeof *obstacle);
     for (uint32_t i = 0; i < ties->n; i++) {
@@ -196,10 +196,8 @@ static void write_rows(const struct flow *flow, const struct flow_step_args *ste
         if (contact->side[1] >= flow->tables.n_blocks)
             obstacle[i] = 1 + contact->side[1] - flow->tables.n_blocks;
         row[i] = contact->row;
-        if (!model_certifies(flow->model))
-            continue;
-        contact_row_begin(row + i, flow_contact_stiffness(flow, step->h), step->h);
-        flow_contact_ahead(flow, step->time - step->h, step->time, contact, row + i);
+        if (mode->row)
+            mode->row(flow, step, contact, row + i);
     }
 }
 
@@ -296,74 +294,35 @@ static void spread(const struct flow_ties *ties, uint32_t i, double scale, const
             y[ties->corner[i][k]] += scale * ties->weight[i][k] * *force;
 }
 
-/* The difference of the velocities of both sides' points, as corners have them. */
-static void find_speed(const struct flow_ties *ties, const struct flow_view *view, uint32_t i,
-                       phys_vec *speed)
+void flow_contact_speed(const struct flow_ties *ties, const struct flow_view *view, uint32_t i,
+                        phys_vec *speed)
 {
     *speed = (phys_vec){0};
     for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
         *speed += ties->weight[i][k] * *flow_tie_v(ties, view, ties->corner[i][k]);
 }
 
-/* The force of a contact, and its value in a step of h. against: the part of the value that resists
- * the point's motion, without the part that resists its speed. */
-struct pressed {
-    phys_vec force, value, against;
-};
-
-/* The second side's motion is part of the slip, and so of the speed. Without velocities the speed
- * is the way from the row's origin, over h. */
-static void repel(const struct flow *flow, const struct flow_ties *ties,
-                  const struct flow_view *view, double h, uint32_t i, const phys_vec *point,
-                  struct pressed *to)
-{
-    const struct contact_row *row = view->contact_rows + i;
-    const struct contact_spring spring = flow_repulsion_of(flow, h);
-    struct contact_repelled repelled;
-    const double rate = h > 0 ? 1 / h : 0;
-    phys_vec speed = rate * (*point - row->origin);
-    if (view->v)
-        find_speed(ties, view, i, &speed);
-    speed += rate * row->slip;
-    contact_repel(&spring, row, point, &speed, &repelled);
-    to->force = repelled.force;
-    to->against = sqrt(repelled.stiffness) * row->normal;
-    contact_repelled_value(&repelled, &row->normal, h, &to->value);
-}
-
-/* Moves a point to its place beside a second side that still has the part `left` of its way through
- * the step. */
-static void shift(const struct contact_row *row, double left, phys_vec *point)
-{
-    *point -= left * row->slip;
-}
-
 /* ahead: s, for which corners move on at their velocities. left: part of the step's time. */
-static void press(const struct flow *flow, const struct flow_ties *ties,
-                  const struct flow_view *view, double h, double ahead, double left, uint32_t i,
-                  struct pressed *to)
+static void press(const struct flow_contact_mode *mode, const struct flow *flow,
+                  const struct flow_ties *ties, const struct flow_view *view, double h,
+                  double ahead, double left, uint32_t i, struct flow_pressed *to)
 {
     phys_vec point;
     find_point(ties, view, ahead, i, &point);
-    if (model_certifies(flow->model)) {
-        contact_row_linearise(view->contact_rows + i, &point, &to->force, &to->value);
-        to->against = to->value;
-    } else {
-        shift(view->contact_rows + i, left, &point);
-        repel(flow, ties, view, h, i, &point, to);
-    }
+    mode->press(flow, ties, view, h, left, i, &point, to);
 }
 
 void flow_contact_force(const struct flow *flow, const struct flow_view *view,
                         const struct flow_step_args *step, phys_vec *f)
 {
     const double left = step->h > 0 ? (step->time - step->now) / step->h : 0;
+    const struct flow_contact_mode *mode = flow_contact_mode(flow->model);
     const struct flow_ties ties = flow_ties_open(view->tie_table);
     for (uint32_t i = 0; i < ties.n; i++) {
-        struct pressed pressed;
+        struct flow_pressed pressed;
         if (ties.of[i] < flow->n_ties)
             continue;
-        press(flow, &ties, view, step->h, 0, left, i, &pressed);
+        press(mode, flow, &ties, view, step->h, 0, left, i, &pressed);
         spread(&ties, i, 1, &pressed.force, f);
     }
 }
@@ -392,7 +351,7 @@ static void resist(const struct flow_ties *ties, const struct flow_view *view, d
 {
     const phys_vec three = {1, 1, 1, 0};
     phys_vec speed, lost;
-    find_speed(ties, view, i, &speed);
+    flow_contact_speed(ties, view, i, &speed);
     solve_spring_times(value, &speed, &lost);
     lost *= three;
     spread(ties, i, -h * h, &lost, b);
@@ -401,12 +360,13 @@ static void resist(const struct flow_ties *ties, const struct flow_view *view, d
 void flow_contact_system(const struct flow *flow, const struct flow_view *view, double h,
                          double push, phys_vec *b, phys_vec *value)
 {
+    const struct flow_contact_mode *mode = flow_contact_mode(flow->model);
     const struct flow_ties ties = flow_ties_open(view->tie_table);
     for (uint32_t i = 0; i < ties.n; i++) {
-        struct pressed pressed;
+        struct flow_pressed pressed;
         if (ties.of[i] < flow->n_ties)
             continue;
-        press(flow, &ties, view, h, b ? push : 0, 0, i, &pressed);
+        press(mode, flow, &ties, view, h, b ? push : 0, 0, i, &pressed);
         if (b && push > 0)
             spread(&ties, i, h, &pressed.force, b);
         else if (b)

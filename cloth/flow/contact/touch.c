@@ -2,6 +2,7 @@
  * hands load and slip over to the pair of features that follows. A list is sorted by its keys, so
  * that it does not depend on the order of finding. */
 #include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/run/step.h"
 
 #include <float.h>
@@ -23,6 +24,7 @@ enum { AT_BEFORE, AT_AFTER, AT_POINTS, AT_ENERGY, AT_MEETINGS };
 struct touching {
     const duite_call *call;
     const struct touch_args *args;
+    bool carries; /* as the mode does (mode.h) */
     const struct flow_contact *before;
     size_t n_before;
     struct flow_contact *after;
@@ -257,7 +259,7 @@ static void end_accept(struct touching *t)
 {
     qsort(t->after, t->n, sizeof *t->after, compare);
     t->n = flow_contact_drop_aslant(t->after, t->n, t->used + t->n_before);
-    if (!model_certifies(flow_of(t->call)->model))
+    if (!t->carries)
         t->n = flow_contact_drop_repeated(t->after, t->n);
     for (size_t i = 0; i < t->n; i++) {
         const size_t at = find_before(t, t->after + i);
@@ -312,10 +314,12 @@ static int touch(const duite_call *call)
     const struct touch_args *args = call->args;
     const struct flow_list *before = duite_in(call, AT_BEFORE, struct flow_list);
     struct flow_list *after = duite_out(call, AT_AFTER, struct flow_list);
+    const bool carries = flow_contact_mode(flow_of(call)->model)->carries;
     struct touching t = {.call = call,
                          .args = args,
                          .before = (const struct flow_contact *)(before + 1),
-                         .n_before = model_certifies(flow_of(call)->model) ? before->n : 0,
+                         .carries = carries,
+                         .n_before = carries ? before->n : 0,
                          .after = (struct flow_contact *)(after + 1)};
     t.used = calloc(t.n_before + args->room + 1, 1);
     if (!t.used)

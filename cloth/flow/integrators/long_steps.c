@@ -2,7 +2,7 @@
 #include "cloth/flow/integrators/integrator.h"
 
 #include "cloth/base/memory.h"
-#include "cloth/flow/contact/repel.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/state/state.h"
 
 #include <math.h>
@@ -30,9 +30,9 @@ static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
     const struct model *model = flow->model;
     const char *name = model_scheme(model)->name, *place = place_of_h(model);
     const double max = flow_limit_of(limit, model->integrator), turn = model->h * limit->omega;
-    const size_t size = sizeof flow->warning[4];
+    const size_t size = sizeof flow->warning[FLOW_WARN_STEP];
     if (!(max > 0))
-        snprintf(flow->warning[4], size,
+        snprintf(flow->warning[FLOW_WARN_STEP], size,
                  "%.200s: no step is short enough for %s without damping: the fastest vibration "
                  "(up to %g rad/s, at vertex %u of cloth '%.60s', counted from 1) can grow by %g "
                  "%% in each of %g s",
@@ -40,7 +40,7 @@ static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
                  100 * growth_of(turn), model->h);
     else if (model->h > max)
         snprintf(
-            flow->warning[4], size,
+            flow->warning[FLOW_WARN_STEP], size,
             "%.200s: steps of %g s are beyond the limit of %s, %g s: the fastest vibration (up "
             "to %g rad/s, at vertex %u of cloth '%.60s', counted from 1) can grow in each",
             place, model->h, name, max, limit->omega, limit->vertex + 1, limit->cloth->name);
@@ -50,13 +50,13 @@ static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
 static void warn_of_contacts(struct flow *flow)
 {
     const struct model *model = flow->model;
-    const struct contact_spring spring = flow_repulsion_of(flow, model->h);
+    const struct contact_spring spring = flow_contact_mode(model)->spring(flow, model->h);
     const double rate = FLOW_REPULSION_MOST / flow->vertex_mass;
     const struct flow_limit limit = {.omega = sqrt(rate * spring.stiffness),
                                      .along = rate * spring.damping};
     const double max = flow_limit_of(&limit, model->integrator);
-    if (!flow->warning[4][0] && flow->vertex_mass > 0 && model->h > max)
-        snprintf(flow->warning[4], sizeof flow->warning[4],
+    if (!flow->warning[FLOW_WARN_STEP][0] && flow->vertex_mass > 0 && model->h > max)
+        snprintf(flow->warning[FLOW_WARN_STEP], sizeof flow->warning[FLOW_WARN_STEP],
                  "%.200s: steps of %g s are beyond what contacts of stiffness %g N/m and damping "
                  "%g allow %s, %g s: what they push can bounce ever harder",
                  place_of_h(model), model->h, spring.stiffness, model->contact.damping,
@@ -68,7 +68,7 @@ static void warn_implicit(struct flow *flow, const struct flow_limit *limit)
     const struct model *model = flow->model;
     const double turn = model->h * limit->omega;
     if (turn > MAX_TURN)
-        snprintf(flow->warning[4], sizeof flow->warning[4],
+        snprintf(flow->warning[FLOW_WARN_STEP], sizeof flow->warning[FLOW_WARN_STEP],
                  "%.200s: in steps of %g s the cloth is %.1e times stiffer than its mass (vertex "
                  "%u of cloth '%.60s', counted from 1): solves can fail, and the run can take up "
                  "to 1024 times as "
@@ -104,8 +104,8 @@ static int find_density(const struct model *model, const struct model_cloth *clo
 /* Forces on a cloth that the matrix does not know: the first kind that has something to say. */
 static void warn_of_kinds(struct flow *flow, const struct element_sheet *sheet)
 {
-    char *text = flow->warning[5];
-    const size_t size = sizeof flow->warning[5];
+    char *text = flow->warning[FLOW_WARN_AIR];
+    const size_t size = sizeof flow->warning[FLOW_WARN_AIR];
     const size_t n = (size_t)snprintf(text, size, "%.200s: ", place_of_h(sheet->model));
     for (int i = 0; i < ELEMENT_KINDS && !text[n]; i++)
         if (element_kinds[i]->warn && element_kinds[i]->has(sheet->model, sheet->cloth))
@@ -117,7 +117,7 @@ static void warn_of_kinds(struct flow *flow, const struct element_sheet *sheet)
 static int warn_of_elements(struct flow *flow, struct cloth_error *error)
 {
     struct element_sheet sheet = {.model = flow->model};
-    for (uint32_t c = 0; c < flow->model->n_cloths && !flow->warning[5][0]; c++) {
+    for (uint32_t c = 0; c < flow->model->n_cloths && !flow->warning[FLOW_WARN_AIR][0]; c++) {
         sheet.cloth = flow->model->cloths + c;
         if (!element_parts(sheet.model, sheet.cloth))
             continue;
@@ -137,7 +137,7 @@ int flow_warn_of_steps(struct flow *flow, struct cloth_error *error)
         warn_implicit(flow, &limit);
     else
         warn_explicit(flow, &limit);
-    if (!model_is_implicit(flow->model) && model_repels(flow->model))
+    if (!model_is_implicit(flow->model) && flow_contact_mode(flow->model)->spring)
         warn_of_contacts(flow);
     return warn_of_elements(flow, error);
 }

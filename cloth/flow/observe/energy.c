@@ -2,6 +2,7 @@
  * between two blocks gives half of its own to each. Sums are contributions, so that they are the
  * same for any ranks and threads. */
 #include "cloth/flow/pins/sliders.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/run/step.h"
 
 #include "cloth/physics/energy.h"
@@ -86,7 +87,7 @@ int flow_energy_fork(struct flow_state *state)
 static int get_contact(struct flow_state *state, double *energy)
 {
     double held[FLOW_HELD] = {0};
-    const int code = model_certifies(state->flow->model)
+    const int code = flow_contact_mode(state->flow->model)->carries
                          ? duite_get(state->rt, state->run.contact_energy, held)
                          : DUITE_OK;
     *energy = held[FLOW_HELD_ALL];

@@ -1,6 +1,6 @@
 /* Everything that can fail on one rank alone is taken before the first task of a run. A rank that
  * lacks it does not leave: it says so in a task, and all ranks leave together. */
-#include "cloth/flow/contact/certify.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/solver/levels.h"

@@ -4,8 +4,7 @@
 
 #include "cloth/base/memory.h"
 #include "cloth/flow/checkpoint/checkpoint.h"
-#include "cloth/flow/contact/certify.h"
-#include "cloth/flow/contact/repel.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/run/step.h"
@@ -259,12 +258,8 @@ int flow_run_begin(struct flow_state *state)
 /* Starts a run that does not go on from a checkpoint. */
 static int start_anew(struct flow_state *state)
 {
-    int code = flow_initialise(state);
-    if (!code && model_certifies(state->flow->model))
-        code = flow_contact_start(state);
-    if (!code && model_repels(state->flow->model))
-        code = flow_repulsion_start(state);
-    return code;
+    const int code = flow_initialise(state);
+    return code ? code : flow_contact_start(state);
 }
 
 /* All steps, or until a stop that was asked for. */

@@ -2,7 +2,7 @@
  * by the notes of all blocks in its status. Decisions use only values that are equal on all
  * ranks. */
 #include "cloth/flow/checkpoint/checkpoint.h"
-#include "cloth/flow/contact/certify.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/run/step.h"
@@ -59,8 +59,8 @@ static void note_step(struct flow_state *state, const double status[FLOW_STATUS]
 static int give_up_step(struct flow_state *state, const struct flow_verdict *verdict)
 {
     const struct flow_step_args args = flow_attempt_args(state);
-    if (state->contact.failed && flow_contact_is_last(state))
-        return FLOW_PINCHED; /* certify.c said why */
+    if (state->contact.failed && flow_attempt_is_last(state))
+        return FLOW_PINCHED; /* contact said why */
     const bool above = verdict->max > 0 && verdict->after > verdict->max;
     snprintf(state->reason, sizeof state->reason,
              "step %llu: in %g s the largest stretch of an edge grows from %g to %g times its "

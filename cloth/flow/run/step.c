@@ -2,8 +2,7 @@
  * still run. First come stages that only read the state (its begin). Then the main program looks at
  * the status of the last step (settle.c). Then come stages that change the state. */
 #include "cloth/flow/run/step.h"
-#include "cloth/flow/contact/certify.h"
-#include "cloth/flow/contact/repel.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/state/state.h"
@@ -22,11 +21,6 @@ struct flow_step_args flow_attempt_args(const struct flow_state *state)
 
 /* ---- Conditions of stages ---- */
 
-static bool certifies(const struct model *model)
-{
-    return model_certifies(model);
-}
-
 static bool always(const struct model *model)
 {
     (void)model;
@@ -36,11 +30,6 @@ static bool always(const struct model *model)
 static bool is_driven(const struct model *model)
 {
     return model_is_driven(model);
-}
-
-static bool projects(const struct model *model)
-{
-    return model->n_obstacles > 0 && !model_seeks(model);
 }
 
 static bool corrects(const struct model *model)
@@ -77,9 +66,9 @@ static int fork_end(struct flow_state *state)
     return flow_integrators[state->flow->model->integrator].end(state);
 }
 
-/* The part of a step. PREDICT, SOLVE: its begin, which leaves x and v as they are,
- * unless velocities change first (flow_step_is_driven). */
-enum stage_part { PREDICT, SOLVE, CORRECT, CERTIFY, OBSERVE };
+/* The part of a step. Up to SOLVE: its begin, which leaves x and v as they are, unless velocities
+ * change first (flow_step_is_driven). A step that is solved again goes from PREDICT to CORRECT. */
+enum stage_part { TIE, PREDICT, SOLVE, CORRECT, SETTLE, OBSERVE };
 
 struct stage {
     const char *name;
@@ -90,6 +79,8 @@ struct stage {
 
 /* In order, also of their parts; docs/design/cloth.md lists them by name. A new stage is a row. */
 static const struct stage stages[] = {
+    {"choose ties", TIE, always, flow_ties_choose},
+    {"begin contact", TIE, always, flow_contact_begin},
     {"keep", PREDICT, keeps_first, flow_keep},
     {"prescribe velocities", PREDICT, is_driven, flow_pins_prescribe_velocity},
     {"begin", SOLVE, always, fork_begin},
@@ -97,8 +88,7 @@ static const struct stage stages[] = {
     {"integrate", CORRECT, always, fork_end},
     {"prescribe positions", CORRECT, is_driven, flow_pins_prescribe_position},
     {"correct", CORRECT, corrects, flow_correct},
-    {"project", CORRECT, projects, flow_contact_project},
-    {"certify", CERTIFY, certifies, flow_contact_settle},
+    {"settle contact", SETTLE, always, flow_contact_settle},
     {"stretch", OBSERVE, flow_is_judged, flow_stretch_fork},
     {"watch", OBSERVE, always, flow_watch},
     {"energy", OBSERVE, always, flow_energy_fork},
@@ -123,13 +113,7 @@ int flow_step_begin(struct flow_state *state)
     int code = duite_trace_step(state->rt, state->attempt.begin / FLOW_TICKS);
     if (!code)
         code = duite_set(state->rt, flow_field_object(state, FLOW_FIELD_status, 0), nothing);
-    if (!code)
-        code = flow_ties_choose(state);
-    if (!code && model_certifies(state->flow->model))
-        code = flow_contact_begin(state);
-    if (!code && model_repels(state->flow->model))
-        code = flow_repulsion_begin(state);
-    return code ? code : fork_stages(state, PREDICT, SOLVE);
+    return code ? code : fork_stages(state, TIE, SOLVE);
 }
 
 int flow_step_again(struct flow_state *state)

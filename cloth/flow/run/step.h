@@ -7,6 +7,11 @@
 
 /* Arguments of tasks of the step under way. */
 struct flow_step_args flow_attempt_args(const struct flow_state *state);
+/* True if no shorter step is possible: what fails in it ends the run. Local. */
+static inline bool flow_attempt_is_last(const struct flow_state *state)
+{
+    return state->attempt.length == 1 || !state->flow->model->halving;
+}
 /* Steps are judged by their stretch. */
 static inline bool flow_is_judged(const struct model *model)
 {
@@ -37,11 +42,9 @@ int flow_pins_prescribe_position(struct flow_state *state);
  * (correct.c). The first call records its round. */
 int flow_correct(struct flow_state *state);
 
-/* Fork contact (contact.c). The first makes the filter of a step's solves from x and v. The second
- * puts the filter on the right side and in the matrix. The last puts vertices out of obstacles
- * after the step. */
+/* Fork the filter of rows in the solve (contact/project.c). The first makes it from x and v. The
+ * second puts it on the right side and in the matrix. */
 int flow_contact_filter(struct flow_state *state, struct flow_step_args args);
 int flow_contact_constrain(struct flow_state *state);
-int flow_contact_project(struct flow_state *state);
 
 #endif

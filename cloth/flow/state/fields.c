@@ -2,7 +2,8 @@
 #include "cloth/flow/state/bodies.h"
 
 #include "cloth/flow/contact/body.h"
-#include "cloth/flow/contact/maps.h"
+#include "cloth/flow/contact/image.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/contact/skin.h"
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/observe/observe.h"
@@ -106,7 +107,7 @@ EXISTS(always,       true)
 EXISTS(kept,         model_keeps(model))
 EXISTS(implicit_run, model_is_implicit(model))
 EXISTS(explicit_run, !model_is_implicit(model))
-EXISTS(certified,    model_certifies(model))
+EXISTS(sweeps,       flow_contact_mode(model)->sweeps)
 EXISTS(feels,        flow_feels_contact(state))
 EXISTS(meets,        model_seeks(model))
 EXISTS(shows_force,  flow_shows_contact(state))

@@ -50,15 +50,15 @@ enum {
     /* before a step that may be given up */                                                       \
     X(kept_x,       ONE,     phys_vec,      4, rows,          kept,         work)                  \
     X(kept_v,       ONE,     phys_vec,      4, rows,          kept,         work)                  \
-    /* contact: skins (skin.h); before a certified step, and x of skins before and after           \
+    /* contact: skins (skin.h); before a step, and x of skins before and after                     \
      * it, and their boxes */                                                                      \
     X(skin,         ONE,     unsigned char, 1, skin_bytes,    meets,        derived)               \
-    X(kept_halo_x,  ONE,     phys_vec,      4, halo,          certified,    work)                  \
+    X(kept_halo_x,  ONE,     phys_vec,      4, halo,          sweeps,       work)                  \
     X(skin_x,       ONE,     phys_vec,      4, skin_points,   meets,        work)                  \
     X(skin_boxes,   ONE,     unsigned char, 1, skin_boxes,    meets,        work)                  \
     /* of each row: struct flow_cut_run (contact/cut.c) */                                         \
-    X(cut_runs,     ONE,     uint32_t,      4, rows,          certified,    state_field)           \
-    /* its strip of the maps of bodies (contact/maps.h) */                                         \
+    X(cut_runs,     ONE,     uint32_t,      4, rows,          sweeps,       state_field)           \
+    /* its strip of the maps of bodies (contact/image.h) */                                        \
     X(maps,         ONE,     unsigned char, 1, map_bytes,     mapped,       derived)               \
     /* velocity correction (springs/correct.c). X with 1 / m in the fourth lane; moves of x since the \
      * solve of the step. Rows that others need: X and 1 / m, x at the step's begin, S; x as it is. \
@@ -133,11 +133,11 @@ enum {
     X(slope,        ONE,     double,        1, one,           implicit_run, work)                  \
     X(roots,        ONE,     double,        FLOW_ROOT, sides,     meets,        work)              \
     X(tie_said,     SIZED,   unsigned char, 1, records_bytes, meets,        work)                  \
-    X(cut_counts,   ONE,     double,        FLOW_CUT_COUNTS, one, certified,    work)              \
-    X(cut_longest,  ONE,     double,        1, one,           certified,    work)                  \
+    X(cut_counts,   ONE,     double,        FLOW_CUT_COUNTS, one, sweeps,       work)              \
+    X(cut_longest,  ONE,     double,        1, one,           sweeps,       work)                  \
     X(obstacle_force, ONE,   phys_vec,      4, obstacles,     feels,        work)                  \
     X(contact_energy, ONE,   double,        FLOW_HELD, one, meets,        work)                    \
-    /* bodies that certified contact is with (contact/body.h) */                                   \
+    /* bodies by their skins (contact/body.h) */                                                   \
     X(body_skins,   ONE,     unsigned char, 1, body_skins,   meets_bodies, derived)                \
     X(body_fans,    ONE,     uint32_t,      1, body_fans,    meets_bodies, derived)                \
     X(body_points,  ONE,     phys_vec,      4, body_points,  meets_bodies, derived_of_bodies)      \

@@ -180,7 +180,7 @@ struct flow_bodies_now {
     uint32_t length; /* ticks, as of an attempt */
 };
 
-/* The maps of bodies as they are (cloth/flow/contact/maps.h). */
+/* The maps of bodies as they are (cloth/flow/contact/image.h). */
 struct flow_maps_now {
     bool drawn;  /* they are, */
     double from; /* at the end of a step that began then, s */
@@ -319,9 +319,7 @@ static inline bool flow_writes_probes(const struct flow_state *state)
 /* True if frames have the force of contact. True if frames or probes report it. */
 static inline bool flow_shows_contact(const struct flow_state *state)
 {
-    const struct model *model = state->flow->model;
-    return model->contact.force && model_certifies(model) && flow_shows(state) &&
-           state->output->force;
+    return model_shows_contact(state->flow->model) && flow_shows(state) && state->output->force;
 }
 static inline bool flow_feels_contact(const struct flow_state *state)
 {

@@ -1,5 +1,6 @@
 /* Parts are few: as many as a scene has garments and figures. */
 #include "cloth/scene/build/made.h"
+#include "cloth/scene/build/build.h"
 
 #include "cloth/base/memory.h"
 
@@ -9,11 +10,9 @@
 static struct scene_made_part *add_part(struct scene_made *made, const void *key, size_t size,
                                         struct cloth_error *error)
 {
-    struct scene_made_part **all = realloc(made->part, (made->n + 1) * sizeof *all);
-    if (!all) {
-        cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+    struct scene_made_part **all = scene_build_grow(made->part, made->n, 1, sizeof *all, error);
+    if (!all)
         return NULL;
-    }
     made->part = all;
     struct scene_made_part *part = all[made->n] = cloth_alloc(1, sizeof *part, error);
     if (!part)

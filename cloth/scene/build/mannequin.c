@@ -117,11 +117,8 @@ static int make_figure(struct building *building)
         return of ? CLOTH_OK : building->error->code;
     const int code = mannequin_make_rigged(&of->mesh, &of->rig, asked, NULL, &inner);
     of->is_made = !code;
-    if (code == CLOTH_E_MEMORY)
-        return cloth_fail(building->error, code, "%s: %s", building->tree->path, inner.text);
-    return code ? scene_tree_fail(building->tree, building->node, building->error, "mannequin: %s",
-                                  inner.text)
-                : CLOTH_OK;
+    return scene_build_blame(code, &inner, "mannequin", building->tree, building->node,
+                             building->error);
 }
 
 int scene_build_mannequin(const struct model *model, struct mesh *mesh,

@@ -80,7 +80,8 @@ static int check_fineness(const struct scene_pattern *asked, const struct scene_
                                     error);
 }
 
-static int read_file(struct garment_pattern *pattern, const char *path, struct cloth_error *inner)
+static int read_pattern_file(struct garment_pattern *pattern, const char *path,
+                             struct cloth_error *inner)
 {
     const int code = scene_read_pattern(pattern, path, inner);
     return code == CLOTH_E_IO ? CLOTH_E_INPUT : code; /* a scene that names no readable file */
@@ -145,7 +146,7 @@ static int take_pattern(struct garment_pattern *pattern, const struct scene_patt
     if (!path)
         return make_own(pattern, asked, tree, node, error, inner);
     const int code = refuse_measures(tree, node, error);
-    return code ? code : read_file(pattern, path, inner);
+    return code ? code : read_pattern_file(pattern, path, inner);
 }
 
 static void free_asked(struct scene_pattern *asked)

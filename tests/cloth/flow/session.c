@@ -1,6 +1,6 @@
 #include "tests/cloth/flow/session.h"
 
-#include "cloth/flow/contact/certify.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/state/kernels.h"
 #include "tests/support/unit.h"

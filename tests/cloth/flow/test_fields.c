@@ -2,8 +2,7 @@
  * what a step does with a field between two steps is what the table calls it. Work fields may be
  * anything when a step begins; a state field may not. */
 #include "cloth/flow/checkpoint/checkpoint.h"
-#include "cloth/flow/contact/certify.h"
-#include "cloth/flow/contact/repel.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"
@@ -191,10 +190,7 @@ static uint64_t run_changed(int kind, enum flow_life life, int only, change *how
     if (model_is_implicit(&s.setup.model))
         ck_assert_int_eq(flow_cg_record(&s.state), 0);
     ck_assert_int_eq(flow_initialise(&s.state), 0);
-    if (model_certifies(&s.setup.model))
-        ck_assert_int_eq(flow_contact_start(&s.state), 0);
-    if (model_repels(&s.setup.model))
-        ck_assert_int_eq(flow_repulsion_start(&s.state), 0);
+    ck_assert_int_eq(flow_contact_start(&s.state), 0);
     for (int step = 0; step < STEPS; step++) {
         for (int field = 0; field < FLOW_FIELDS_OF_ALL && step && how; field++)
             if (is_changed(&s, field, life, only))
@@ -268,7 +264,7 @@ START_TEST(what_the_main_program_knows_lasts)
     struct flow_checkpoint saved = {0};
     const struct flow_output output = {.save = take_checkpoint, .context = &saved};
     kinds[_i](&s);
-    if (model_certifies(&s.setup.model)) { /* its lists would have to be made first */
+    if (flow_contact_mode(&s.setup.model)->carries) { /* its lists would have to be made first */
         setup_free(&s.setup);
         return;
     }

@@ -1,6 +1,7 @@
 /* Every integrator against closed forms: free fall, a weight on a damped spring (its decay and
  * frequency are those that the scheme's own formula gives, and near those of the equation of
- * motion), and the order of convergence in h. Figures are printed. */
+ * motion), and the order of convergence in h. Figures are printed; the lines "# | " are rows of
+ * docs/accuracy.md, by tests/whole/test_integrators.sh. */
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 
@@ -188,6 +189,8 @@ START_TEST(order)
     const double measured = log2(coarse / fine);
     printf("# %s: error %.3e m at h = %g s, %.3e at half of it: order %.3f\n", scheme.name, coarse,
            h, fine, measured);
+    printf("# | a weight on a damped spring, `%s` | order %d | %.2f |\n", scheme.name, scheme.order,
+           measured);
     ck_assert_double_eq_tol(measured, scheme.order, 0.1);
 }
 END_TEST

@@ -122,7 +122,7 @@ START_TEST(contact_with_nothing)
     for (; n < 3 && idle_scenes[_i].set[n - 1]; n++)
         sets[n] = (struct scene_set){.text = idle_scenes[_i].set[n - 1]};
     struct model model = scene_read_right(scene_right, n, sets);
-    ck_assert_int_eq(model_certifies(&model), idle_scenes[_i].certifies);
+    ck_assert_int_eq(model_promise(&model).apart, idle_scenes[_i].certifies);
     ck_assert_int_eq((int)model.contact.mode, MODEL_CONTACT_CERTIFIED);
     model_free(&model);
 }
@@ -137,7 +137,7 @@ START_TEST(frictions)
                            "  cotton: {density: 0.2, stretch: 50}\n"
                            "contact: {friction: 0.25}\n");
     ck_assert_double_eq(model.contact.thickness, 0.001);
-    ck_assert(!model.contact.self && !model_certifies(&model));
+    ck_assert(!model.contact.self && !model_promise(&model).apart);
     ck_assert_double_eq(model.materials[0].friction, 0);
     ck_assert_double_eq(model.materials[1].friction, 0.25);
     ck_assert_double_eq(model.obstacles[0].friction, 0.25);

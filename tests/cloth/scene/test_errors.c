@@ -194,7 +194,8 @@ START_TEST(wrong_names)
         {"[{plane: {", "[{sphere: {name: a, centre: [0, 9, 0], radius: 1}}, {plane: {name: a, ",
          .error = ":11:79: a second obstacle is named 'a'; names must differ"},
         {"pins: [{vertices: [0, 3]}]", "pins: [{vertices: [0, 3], follow: flor}]",
-         .error = ":7:39: there is no obstacle 'flor': none has a name"});
+         .error = ":7:39: there is no obstacle 'flor'; there are 1, counted from 0, and none has a "
+                  "name"});
 }
 END_TEST
 

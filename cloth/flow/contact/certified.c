@@ -1,0 +1,327 @@
+/* A step with certified contact. Its solve knows the contacts that the step begins with. Then all
+ * pairs of features are certified on their way through the step. Those that fail become contacts,
+ * and the step is solved again from where it began. Pairs that still fail after a few solves are
+ * cut, so every pair of an accepted state is certified. Decisions use only counts that are equal on
+ * all ranks. */
+#include "cloth/flow/contact/body.h"
+#include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/mode.h"
+#include "cloth/flow/contact/skins.h"
+#include "cloth/flow/run/setup.h"
+#include "cloth/flow/run/step.h"
+#include "cloth/flow/state/room.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_SOLVES = 5, MAX_CUTS = 8 };
+/* Halve the step if more rows than this share of the contacts lose half of their way. */
+static const double TOO_MANY = 0.01;
+/* Cut at once if failing pairs are at most this share of the contacts. */
+static const double FEW = 0.001;
+
+double flow_contact_stiffness(const struct flow *flow, double h)
+{
+    const double inertia = 4 * flow->vertex_mass / (h * h);
+    return flow->contact_stiffness > inertia ? flow->contact_stiffness : inertia;
+}
+
+/* ---- Pairs that cannot be kept apart ---- */
+
+/* Appends to a text as far as it has room. */
+__attribute__((format(printf, 3, 4))) static void append_text(char *text, size_t size,
+                                                              const char *format, ...)
+{
+    const size_t used = strlen(text);
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text + used, size - used, format, list);
+    va_end(list);
+}
+
+/* The cloth of a vertex that counts over all cloths. */
+static uint32_t cloth_of(const struct flow *flow, uint32_t vertex)
+{
+    uint32_t c = flow->model->n_cloths - 1;
+    while (flow->cloth_first[c] > vertex)
+        c--;
+    return c;
+}
+
+/* Writes the parts of a pair: vertices as their meshes count them, from 1, and the obstacle. Only
+ * rank 0 knows them. */
+static void describe_pair(const struct flow_state *state, const struct flow_near *near, size_t size,
+                          char *text)
+{
+    const struct flow *flow = state->flow;
+    const struct flow_tie_corners *at = &near->contact.at;
+    const uint32_t n_blocks = flow->tables.n_blocks, other = near->contact.side[1];
+    uint32_t last = flow->model->n_cloths;
+    text[0] = 0;
+    if (!flow->vertex)
+        return;
+    append_text(text, size, "vertices");
+    for (uint32_t k = 0; k < at->n; k++) {
+        const uint32_t place = flow->tables.block[at->block[k]].first + at->row[k];
+        const uint32_t vertex = flow->vertex[place], c = cloth_of(flow, vertex);
+        if (k && c != last)
+            append_text(text, size, " of '%.40s' and", flow->model->cloths[last].name);
+        append_text(text, size, " %" PRIu32 "%s", vertex - flow->cloth_first[c] + 1,
+                    at->held >> k & 1 ? " (pinned)" : "");
+        last = c;
+    }
+    if (at->n)
+        append_text(text, size, " of '%.40s'", flow->model->cloths[last].name);
+    if (other >= n_blocks)
+        append_text(text, size, " and obstacles[%" PRIu32 "], a %s", other - n_blocks,
+                    contact_kinds[flow->model->obstacles[other - n_blocks].kind]->name);
+}
+
+/* Finds the first pair of a list that fails, and describes it. */
+static int describe_first_of(struct flow_state *state, const struct flow_meeting *meeting,
+                             size_t size, char *text)
+{
+    size_t bytes;
+    int code = duite_get_count(state->rt, meeting->near, &bytes);
+    if (code)
+        return code;
+    struct flow_list *list = aligned_alloc(FLOW_LINE, (bytes / FLOW_LINE + 1) * FLOW_LINE);
+    if (!list)
+        cloth_fail(&state->flow->trouble, CLOTH_E_MEMORY, "out of memory for a list of pairs");
+    code = flow_memory_agree(state);
+    if (!code)
+        code = duite_get(state->rt, meeting->near, list);
+    const struct flow_near *near = (const struct flow_near *)(list + 1);
+    uint64_t i = 0;
+    while (!code && i < list->n && !near[i].fails)
+        i++;
+    if (!code && i < list->n)
+        describe_pair(state, near + i, size, text);
+    free(list);
+    return code;
+}
+
+/* Describes the first failing pair of the last look; on rank 0 only. */
+static int describe_failing(struct flow_state *state, size_t size, char *text)
+{
+    const struct flow_meetings *meetings = &state->contact.meetings;
+    uint32_t i = 0;
+    text[0] = 0;
+    while (i < meetings->n && !(meetings->count[FLOW_COUNTS * (size_t)i + FLOW_COUNT_FAILS] > 0))
+        i++;
+    return i < meetings->n ? describe_first_of(state, meetings->all + i, size, text) : DUITE_OK;
+}
+
+/* The reason of a failure. what: the fault of n pairs; cure: its remedy. */
+static int say_why(struct flow_state *state, uint64_t n, const char *what, const char *cure)
+{
+    char first[200];
+    const int code = describe_failing(state, sizeof first, first);
+    snprintf(state->reason, sizeof state->reason, "%" PRIu64 " %s%s%s%s%s", n, what,
+             first[0] ? ", the first of them at " : "", first,
+             first[0] ? " (vertices count from 1)" : "", cure);
+    return code;
+}
+
+/* Pairs fail that cannot be cut further: the step is halved, or the run ends. */
+static int note_pinch(struct flow_state *state, uint64_t fails)
+{
+    struct flow_report *report = state->report;
+    const bool first = !report->contact_pinches;
+    char pair[200] = "";
+    report->contact_pinches += fails;
+    if (flow_attempt_is_last(state))
+        return say_why(state, fails,
+                       "pairs of features cannot be kept apart: obstacles or pins pinch the cloth, "
+                       "or are too fast",
+                       model_contact_cure(state->flow->model));
+    const int code = first ? describe_failing(state, sizeof pair, pair) : DUITE_OK;
+    if (pair[0])
+        snprintf(report->contact_pinch, sizeof report->contact_pinch, "%s, at %g s", pair,
+                 flow_attempt_args(state).time);
+    return code;
+}
+
+/* ---- The begin of a step ---- */
+
+/* again: this step was looked at before. */
+static int look_at_step(struct flow_state *state, bool again, struct flow_seen *seen)
+{
+    struct flow_report *report = state->report;
+    const int code = flow_contact_look(state, seen);
+    report->contact_pairs += seen->passes;
+    report->contact_queries += state->contact.meetings.n;
+    report->contact_queries_again += again ? state->contact.meetings.n : 0;
+    return code;
+}
+
+static int start_certified(struct flow_state *state)
+{
+    struct flow_seen seen;
+    int code = flow_keep(state);
+    if (!code)
+        code = flow_skins_keep(state);
+    if (!code)
+        code = flow_bodies_make(state);
+    if (!code)
+        code = flow_contact_none(state);
+    if (!code)
+        code = flow_contact_cut_none(state);
+    if (!code)
+        code = look_at_step(state, false, &seen);
+    if (!code && seen.fails) {
+        char cure[128];
+        snprintf(cure, sizeof cure, ": %s", model_start_cure(state->flow->model));
+        code = say_why(state, seen.fails,
+                       "pairs of features touch where the run starts, cloths or a cloth and an "
+                       "obstacle",
+                       cure);
+        return code ? code : FLOW_TANGLED;
+    }
+    if (!code)
+        code = flow_contact_accept(state);
+    state->contact.begin = state->contact.now;
+    return code;
+}
+
+static int begin_certified(struct flow_state *state)
+{
+    state->contact.now = state->contact.begin;
+    state->contact.failed = false;
+    state->contact.cut = state->contact.cut_run = 0;
+    state->contact.attempt++;
+    state->contact.cut_momentum = 0;
+    state->contact.iterations = state->contact.restarts = 0;
+    const int code = flow_skins_keep(state);
+    return code ? code : flow_contact_tie(state);
+}
+
+/* ---- The step ---- */
+
+/* Returns to the step's begin and makes it again with the present contacts. Adds up the cost of its
+ * solves. */
+static int make_again(struct flow_state *state, const double status[FLOW_STATUS])
+{
+    const double nothing[FLOW_STATUS] = {0};
+    state->contact.iterations += status[FLOW_ITERATIONS];
+    state->contact.restarts += status[FLOW_RESTARTS];
+    state->smooth = 0; /* a BDF2 step has changed the state that it goes on from */
+    state->report->contact_solves++;
+    int code = flow_contact_again(state);
+    if (!code)
+        code = duite_set(state->rt, flow_field_object(state, FLOW_FIELD_status, 0), nothing);
+    if (!code)
+        code = flow_contact_tie(state);
+    if (!code)
+        code = flow_restore(state);
+    return code ? code : flow_step_again(state);
+}
+
+/* Cuts until no pair fails, or no row can be cut: another look would then find the same. */
+static int cut_failing(struct flow_state *state, struct flow_seen *seen)
+{
+    struct flow_report *report = state->report;
+    int code = DUITE_OK;
+    for (int round = 0; round < MAX_CUTS && seen->fails && !code; round++) {
+        struct flow_cut cut;
+        code = flow_contact_cut(state, &cut);
+        if (code || !cut.rows)
+            break;
+        report->contact_cuts += cut.rows;
+        state->contact.cut_momentum += cut.momentum;
+        state->contact.cut += cut.rows;
+        if (cut.run > state->contact.cut_run)
+            state->contact.cut_run = cut.run;
+        if (!flow_attempt_is_last(state) && (double)cut.halved > TOO_MANY * (double)seen->contacts)
+            state->contact.failed = true;
+        code = look_at_step(state, true, seen);
+    }
+    state->contact.failed = state->contact.failed || seen->fails;
+    return !code && seen->fails ? note_pinch(state, seen->fails) : code;
+}
+
+/* True if the step's solve succeeded. */
+static bool is_solved(const double status[FLOW_STATUS])
+{
+    return !(status[FLOW_FAILED] + status[FLOW_BEYOND] > 0);
+}
+
+static int settle_certified(struct flow_state *state)
+{
+    const unsigned parity = state->attempt.parity;
+    double status[FLOW_STATUS];
+    struct flow_seen seen = {0};
+    int code = DUITE_OK;
+    for (int solve = 1; !code; solve++) {
+        code = duite_get(state->rt, state->run.status[parity], status);
+        if (code || !is_solved(status))
+            return code;
+        code = look_at_step(state, solve > 1, &seen);
+        if (code || solve == MAX_SOLVES || !((double)seen.fails > FEW * (double)seen.contacts))
+            break;
+        code = make_again(state, status);
+    }
+    if (!code && seen.fails)
+        code = cut_failing(state, &seen);
+    if (seen.contacts > state->report->contacts)
+        state->report->contacts = seen.contacts;
+    state->contact.near = seen.contacts;
+    return code || state->contact.failed ? code : flow_contact_accept(state);
+}
+
+static void add_solves(const struct flow_state *state, double status[FLOW_STATUS])
+{
+    status[FLOW_ITERATIONS] += state->contact.iterations;
+    status[FLOW_RESTARTS] += state->contact.restarts;
+    status[FLOW_TOUCHED] += (double)state->contact.cut;
+}
+
+static void note_settled(struct flow_state *state, bool accepted)
+{
+    if (!accepted)
+        return;
+    state->contact.begin = state->contact.now;
+    state->contact.accepted = state->contact.attempt;
+    state->report->contacts_now = state->contact.near;
+    if (state->contact.cut_run > state->report->contact_cut_run)
+        state->report->contact_cut_run = state->contact.cut_run;
+    state->report->contact_cut_momentum += state->contact.cut_momentum;
+}
+
+/* ---- In tasks ---- */
+
+static bool is_certified(const struct model *model)
+{
+    return model_promise(model).apart;
+}
+
+static void make_row(const struct flow *flow, const struct flow_step_args *step,
+                     const struct flow_contact *contact, struct contact_row *row)
+{
+    contact_row_begin(row, flow_contact_stiffness(flow, step->h), step->h);
+    flow_contact_ahead(flow, step->time - step->h, step->time, contact, row);
+}
+
+static void press_row(const struct flow *flow, const struct flow_ties *ties,
+                      const struct flow_view *view, double h, double left, uint32_t i,
+                      const phys_vec *point, struct flow_pressed *to)
+{
+    (void)flow, (void)ties, (void)h, (void)left;
+    contact_row_linearise(view->contact_rows + i, point, &to->force, &to->value);
+    to->against = to->value;
+}
+
+const struct flow_contact_mode flow_contact_certified = {.is = is_certified,
+                                                         .start = start_certified,
+                                                         .resume = flow_bodies_make,
+                                                         .begin = begin_certified,
+                                                         .settle = settle_certified,
+                                                         .status = add_solves,
+                                                         .settled = note_settled,
+                                                         .sweeps = true,
+                                                         .carries = true,
+                                                         .row = make_row,
+                                                         .press = press_row};

@@ -1,0 +1,66 @@
+/* The table of contact modes, and the calls of a run's mode. */
+#include "cloth/flow/contact/mode.h"
+
+static bool is_none(const struct model *model)
+{
+    (void)model;
+    return true;
+}
+
+static const struct flow_contact_mode flow_contact_none_at_all = {.is = is_none};
+
+/* In order; the last one always is. A new mode is a row. */
+const struct flow_contact_mode *const flow_contact_modes[] = {
+    &flow_contact_certified, &flow_contact_repulsion, &flow_contact_image, &flow_contact_project,
+    &flow_contact_none_at_all};
+
+const struct flow_contact_mode *flow_contact_mode(const struct model *model)
+{
+    const struct flow_contact_mode *const *mode = flow_contact_modes;
+    while (!(*mode)->is(model))
+        mode++;
+    return *mode;
+}
+
+static const struct flow_contact_mode *mode_of(const struct flow_state *state)
+{
+    return flow_contact_mode(state->flow->model);
+}
+
+int flow_contact_start(struct flow_state *state)
+{
+    const struct flow_contact_mode *mode = mode_of(state);
+    return mode->start ? mode->start(state) : DUITE_OK;
+}
+
+int flow_contact_resume(struct flow_state *state)
+{
+    const struct flow_contact_mode *mode = mode_of(state);
+    return mode->resume ? mode->resume(state) : DUITE_OK;
+}
+
+int flow_contact_begin(struct flow_state *state)
+{
+    const struct flow_contact_mode *mode = mode_of(state);
+    return mode->begin ? mode->begin(state) : DUITE_OK;
+}
+
+int flow_contact_settle(struct flow_state *state)
+{
+    const struct flow_contact_mode *mode = mode_of(state);
+    return mode->settle ? mode->settle(state) : DUITE_OK;
+}
+
+void flow_contact_status(const struct flow_state *state, double status[FLOW_STATUS])
+{
+    const struct flow_contact_mode *mode = mode_of(state);
+    if (mode->status)
+        mode->status(state, status);
+}
+
+void flow_contact_settled(struct flow_state *state, bool accepted)
+{
+    const struct flow_contact_mode *mode = mode_of(state);
+    if (mode->settled)
+        mode->settled(state, accepted);
+}

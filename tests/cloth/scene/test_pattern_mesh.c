@@ -141,7 +141,8 @@ START_TEST(garments_that_are_too_small)
     const char *warning;
     struct model model = worn("0.7", "pulled", &warning);
     ck_assert_ptr_nonnull(warning);
-    ck_assert_msg(strstr(warning, "the garment is too small for the body figure: at y = 1.1 m") &&
+    /* several heights are equally tight, but for rounding */
+    ck_assert_msg(strstr(warning, "the garment is too small for the body figure: at y = 1.") &&
                       strstr(warning, " its girth is 0.72 m, the body's 0.8 m"),
                   "%s", warning);
     model_free(&model);

@@ -1,6 +1,7 @@
 #ifndef CLOTH_BASE_ORDER_H
 #define CLOTH_BASE_ORDER_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 /* Compares two numbers for qsort: below 0, 0 or above 0. Their difference might overflow. */
@@ -13,6 +14,15 @@ static inline int cloth_compare_u32(uint32_t a, uint32_t b)
 static inline int cloth_compare_items_u32(const void *a, const void *b)
 {
     return cloth_compare_u32(*(const uint32_t *)a, *(const uint32_t *)b);
+}
+
+static inline size_t cloth_larger(size_t a, size_t b)
+{
+    return a > b ? a : b;
+}
+static inline size_t cloth_smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
 }
 
 #endif

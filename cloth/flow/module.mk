@@ -11,7 +11,6 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/run/neighbours.c \
     cloth/flow/run/particles.c \
     cloth/flow/run/picks.c \
-    cloth/flow/run/pieces.c \
     cloth/flow/run/run.c \
     cloth/flow/run/settle.c \
     cloth/flow/run/setup.h \
@@ -21,7 +20,6 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/run/status.c \
     cloth/flow/run/step.c \
     cloth/flow/run/step.h \
-    cloth/flow/run/varying.c \
     cloth/flow/run/warn.c \
     cloth/flow/state/bodies.h \
     cloth/flow/state/fields.c \
@@ -30,8 +28,6 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/state/forks.c \
     cloth/flow/state/kernel.h \
     cloth/flow/state/kernels.h \
-    cloth/flow/state/life.c \
-    cloth/flow/state/life.h \
     cloth/flow/state/objects.c \
     cloth/flow/state/room.h \
     cloth/flow/state/state.c \
@@ -41,7 +37,6 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/springs/correct.c \
     cloth/flow/springs/sides.c \
     cloth/flow/springs/springs.c \
-    cloth/flow/springs/stretch.c \
     cloth/flow/elements/elements.c \
     cloth/flow/elements/members.c \
     cloth/flow/joints/adopted.c \
@@ -54,8 +49,6 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/joints/ties.h \
     cloth/flow/joints/weld_hinges.c \
     cloth/flow/joints/welds.c \
-    cloth/flow/pins/anchor.c \
-    cloth/flow/pins/anchor.h \
     cloth/flow/pins/follow.c \
     cloth/flow/pins/pins.c \
     cloth/flow/pins/sliders.h \
@@ -102,7 +95,6 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/solver/pass.c \
     cloth/flow/solver/pattern.c \
     cloth/flow/solver/pieces.c \
-    cloth/flow/solver/preconditioner.c \
     cloth/flow/solver/solve.h \
     cloth/flow/solver/solver.h \
     cloth/flow/solver/system.c \

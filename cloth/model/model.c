@@ -152,6 +152,16 @@ void model_free(struct model *model)
 const struct model_word model_integrators[] = {INTEGRATORS(WORD_OF){0}};
 const struct model_scheme model_schemes[] = {INTEGRATORS(ROW_OF)};
 
+#define PRECONDITIONERS(X)                                                                         \
+    X(MODEL_PLAIN, "none", SOLVE_IDENTITY, false)                                                  \
+    X(MODEL_JACOBI, "jacobi", SOLVE_JACOBI, false)                                                 \
+    X(MODEL_IC0, "ic0", SOLVE_IC0, false)                                                          \
+    X(MODEL_COARSE, "coarse", SOLVE_JACOBI, true)                                                  \
+    X(MODEL_IC0_COARSE, "ic0_coarse", SOLVE_IC0, true)
+#define PARTS_OF(number, word, ...) [number] = {__VA_ARGS__},
+const struct model_word model_preconditioners[] = {PRECONDITIONERS(WORD_OF){0}};
+const struct model_conditioner model_conditioners[] = {PRECONDITIONERS(PARTS_OF)};
+
 bool model_has_material(const struct model_cloth *cloth, uint32_t material)
 {
     bool found = cloth->material == material;
@@ -265,11 +275,6 @@ bool model_is_guarded(const struct model *model)
     const bool blown = model_has_air(model) && (wind[0] != 0 || wind[1] != 0 || wind[2] != 0);
     return model_is_implicit(model) && model->energy_growth > 0 && !blown && !model->n_motions &&
            !model->n_curves && !model_obstacles_move(model);
-}
-
-bool model_is_coarse(const struct model *model)
-{
-    return model->preconditioner == MODEL_COARSE || model->preconditioner == MODEL_IC0_COARSE;
 }
 
 uint32_t model_patches(const struct model *model, uint32_t n_blocks)

@@ -12,7 +12,7 @@
 #include "cloth/physics/curve.h"
 #include "cloth/physics/motion.h"
 #include "cloth/physics/spring.h"
-#include "cloth/solve/format.h"
+#include "cloth/solve/local.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -76,6 +76,12 @@ enum model_preconditioner {
     MODEL_COARSE,    /* Jacobi and a coarse space, affine on each patch of a block */
     MODEL_IC0_COARSE /* IC(0) and that coarse space */
 };
+/* Its parts: a row of model_conditioners. */
+struct model_conditioner {
+    enum solve_local local; /* of each block alone */
+    bool coarse;
+};
+extern const struct model_conditioner model_conditioners[];
 
 struct model {
     char *name; /* of the scene */
@@ -244,12 +250,16 @@ static inline int model_stops_by_norms(const struct model *model)
 /* True if its solves have a coarse space; the number of its patches in a block. The default is
  * four, or two if one factor can then take all patches: one task solves with it after those of the
  * blocks. */
-bool model_is_coarse(const struct model *model);
+static inline bool model_is_coarse(const struct model *model)
+{
+    return model_conditioners[model->preconditioner].coarse;
+}
 enum { MODEL_ONE_FACTOR = 256 }; /* more patches are solved by groups (cloth/solve/levels.h) */
 uint32_t model_patches(const struct model *model, uint32_t n_blocks);
 
 /* Their names in scenes. */
 extern const struct model_word model_integrators[];
+extern const struct model_word model_preconditioners[];
 
 /* The shape at rest of a cloth; the modulus along the weft. */
 static inline const struct mesh *model_rest(const struct model_cloth *cloth)

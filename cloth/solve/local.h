@@ -8,7 +8,8 @@
  * other blocks, entries to held rows and ties add. They are symmetric and positive definite, and
  * leave held rows at zero. Pure functions; nothing is allocated. */
 enum solve_local {
-    SOLVE_JACOBI, /* the inverses of the 3 x 3 blocks on the diagonal */
+    SOLVE_IDENTITY, /* s is q: it has no factor, and nothing applies it */
+    SOLVE_JACOBI,   /* the inverses of the 3 x 3 blocks on the diagonal */
     SOLVE_IC0 /* (I + T') E (I + T), the incomplete Cholesky factorisation in 3 x 3 blocks on the
                * pattern of B (Meijerink & van der Vorst 1977), exact where that has no fill but for
                * T in float */

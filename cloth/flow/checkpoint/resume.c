@@ -20,7 +20,7 @@ enum { TRAVEL = 16 }; /* blocks on their way */
 
 /* ---- Before the run, on rank 0 ---- */
 
-static int refuse(struct cloth_error *error, const char *why)
+static int refuse_checkpoint(struct cloth_error *error, const char *why)
 {
     return cloth_fail(error, CLOTH_E_INPUT, "the checkpoint %s", why);
 }
@@ -40,12 +40,13 @@ int flow_resume(struct flow *flow, struct flow_checkpoint from, struct flow_resu
     if (from.n >= sizeof saved)
         memcpy(&saved, from.bytes, sizeof saved);
     if (from.n < sizeof saved || saved.layout != flow_saved_layout(flow->model))
-        return refuse(error, "is of another version of duite, or of another kind of processor");
+        return refuse_checkpoint(error,
+                                 "is of another version of duite, or of another kind of processor");
     if (saved.main_bytes > from.n || saved.main_bytes != flow_saved_main_bytes(&saved))
-        return refuse(error, "is no whole one");
+        return refuse_checkpoint(error, "is no whole one");
     if (saved.n_vertices != flow->n_vertices || saved.n_blocks != flow->source.blocks.n_blocks ||
         saved.partition_hash != flow->partition_hash)
-        return refuse(error, "has other blocks of vertices");
+        return refuse_checkpoint(error, "has other blocks of vertices");
     if (end < saved.end)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "the run of the checkpoint is to end at %g s: an end may be later, not "
@@ -53,7 +54,7 @@ int flow_resume(struct flow *flow, struct flow_checkpoint from, struct flow_resu
                           (double)saved.end * tick, (double)end * tick);
     const char *wrong = flow_saved_wrong(flow, from.bytes);
     if (wrong)
-        return refuse(error, wrong);
+        return refuse_checkpoint(error, wrong);
     flow->from = from;
     *at = (struct flow_resumed){.steps = saved.report.steps,
                                 .frames = is_complete(&saved, end) ? saved.lasting.next_frame

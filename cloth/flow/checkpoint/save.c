@@ -10,7 +10,7 @@
 
 /* ---- The bytes, on rank 0 ---- */
 
-static void give_up(struct flow *flow)
+static void give_up_saving(struct flow *flow)
 {
     free(flow->saving.bytes);
     flow->saving = (struct flow_checkpoint){0};
@@ -18,7 +18,7 @@ static void give_up(struct flow *flow)
 }
 
 /* The next n bytes; NULL: no memory, now or before. */
-static unsigned char *append(struct flow *flow, size_t n)
+static unsigned char *append_room(struct flow *flow, size_t n)
 {
     struct flow_checkpoint *to = &flow->saving;
     if (!to->bytes)
@@ -27,7 +27,7 @@ static unsigned char *append(struct flow *flow, size_t n)
         const size_t room = flow->saving_room + flow->saving_room / 2 + n;
         unsigned char *more = realloc(to->bytes, room);
         if (!more) {
-            give_up(flow);
+            give_up_saving(flow);
             return NULL;
         }
         to->bytes = more;
@@ -41,7 +41,7 @@ static void append_object(struct flow *flow, const duite_param *object)
 {
     const uint64_t bytes = object->count * flow_saved_width(object->type);
     const size_t whole = ((size_t)bytes + 7) / 8 * 8;
-    unsigned char *to = append(flow, sizeof bytes + whole);
+    unsigned char *to = append_room(flow, sizeof bytes + whole);
     if (!to)
         return;
     memcpy(to, &bytes, sizeof bytes);
@@ -54,7 +54,7 @@ struct save_args {
 };
 
 /* Parameters: rw the token, then r the objects to save. */
-static int save(const duite_call *call)
+static int save_block(const duite_call *call)
 {
     const struct save_args *args = call->args;
     struct flow *flow = flow_of(call);
@@ -70,7 +70,7 @@ static int save(const duite_call *call)
 
 static int save_timed(const duite_call *call)
 {
-    return flow_timed(call, save, FLOW_OUTPUT);
+    return flow_timed(call, save_block, FLOW_OUTPUT);
 }
 const duite_kernel flow_save_block = {.name = "save",
                                       .body = save_timed,
@@ -82,7 +82,7 @@ const duite_kernel flow_save_block = {.name = "save",
 
 /* ---- State of the main program ---- */
 
-static struct flow_saved describe(const struct flow_state *state, bool finished)
+static struct flow_saved describe_saved(const struct flow_state *state, bool finished)
 {
     const struct flow *flow = state->flow;
     const struct flow_tied_blocks *tied = &state->tied.now;
@@ -108,7 +108,7 @@ static struct flow_saved describe(const struct flow_state *state, bool finished)
     return saved;
 }
 
-static unsigned char *put(unsigned char *to, const void *from, size_t n)
+static unsigned char *put_bytes(unsigned char *to, const void *from, size_t n)
 {
     if (n)
         memcpy(to, from, n);
@@ -120,20 +120,20 @@ static void put_main(const struct flow_state *state, const struct flow_saved *sa
 {
     const struct flow_tied_blocks *tied = &state->tied.now;
     const unsigned char *end = to + saved->main_bytes;
-    to = put(to, saved, sizeof *saved);
+    to = put_bytes(to, saved, sizeof *saved);
     if (saved->has_ties) {
-        to = put(to, tied->room, saved->n_blocks * sizeof *tied->room);
-        to = put(to, tied->first, ((size_t)saved->n_blocks + 1) * sizeof *tied->first);
-        to = put(to, tied->other, saved->n_others * sizeof *tied->other);
-        to = put(to, tied->place, saved->n_others * sizeof *tied->place);
+        to = put_bytes(to, tied->room, saved->n_blocks * sizeof *tied->room);
+        to = put_bytes(to, tied->first, ((size_t)saved->n_blocks + 1) * sizeof *tied->first);
+        to = put_bytes(to, tied->other, saved->n_others * sizeof *tied->other);
+        to = put_bytes(to, tied->place, saved->n_others * sizeof *tied->place);
     }
     for (uint32_t i = 0; i < saved->n_meetings; i++) {
         const struct flow_meeting *of = state->contact.meetings.all + i;
         const struct flow_saved_side side = {{of->side[0], of->side[1]}, of->room};
-        to = put(to, &side, sizeof side);
+        to = put_bytes(to, &side, sizeof side);
     }
     for (uint32_t b = 0; b < saved->n_kept; b++)
-        to = put(to, &state->contact.kept[b].n[state->contact.begin], sizeof(uint32_t));
+        to = put_bytes(to, &state->contact.kept[b].n[state->contact.begin], sizeof(uint32_t));
     memset(to, 0, (size_t)(end - to));
 }
 
@@ -151,13 +151,13 @@ static size_t fields_bytes(const struct flow_state *state)
     return bytes;
 }
 
-static void begin(struct flow_state *state, bool finished)
+static void begin_saving(struct flow_state *state, bool finished)
 {
     struct flow *flow = state->flow;
-    const struct flow_saved saved = describe(state, finished);
+    const struct flow_saved saved = describe_saved(state, finished);
     flow->saving_room = saved.main_bytes + fields_bytes(state);
     flow->saving = (struct flow_checkpoint){.bytes = malloc(flow->saving_room)};
-    unsigned char *to = append(flow, saved.main_bytes);
+    unsigned char *to = append_room(flow, saved.main_bytes);
     if (to)
         put_main(state, &saved, to);
 }
@@ -171,7 +171,7 @@ int flow_save(struct flow_state *state, bool finished)
         return DUITE_OK;
     int code = duite_get(state->rt, state->run.token, &token); /* the one before is over */
     if (!code && duite_rank(state->rt) == 0)
-        begin(state, finished);
+        begin_saving(state, finished);
     for (uint32_t b = 0; b <= n_blocks && !code; b++) {
         const struct save_args args = {.last = b == n_blocks};
         const duite_object *end = flow_saved_objects(state, b, refs + 1);

@@ -30,7 +30,7 @@ struct counter {
     uint32_t block;
 };
 
-static void count(void *to, const struct element *element)
+static void count_member(void *to, const struct element *element)
 {
     struct counter *counter = to;
     uint32_t block[4];
@@ -43,7 +43,7 @@ static void count(void *to, const struct element *element)
 void flow_source_count(struct flow_source *source)
 {
     struct counter counter = {source, 0};
-    element_each(&source->elements, count, &counter);
+    element_each(&source->elements, count_member, &counter);
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++)
         source->shape[b].n_materials = source->model->n_materials;
 }
@@ -60,7 +60,7 @@ struct collector {
     uint32_t from, to, block;
 };
 
-static void collect(void *to, const struct element *element)
+static void collect_member(void *to, const struct element *element)
 {
     struct collector *collector = to;
     const struct flow_source *source = collector->source;
@@ -141,7 +141,7 @@ int flow_source_collect(struct flow_source *source, uint32_t from, uint32_t to,
     if (!source->member)
         return CLOTH_E_MEMORY;
     if (n)
-        element_each(&source->elements, collect, &collector);
+        element_each(&source->elements, collect_member, &collector);
     for (size_t i = lists; i > 0; i--) /* each was moved on to the next one's */
         source->member_start[i] = source->member_start[i - 1];
     source->member_start[0] = 0;

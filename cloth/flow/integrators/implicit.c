@@ -238,7 +238,7 @@ static int shift_body(const duite_call *call, const struct shift_fields *on)
 }
 
 /* A Newton step that ends where the slope along it is steep the other way is cut. */
-static int search(struct flow_state *state, struct flow_step_args args, double first)
+static int search_line(struct flow_state *state, struct flow_step_args args, double first)
 {
     struct shift_args shift = {.h = args.h};
     double slope, length = 1;
@@ -292,7 +292,7 @@ static int newton_step(struct flow_state *state, struct flow_step_args args,
 }
 
 /* Sums all Newton steps; only the last one's errors count. */
-static void sum_up(double all[FLOW_STATUS], const double last[FLOW_STATUS])
+static void sum_newton_steps(double all[FLOW_STATUS], const double last[FLOW_STATUS])
 {
     const double iterations = all[FLOW_ITERATIONS], restarts = all[FLOW_RESTARTS];
     memcpy(all, last, FLOW_STATUS * sizeof *all);
@@ -312,12 +312,12 @@ static int newton(struct flow_state *state, struct flow_step_args args)
         int code = newton_step(state, args, last);
         if (code)
             return code;
-        sum_up(newton->status, last);
+        sum_newton_steps(newton->status, last);
         newton->steps++;
         newton->converged = last[FLOW_CHANGE] <= small * last[FLOW_WHOLE];
         if (newton->converged || last[FLOW_FAILED] + last[FLOW_BEYOND] > 0)
             return DUITE_OK;
-        code = search(state, args, last[FLOW_SLOPE]);
+        code = search_line(state, args, last[FLOW_SLOPE]);
         if (code || newton->steps == model->newton_steps)
             return code;
         code = fork_system(state, args);
@@ -335,7 +335,7 @@ static int fork_bases(struct flow_state *state)
 }
 
 /* Ends a step whose first system is made. */
-static int finish(struct flow_state *state, struct flow_step_args args)
+static int finish_step(struct flow_state *state, struct flow_step_args args)
 {
     return searches(state->flow->model) ? newton(state, args) : fork_correct(state, args, NULL);
 }
@@ -350,7 +350,7 @@ int flow_implicit_euler_end(struct flow_state *state)
     if (!searches(state->flow->model))
         return fork_move(state);
     const int code = fork_bases(state);
-    return code ? code : finish(state, flow_attempt_args(state));
+    return code ? code : finish_step(state, flow_attempt_args(state));
 }
 
 /* ---- BDF2 ---- */
@@ -400,7 +400,7 @@ static int bdf2_start(struct flow_state *state)
         code = fork_bases(state);
     if (!code)
         code = linearise(state);
-    return code ? code : finish(state, flow_attempt_args(state));
+    return code ? code : finish_step(state, flow_attempt_args(state));
 }
 
 bool flow_implicit_is_second(const struct flow_state *state)
@@ -423,7 +423,7 @@ int flow_bdf2_end(struct flow_state *state)
         code = fork_filter(state, args);
     if (!code)
         code = fork_system(state, args);
-    return code ? code : finish(state, args);
+    return code ? code : finish_step(state, args);
 }
 
 void flow_implicit_status(const struct flow_state *state, double status[FLOW_STATUS])

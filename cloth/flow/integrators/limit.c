@@ -34,8 +34,8 @@ static void particle_of(struct visitor *visitor, uint32_t vertex, struct flow_pa
                      visitor->at.first, vertex, particle);
 }
 
-static void add(struct block *block, double times, const struct flow_spring *s, const phys_vec *u,
-                double across)
+static void add_spring_block(struct block *block, double times, const struct flow_spring *s,
+                             const phys_vec *u, double across)
 {
     static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
     for (int i = 0; i < 6; i++)
@@ -63,11 +63,11 @@ static void visit_weighted(struct visitor *visitor, const struct flow_spring *s,
     const double across = length > s->length ? longer : 0;
     for (uint32_t k = 0; k < n; k++)
         if (particle[k].free > 0)
-            add(visitor->block + flow_root(welds, vertex[k]), fabs(weight[k]) * free, s, &u,
-                across);
+            add_spring_block(visitor->block + flow_root(welds, vertex[k]), fabs(weight[k]) * free,
+                             s, &u, across);
 }
 
-static void visit(void *to, const struct flow_spring *s)
+static void visit_spring(void *to, const struct flow_spring *s)
 {
     const uint32_t vertex[2] = {s->a, s->b};
     const double weight[2] = {1, -1};
@@ -90,9 +90,9 @@ static void add_pair(struct block *block, double times, const struct phys_pair *
 }
 
 /* The pairs of an element by itself where it starts, in a step of h. */
-static void pairs_of(const struct element_kind *kind, const struct element_one *one,
-                     const phys_vec x[ELEMENT_CORNERS], double h,
-                     struct phys_pair pair[ELEMENT_PAIRS])
+static void pairs_of_element(const struct element_kind *kind, const struct element_one *one,
+                             const phys_vec x[ELEMENT_CORNERS], double h,
+                             struct phys_pair pair[ELEMENT_PAIRS])
 {
     const struct phys_sight sight = {.n = kind->corners, .x = x};
     const struct phys_step step = {h, 0};
@@ -119,7 +119,7 @@ static void visit_element(void *to, const struct element *element)
     }
     element_alone(&visitor->source->elements, element, visitor->material[element->kind], &one);
     for (int i = 0; i < 2; i++)
-        pairs_of(kind, &one, x, 1 + i, pair[i]);
+        pairs_of_element(kind, &one, x, 1 + i, pair[i]);
     for (uint32_t j = 1, k = 0; j < element->corners; j++)
         for (uint32_t i = 0; i < j; i++, k++) {
             if (particle[i].free > 0)
@@ -130,7 +130,7 @@ static void visit_element(void *to, const struct element *element)
 }
 
 /* Finds the vertex whose block over its mass is largest. */
-static void find(struct visitor *visitor, struct flow_limit *limit)
+static void find_fastest(struct visitor *visitor, struct flow_limit *limit)
 {
     double best = 0;
     for (uint32_t v = 0; v < visitor->source->particles.n; v++) {
@@ -179,14 +179,14 @@ int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
     visitor.block = cloth_alloc(source->particles.n, sizeof *visitor.block, error);
     const bool there = visitor.block && make_materials(&visitor, error);
     if (there) {
-        flow_springs_each(&source->springs, visit, &visitor);
+        flow_springs_each(&source->springs, visit_spring, &visitor);
         for (uint32_t i = 0; i < source->springs.n_timed; i++)
             if (flow_joints_act(source->model, source->springs.timed + i))
                 visit_weighted(&visitor, &source->springs.timed[i].spring,
                                source->springs.timed[i].n, source->springs.timed[i].vertex,
                                source->springs.timed[i].weight);
         element_each(&source->elements, visit_element, &visitor);
-        find(&visitor, limit);
+        find_fastest(&visitor, limit);
     }
     for (int i = 0; i < ELEMENT_KINDS; i++)
         free(visitor.material[i]);

@@ -13,7 +13,7 @@
  * matrix is (h w)^2 times the masses, and rounding leaves 1e-16 times that of dv's error. */
 static const double MAX_TURN = 1e4;
 
-static const char *place_of(const struct model *model)
+static const char *place_of_h(const struct model *model)
 {
     return model->h_place ? model->h_place : "h";
 }
@@ -28,7 +28,7 @@ static double growth_of(double turn)
 static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
 {
     const struct model *model = flow->model;
-    const char *name = model_scheme(model)->name, *place = place_of(model);
+    const char *name = model_scheme(model)->name, *place = place_of_h(model);
     const double max = flow_limit_of(limit, model->integrator), turn = model->h * limit->omega;
     const size_t size = sizeof flow->warning[FLOW_WARN_STEP];
     if (!(max > 0))
@@ -59,7 +59,7 @@ static void warn_of_contacts(struct flow *flow)
         snprintf(flow->warning[FLOW_WARN_STEP], sizeof flow->warning[FLOW_WARN_STEP],
                  "%.200s: steps of %g s are beyond what contacts of stiffness %g N/m and damping "
                  "%g allow %s, %g s: what they push can bounce ever harder",
-                 place_of(model), model->h, spring.stiffness, model->contact.damping,
+                 place_of_h(model), model->h, spring.stiffness, model->contact.damping,
                  model_scheme(model)->name, max);
 }
 
@@ -74,7 +74,7 @@ static void warn_implicit(struct flow *flow, const struct flow_limit *limit)
                  "to 1024 times as "
                  "many steps; give a density or mass %.1e times as large, or steps of at most %.1e "
                  "s",
-                 place_of(model), model->h, turn * turn, limit->vertex + 1, limit->cloth->name,
+                 place_of_h(model), model->h, turn * turn, limit->vertex + 1, limit->cloth->name,
                  turn * turn / (MAX_TURN * MAX_TURN), MAX_TURN / limit->omega);
 }
 
@@ -106,7 +106,7 @@ static void warn_of_kinds(struct flow *flow, const struct element_sheet *sheet)
 {
     char *text = flow->warning[FLOW_WARN_AIR];
     const size_t size = sizeof flow->warning[FLOW_WARN_AIR];
-    const size_t n = (size_t)snprintf(text, size, "%.200s: ", place_of(sheet->model));
+    const size_t n = (size_t)snprintf(text, size, "%.200s: ", place_of_h(sheet->model));
     for (int i = 0; i < ELEMENT_KINDS && !text[n]; i++)
         if (element_kinds[i]->warn && element_kinds[i]->has(sheet->model, sheet->cloth))
             element_kinds[i]->warn(sheet, text + n, size - n);

@@ -16,8 +16,8 @@ size_t flow_tied_others(uint32_t n_blocks, uint32_t n_joints, bool seeks)
     return joints < all && !seeks ? joints : all;
 }
 
-static void take(struct flow_tied_blocks *blocks, size_t n_blocks, size_t n_others,
-                 struct cloth_error *trouble)
+static void take_tied(struct flow_tied_blocks *blocks, size_t n_blocks, size_t n_others,
+                      struct cloth_error *trouble)
 {
     blocks->room = cloth_alloc(n_blocks, sizeof *blocks->room, trouble);
     blocks->first = cloth_alloc(n_blocks + 1, sizeof *blocks->first, trouble);
@@ -43,11 +43,11 @@ void flow_ties_take(struct flow_state *state)
     tied->scratch = cloth_alloc(flow_ties_scratch(head->n_ties), sizeof *tied->scratch, trouble);
     tied->links =
         cloth_alloc((size_t)head->n_blocks + FLOW_TIE_OTHERS, sizeof *tied->links, trouble);
-    take(&tied->now, head->n_blocks, others, trouble);
-    take(&tied->next, head->n_blocks, others, trouble);
+    take_tied(&tied->now, head->n_blocks, others, trouble);
+    take_tied(&tied->next, head->n_blocks, others, trouble);
 }
 
-static void drop(struct flow_tied_blocks *blocks)
+static void drop_tied(struct flow_tied_blocks *blocks)
 {
     free(blocks->room);
     free(blocks->first);
@@ -65,8 +65,8 @@ void flow_ties_free(struct flow_state *state)
     free(tied->said.link);
     free(tied->scratch);
     free(tied->links);
-    drop(&tied->now);
-    drop(&tied->next);
+    drop_tied(&tied->now);
+    drop_tied(&tied->next);
     *tied = (struct flow_tied){0};
 }
 
@@ -94,7 +94,8 @@ static void find_others(const struct flow_tied *tied, uint32_t n_blocks, bool ke
 }
 
 /* The index of block b among the others of a block, which has it. */
-static uint32_t number_of(const struct flow_tied_blocks *blocks, uint32_t block, uint32_t b)
+static uint32_t number_among_others(const struct flow_tied_blocks *blocks, uint32_t block,
+                                    uint32_t b)
 {
     uint32_t low = blocks->first[block], high = blocks->first[block + 1];
     while (high - low > 1) {
@@ -114,7 +115,7 @@ static void find_places(const struct flow_tie_records *said, uint32_t n_blocks,
     memset(to->place, 0, to->first[n_blocks] * sizeof *to->place);
     for (uint32_t b = 0; b < n_blocks; b++)
         for (uint32_t i = said->first[b], place = 0; i < said->first[b + 1]; i++) {
-            to->place[number_of(to, said->link[i].block, b)] = place;
+            to->place[number_among_others(to, said->link[i].block, b)] = place;
             place += said->link[i].rows;
         }
 }
@@ -184,7 +185,7 @@ static int set_links(struct flow_state *state, uint32_t b)
 /* ---- Applying the result ---- */
 
 /* Makes the next rooms and links those of now. */
-static void fit(struct flow_state *state)
+static void fit_objects(struct flow_state *state)
 {
     struct flow_tied *tied = &state->tied;
     const struct flow_tied_blocks before = tied->now;
@@ -198,8 +199,8 @@ static void fit(struct flow_state *state)
     tied->next = before;
 }
 
-static void copy(const struct flow_tied_blocks *from, uint32_t n_blocks,
-                 struct flow_tied_blocks *to)
+static void copy_tied(const struct flow_tied_blocks *from, uint32_t n_blocks,
+                      struct flow_tied_blocks *to)
 {
     memcpy(to->room, from->room, n_blocks * sizeof *to->room);
     memcpy(to->first, from->first, ((size_t)n_blocks + 1) * sizeof *to->first);
@@ -211,8 +212,8 @@ int flow_ties_again(struct flow_state *state, const struct flow_tied_blocks *tie
 {
     const uint32_t n_blocks = state->flow->tables.n_blocks;
     int code = DUITE_OK;
-    copy(tied, n_blocks, &state->tied.next);
-    fit(state);
+    copy_tied(tied, n_blocks, &state->tied.next);
+    fit_objects(state);
     for (uint32_t b = 0; b < n_blocks && !code; b++)
         if (!has_links(&state->tied, b))
             code = set_links(state, b);
@@ -234,7 +235,7 @@ int flow_ties_adopt(struct flow_state *state)
         duite_graph_free(state->rt, state->solve); /* a failure is returned by the next fork */
         state->solve = (duite_graph){0};
     }
-    fit(state);
+    fit_objects(state);
     for (uint32_t b = 0; b < n_blocks && !code; b++)
         if (!has_links(tied, b))
             code = set_links(state, b);

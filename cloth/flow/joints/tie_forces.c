@@ -22,8 +22,8 @@ static struct phys_springs springs_of(const struct some_joints *some, int full)
                                  some->length,    full};
 }
 
-static void append(const struct flow_ties *ties, const struct flow_view *view, uint32_t i,
-                   const struct flow_tie *joint, struct some_joints *some)
+static void append_joint(const struct flow_ties *ties, const struct flow_view *view, uint32_t i,
+                         const struct flow_tie *joint, struct some_joints *some)
 {
     const uint32_t at = some->n++;
     some->tie[at] = i;
@@ -45,14 +45,14 @@ static void append(const struct flow_ties *ties, const struct flow_view *view, u
 }
 
 /* Takes the next joints among the ties before `to`. Returns whether there are any. */
-static bool take(const struct flow *flow, const struct flow_ties *ties,
-                 const struct flow_view *view, uint32_t to, struct some_joints *some)
+static bool take_joint(const struct flow *flow, const struct flow_ties *ties,
+                       const struct flow_view *view, uint32_t to, struct some_joints *some)
 {
     uint32_t i = some->next;
     some->n = 0;
     for (; i < to && some->n < AT_ONCE; i++)
         if (ties->of[i] < flow->n_ties)
-            append(ties, view, i, flow->tie + ties->of[i], some);
+            append_joint(ties, view, i, flow->tie + ties->of[i], some);
     some->next = i;
     return some->n > 0;
 }
@@ -74,7 +74,7 @@ void flow_ties_force(const struct flow *flow, const struct flow_view *view, phys
 {
     const struct flow_ties ties = flow_ties_open(view->tie_table);
     struct some_joints some = {0};
-    while (take(flow, &ties, view, ties.n, &some)) {
+    while (take_joint(flow, &ties, view, ties.n, &some)) {
         const struct phys_springs springs = springs_of(&some, 0);
         phys_vec add[AT_ONCE] = {{0}};
         phys_springs_force_cut(&springs, some.x[0], some.v[0], some.x[1], some.v[1], add);
@@ -88,7 +88,7 @@ void flow_ties_system(const struct flow *flow, const struct flow_view *view, dou
     const struct flow_ties ties = flow_ties_open(view->tie_table);
     struct some_joints some = {0};
     memset(value, 0, ties.room.ties * sizeof *value);
-    while (take(flow, &ties, view, ties.n, &some)) {
+    while (take_joint(flow, &ties, view, ties.n, &some)) {
         const struct phys_springs springs = springs_of(&some, flow->model->full_slope);
         phys_vec add[AT_ONCE] = {{0}}, made[AT_ONCE];
         if (b)
@@ -119,7 +119,7 @@ double flow_ties_energy(const struct flow *flow, const struct flow_view *view)
     const struct flow_ties ties = flow_ties_open(view->tie_table);
     struct some_joints some = {0};
     double sum = 0;
-    while (take(flow, &ties, view, ties.n, &some))
+    while (take_joint(flow, &ties, view, ties.n, &some))
         for (uint32_t i = 0; i < some.n; i++) {
             struct phys_springs one = springs_of(&some, 0);
             one.n = 1;

@@ -34,7 +34,8 @@ static size_t marks_of(size_t n_rows)
     return (n_rows + 63) / 64;
 }
 
-static size_t lay(size_t n_rows, const struct flow_tie_room *room, void *memory, struct arrays *to)
+static size_t lay_ties(size_t n_rows, const struct flow_tie_room *room, void *memory,
+                       struct arrays *to)
 {
     struct flow_room rest = {.base = memory};
     to->head = flow_room_next(&rest, sizeof *to->head);
@@ -62,7 +63,7 @@ static size_t lay(size_t n_rows, const struct flow_tie_room *room, void *memory,
 size_t flow_ties_bytes(uint32_t n_rows, const struct flow_tie_room *room)
 {
     struct arrays arrays = {0};
-    return lay(n_rows, room, NULL, &arrays);
+    return lay_ties(n_rows, room, NULL, &arrays);
 }
 
 /* ---- Keys ---- */
@@ -137,7 +138,7 @@ static void sort_by(unsigned shift, size_t n, const uint64_t *key, uint64_t *to)
 
 /* Sorts n keys by their bits from `low` on, leaving equal ones in order. Returns where they are: in
  * one of the two arrays. */
-static uint64_t *sort(struct own *own, unsigned low, size_t n)
+static uint64_t *sort_own(struct own *own, unsigned low, size_t n)
 {
     uint64_t differ = 0, *from = own->key, *to = own->spare;
     for (size_t i = 1; i < n; i++)
@@ -156,7 +157,7 @@ static uint64_t *sort(struct own *own, unsigned low, size_t n)
 /* Sorts the keys and keeps each once, in own->key. Returns how many there are. */
 static uint32_t sort_once(struct own *own, size_t n)
 {
-    const uint64_t *sorted = sort(own, 0, n);
+    const uint64_t *sorted = sort_own(own, 0, n);
     uint64_t last = 0;
     uint32_t kept = 0;
     for (size_t i = 0; i < n; i++) { /* a key is read before anything is written there */
@@ -234,7 +235,7 @@ bool flow_ties_count(const struct flow_tie_list *list, uint32_t block, uint64_t 
 /* ---- Making a table ---- */
 
 /* The index of a block among the others; n_others: it is none of them. */
-static uint32_t number_of(const struct arrays *to, uint32_t block)
+static uint32_t number_of_block(const struct arrays *to, uint32_t block)
 {
     uint32_t low = 0, high = to->head->n_others;
     while (low < high) {
@@ -248,13 +249,14 @@ static uint32_t number_of(const struct arrays *to, uint32_t block)
 }
 
 /* The group of a tie, in order: 0: inner ones; then by the lowest other block, from 1. */
-static uint32_t group_of(const struct arrays *to, const struct flow_tie_corners *tie, uint32_t own)
+static uint32_t group_of_tie(const struct arrays *to, const struct flow_tie_corners *tie,
+                             uint32_t own)
 {
     uint32_t lowest = UINT32_MAX;
     for (uint32_t k = 0; k < tie->n; k++)
         if (tie->block[k] != own && tie->block[k] < lowest)
             lowest = tie->block[k];
-    return lowest == UINT32_MAX ? 0 : 1 + number_of(to, lowest);
+    return lowest == UINT32_MAX ? 0 : 1 + number_of_block(to, lowest);
 }
 
 /* Sorts the ties by group. */
@@ -263,12 +265,12 @@ static void put_order(const struct own *own, struct arrays *to)
     const uint32_t n_groups = to->head->n_others + 2; /* one for blocks that are no others */
     uint32_t *at = to->count;
     for (uint32_t i = 0; i < own->n; i++)
-        at[1 + group_of(to, corners_of(own->list, own->of[i]), own->block)]++;
+        at[1 + group_of_tie(to, corners_of(own->list, own->of[i]), own->block)]++;
     to->head->n_inner = at[1];
     for (uint32_t group = 0; group < n_groups; group++)
         at[group + 1] += at[group];
     for (uint32_t i = 0; i < own->n; i++)
-        to->of[at[group_of(to, corners_of(own->list, own->of[i]), own->block)]++] = own->of[i];
+        to->of[at[group_of_tie(to, corners_of(own->list, own->of[i]), own->block)]++] = own->of[i];
     to->head->n = own->n;
 }
 
@@ -286,7 +288,7 @@ static size_t put_corners(const struct own *own, struct arrays *to)
             to->corner[i][k] = tie->row[k];
             to->weight[i][k] = tie->weight[k];
             if (tie->block[k] != own->block)
-                own->key[n++] = (uint64_t)number_of(to, tie->block[k]) << OTHER_AT |
+                own->key[n++] = (uint64_t)number_of_block(to, tie->block[k]) << OTHER_AT |
                                 (uint64_t)tie->row[k] << ROW_AT | (SOLVE_TIE_CORNERS * i + k);
         }
     }
@@ -298,7 +300,7 @@ static size_t put_corners(const struct own *own, struct arrays *to)
 static bool put_ghosts(struct own *own, size_t n, struct arrays *to)
 {
     struct head *head = to->head;
-    const uint64_t *key = sort(own, ROW_AT, n);
+    const uint64_t *key = sort_own(own, ROW_AT, n);
     uint32_t others = 0;
     for (size_t i = 0; i < n; i++) {
         const uint32_t other = (uint32_t)(key[i] >> OTHER_AT), at = key[i] & (MOST - 1);
@@ -351,7 +353,7 @@ static void put_halo(const struct flow_ties_of *of, struct arrays *to)
             to->halo[head->n_halo++] = row;
 }
 
-static bool fill(const struct flow_ties_of *of, struct arrays *to)
+static bool fill_table(const struct flow_ties_of *of, struct arrays *to)
 {
     const struct flow_tie_room *room = &of->room;
     if (of->n_others > room->others || of->n_others >= MOST_OTHERS || of->n_rows > MOST ||
@@ -378,12 +380,12 @@ bool flow_ties_make(const struct flow_ties_of *of, void *memory)
 {
     struct arrays to = {0};
     memset(memory, 0, flow_ties_bytes(of->n_rows, &of->room));
-    lay(of->n_rows, &of->room, memory, &to);
+    lay_ties(of->n_rows, &of->room, memory, &to);
     to.head->n_rows = of->n_rows;
     to.head->room = of->room;
     for (uint32_t i = 0; i < of->room.rows; i++)
         to.at[i] = i;
-    const bool made = fill(of, &to);
+    const bool made = fill_table(of, &to);
     if (!made)
         *to.head = (struct head){.n_rows = of->n_rows, .room = of->room};
     return made;
@@ -403,7 +405,7 @@ struct flow_ties flow_ties_open(const void *memory)
     struct arrays arrays = {0};
     if (!head)
         return (struct flow_ties){0};
-    lay(head->n_rows, &head->room, (void *)memory, &arrays); /* it is only read */
+    lay_ties(head->n_rows, &head->room, (void *)memory, &arrays); /* it is only read */
     return (struct flow_ties){.n_inner = head->n_inner,
                               .n = head->n,
                               .n_rows = head->n_rows,

@@ -61,7 +61,7 @@ static int name_all(struct flow_welds *welds, uint32_t n, const struct cloth_lis
 }
 
 /* The place of a weld that has a vertex of a cloth. */
-static const char *place_of(const struct model *model, uint32_t cloth, uint32_t vertex)
+static const char *place_of_vertex(const struct model *model, uint32_t cloth, uint32_t vertex)
 {
     for (uint32_t w = 0; w < model->n_welds; w++) {
         const struct model_pairs *pairs = &model->welds[w].pairs;
@@ -82,7 +82,7 @@ static int check_apart(const struct model *model, uint32_t cloth, const uint32_t
     for (uint32_t j = 1; j < n; j++)
         for (uint32_t i = 0; i < j; i++)
             if (root[vertex[i]] == root[vertex[j]])
-                return model_fail(place_of(model, cloth, vertex[i]), error,
+                return model_fail(place_of_vertex(model, cloth, vertex[i]), error,
                                   "welds make vertices %u and %u of cloth '%.60s' one, which %s "
                                   "joins; it needs them apart",
                                   vertex[i], vertex[j], model->cloths[cloth].name, what);
@@ -212,7 +212,8 @@ static double drag_of(const struct flow_particles *p, const struct model *model,
 
 /* All start at the mean of their places, with the mean of their velocities by mass. The mean of
  * equal ones has the same bits. */
-static void meet(struct flow_particles *p, uint32_t root, const uint32_t (*name)[2], uint32_t n)
+static void meet_at_root(struct flow_particles *p, uint32_t root, const uint32_t (*name)[2],
+                         uint32_t n)
 {
     double *start = p->start[root], away[6] = {0};
     for (uint32_t i = 0; i < n; i++)
@@ -262,7 +263,7 @@ int flow_welds_settle(struct flow_particles *p, const struct model *model,
         for (n = 1; i + n < welds->n && name[n][0] == root;)
             n++;
         p->drag[root] = drag_of(p, model, root, name, n);
-        meet(p, root, name, n);
+        meet_at_root(p, root, name, n);
     }
     return code;
 }
@@ -319,7 +320,7 @@ struct finder {
     int code;
 };
 
-static void find(void *to, const struct flow_spring *s)
+static void find_joined(void *to, const struct flow_spring *s)
 {
     struct finder *finder = to;
     const uint64_t number = finder->number++;
@@ -395,7 +396,7 @@ int flow_springs_merge(struct flow_springs *springs, uint32_t n_vertices, struct
         finder.welded[welds->name[i][0]] = 1;
     int code = finder.welded ? CLOTH_OK : CLOTH_E_MEMORY;
     if (!code) {
-        flow_springs_each(springs, find, &finder);
+        flow_springs_each(springs, find_joined, &finder);
         code = finder.code;
     }
     if (!code && finder.found.n) {

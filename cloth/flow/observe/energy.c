@@ -158,7 +158,7 @@ void flow_energy_note(struct flow_state *state, bool touched)
 }
 
 /* Before the first step. */
-static void begin(struct flow_state *state)
+static void begin_guard(struct flow_state *state)
 {
     struct flow_report *report = state->report;
     const struct flow_energy *start = &report->start;
@@ -200,6 +200,6 @@ int flow_energy_begin(struct flow_state *state)
 {
     const int code = flow_energy_get(state, &state->report->start);
     if (!code)
-        begin(state);
+        begin_guard(state);
     return code;
 }

@@ -83,7 +83,7 @@ static void place_row(const struct flow_state *state, const struct part *part, u
 }
 
 /* The vertices of a block, by all their names. */
-static void place(const struct flow_state *state, uint32_t block, const struct part *part)
+static void place_rows(const struct flow_state *state, uint32_t block, const struct part *part)
 {
     const struct flow *flow = state->flow;
     const struct flow_table *t = flow->tables.block + block;
@@ -109,8 +109,8 @@ static int collect_body(const duite_call *call, const struct collect_fields *on)
 }
 
 /* Sends a vector of some blocks to rank 0, which holds each only for a moment. */
-static int collect(struct flow_state *state, uint32_t n, const uint32_t *block,
-                   enum flow_field_id vector, const struct part *part)
+static int collect_vector(struct flow_state *state, uint32_t n, const uint32_t *block,
+                          enum flow_field_id vector, const struct part *part)
 {
     const struct flow_as as[] = {{FLOW_FIELD_x, vector}, {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}};
     int code = DUITE_OK;
@@ -121,7 +121,7 @@ static int collect(struct flow_state *state, uint32_t n, const uint32_t *block,
     for (uint32_t k = 0; k < n && !code; k++) {
         code = duite_get_at(state->rt, state->block[block[k]].gathered, 0, state->rows);
         if (!code && state->bytes)
-            place(state, block[k], part);
+            place_rows(state, block[k], part);
         if (!code)
             code = duite_set_sized(state->rt, state->block[block[k]].gathered, NULL, 0);
     }
@@ -139,7 +139,7 @@ static int collect_part(struct flow_state *state, enum flow_field_id vector,
             some[n++] = b;
         if (n < AT_ONCE && b + 1 < tables->n_blocks)
             continue;
-        code = collect(state, n, some, vector, part);
+        code = collect_vector(state, n, some, vector, part);
         n = 0;
     }
     const int failed = duite_wait(state->rt); /* nobody runs ahead of rank 0 with its messages */

@@ -77,7 +77,7 @@ static int fork_probe(struct flow_state *state, uint32_t block, const struct flo
 
 /* ---- On rank 0 ---- */
 
-static double *put(double *to, bool wanted, const double *three)
+static double *put_three(double *to, bool wanted, const double *three)
 {
     for (int c = 0; wanted && c < 3; c++)
         *to++ = three[c];
@@ -94,15 +94,15 @@ static void fill_probes(const struct flow *flow, const double *probe_values,
         double sum[6] = {0};
         for (uint32_t i = watched->first[p]; i < watched->first[p + 1]; i++) {
             const double *vertex = probe_values + FLOW_PROBE_VALUES * (size_t)watched->entry[i];
-            to = put(to, probe->position, vertex);
-            to = put(to, probe->velocity, vertex + 3);
-            to = put(to, probe->reaction, vertex + 6);
-            to = put(to, probe->contact, vertex + 9);
+            to = put_three(to, probe->position, vertex);
+            to = put_three(to, probe->velocity, vertex + 3);
+            to = put_three(to, probe->reaction, vertex + 6);
+            to = put_three(to, probe->contact, vertex + 9);
             for (int c = 0; c < 6 && !watched->again[i]; c++)
                 sum[c] += vertex[6 + c];
         }
-        to = put(to, probe->total, sum);
-        to = put(to, probe->contact_total, sum + 3);
+        to = put_three(to, probe->total, sum);
+        to = put_three(to, probe->contact_total, sum + 3);
         for (int c = 0; c < 3 && probe->by_obstacle; c++)
             *to++ = by_obstacle[probe->obstacle][c];
     }

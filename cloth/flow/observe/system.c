@@ -330,8 +330,8 @@ static void each_tie(const struct flow *flow, const duite_param *parts, struct t
     }
 }
 
-static int gather(const duite_call *call, const struct system_save_fields *on,
-                  struct solve_system *system, struct cloth_error *error)
+static int gather_system(const duite_call *call, const struct system_save_fields *on,
+                         struct solve_system *system, struct cloth_error *error)
 {
     const struct flow *flow = flow_of(call);
     struct tied_pairs tied = {.springs = flow->model->format == SOLVE_SPRINGS};
@@ -358,7 +358,7 @@ static int system_save_body(const duite_call *call, const struct system_save_fie
 {
     struct flow *flow = flow_of(call);
     struct solve_system system = {0};
-    int code = gather(call, on, &system, &flow->trouble);
+    int code = gather_system(call, on, &system, &flow->trouble);
     if (!code)
         code = flow->output->system(flow->output->context, &system, &flow->trouble);
     solve_system_free(&system);

@@ -13,6 +13,48 @@ static bool may_rest(const struct flow_state *state)
     return state->flow->model->rest.speed > 0;
 }
 
+/* Widens a range to the stretches of the block's edges that count. */
+static void find_range(const struct flow_table *t, const phys_vec *x, const duite_param *halo_x,
+                       double range[2])
+{
+    struct phys_springs springs = flow_table_inner(t);
+    phys_springs_range(&springs, t->stretch, x, x, range);
+    for (uint32_t s = 0; s < t->n_neighbours; s++) {
+        springs = flow_table_cut(t, s);
+        phys_springs_range(&springs, t->stretch + t->n_inner + t->cut[s], x,
+                           flow_rows_of(halo_x, s), range);
+    }
+}
+
+/* ---- The largest stretch, by which steps are judged and which the report has ---- */
+
+FLOW_KERNEL(stretch, FLOW_NO_PART, struct flow_block_args,
+            (R(table), R(x), MAX(stretch), NEIGHBOURS(halo_x)))
+static int stretch_body(const duite_call *call, const struct stretch_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table);
+    double range[2] = {0};
+    find_range(&table, on->x, on->halo_x, range);
+    *on->stretch = range[1];
+    return 0;
+}
+
+int flow_stretch_fork(struct flow_state *state)
+{
+    struct flow_block_args args;
+    const double nothing = 0;
+    const int code =
+        duite_set(state->rt, flow_field_object(state, FLOW_FIELD_stretch, 0), &nothing);
+    return code ? code : flow_fork_each(state, &flow_kernel_stretch, &args);
+}
+
+int flow_stretch_get(struct flow_state *state, double *stretch)
+{
+    return duite_get(state->rt, flow_field_object(state, FLOW_FIELD_stretch, 0), stretch);
+}
+
+/* ---- Watching ---- */
+
 FLOW_KERNEL(watch, FLOW_OUTPUT, struct flow_block_args,
             (R(table), R(x), R(v), MAX(peaks), NEIGHBOURS(halo_x)))
 static int watch_body(const duite_call *call, const struct watch_fields *on)
@@ -20,13 +62,7 @@ static int watch_body(const duite_call *call, const struct watch_fields *on)
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     double range[2] = {INFINITY, -INFINITY}, max = 0;
     phys_kinetic(t->n, t->mass, on->v, &max);
-    struct phys_springs springs = flow_table_inner(t);
-    phys_springs_range(&springs, t->stretch, on->x, on->x, range);
-    for (uint32_t s = 0; s < t->n_neighbours; s++) {
-        springs = flow_table_cut(t, s);
-        phys_springs_range(&springs, t->stretch + t->n_inner + t->cut[s], on->x,
-                           flow_rows_of(on->halo_x, s), range);
-    }
+    find_range(t, on->x, on->halo_x, range);
     on->peaks[FLOW_PEAK_SPEED] = max;
     on->peaks[FLOW_PEAK_LONGEST] = range[1];
     on->peaks[FLOW_PEAK_SHORTEST] = -range[0];

@@ -15,7 +15,7 @@ struct finder {
     struct cloth_error *error;
 };
 
-static void find(void *to, uint32_t vertex)
+static void find_entry(void *to, uint32_t vertex)
 {
     struct finder *finder = to;
     uint32_t *entry = cloth_list_add(&finder->entries, sizeof *entry, 1, finder->error);
@@ -51,7 +51,7 @@ static int find_all(struct flow_watched *watched, const struct flow_source *sour
                                              .cloth = model->cloths + probe->cloth,
                                              .used = source->particles.used + finder->first,
                                              .what = "a probe",
-                                             .visit = find,
+                                             .visit = find_entry,
                                              .to = finder};
         int code = flow_pick(&picking, error);
         if (!code && error->code)
@@ -65,15 +65,15 @@ static int find_all(struct flow_watched *watched, const struct flow_source *sour
     return CLOTH_OK;
 }
 
-static int compare(const void *va, const void *vb)
+static int compare_places(const void *va, const void *vb)
 {
     const uint32_t a = *(const uint32_t *)va, b = *(const uint32_t *)vb;
     return (a > b) - (a < b);
 }
 
 /* Places of the entries, ascending, each once; and where each entry's is. */
-static int sort(struct flow_watched *watched, const struct flow_source *source, size_t n,
-                const uint32_t *vertex, struct cloth_error *error)
+static int sort_places(struct flow_watched *watched, const struct flow_source *source, size_t n,
+                       const uint32_t *vertex, struct cloth_error *error)
 {
     watched->place = cloth_alloc(n, sizeof *watched->place, error);
     watched->entry = cloth_alloc(n, sizeof *watched->entry, error);
@@ -83,14 +83,14 @@ static int sort(struct flow_watched *watched, const struct flow_source *source, 
         return CLOTH_E_MEMORY;
     for (size_t i = 0; i < n; i++)
         watched->place[i] = source->blocks.place[vertex[i]];
-    qsort(watched->place, n, sizeof *watched->place, compare);
+    qsort(watched->place, n, sizeof *watched->place, compare_places);
     for (size_t i = 0; i < n; i++)
         if (i == 0 || watched->place[i] != watched->place[watched->n - 1])
             watched->place[watched->n++] = watched->place[i];
     for (size_t i = 0; i < n; i++) {
         const uint32_t place = source->blocks.place[vertex[i]];
         const uint32_t *at =
-            bsearch(&place, watched->place, watched->n, sizeof *watched->place, compare);
+            bsearch(&place, watched->place, watched->n, sizeof *watched->place, compare_places);
         watched->entry[i] = (uint32_t)(at - watched->place);
         watched->vertex[i] = vertex[i];
     }
@@ -133,7 +133,7 @@ int flow_watched_make(struct flow_watched *watched, const struct flow_source *so
     watched->first = cloth_alloc((size_t)model->n_probes + 1, sizeof *watched->first, error);
     int code = watched->first ? find_all(watched, source, &finder, error) : CLOTH_E_MEMORY;
     if (!code)
-        code = sort(watched, source, finder.entries.n, finder.entries.items, error);
+        code = sort_places(watched, source, finder.entries.n, finder.entries.items, error);
     if (!code)
         code = find_again(watched, model->n_probes, error);
     free(finder.entries.items);

@@ -1,11 +1,107 @@
 /* Pins that follow obstacles. A rigid obstacle takes its vertices along by its motion. One with
  * frames changes its shape: each vertex gets an anchor on it, whose number stands behind those of
- * motions. */
+ * motions. An anchor is a point of a triangle, and an offset in the triangle's axes: its first
+ * edge, the direction across it in the plane, and the normal. Both turn with the triangle. */
 #include "cloth/flow/run/source.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/contact/pair.h"
 
+#include <math.h>
 #include <stdlib.h>
+
+static const struct contact_body *body_of(const struct model *model, uint32_t obstacle)
+{
+    return contact_bodies_at(&model->bodies, model->obstacles[obstacle].body);
+}
+
+/* Moves a vertex by the frames, then by the motion of the obstacle. */
+static void place_vertex(const struct model *model, uint32_t obstacle, uint32_t vertex, double time,
+                         phys_vec *to)
+{
+    const struct contact_shape *shape = model->obstacles + obstacle;
+    contact_body_vertex_place(body_of(model, obstacle), time, vertex, to);
+    if (shape->n) {
+        struct phys_pose pose;
+        phys_pose_at(shape->n, model->keys + shape->first, shape->about, time, &pose);
+        phys_pose_point(&pose, to, to);
+    }
+}
+
+static void place_all(const struct model *model, uint32_t obstacle, phys_vec *place)
+{
+    for (uint32_t v = 0; v < body_of(model, obstacle)->n_vertices; v++)
+        place_vertex(model, obstacle, v, 0, place + v);
+}
+
+static void cross_product(const phys_vec *a, const phys_vec *b, phys_vec *to)
+{
+    const phys_vec u = *a, v = *b;
+    *to = (phys_vec){u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                     u[0] * v[1] - u[1] * v[0], 0};
+}
+
+/* Makes a vector one of length 1; one of length 0 becomes another. */
+static void normalise_axis(phys_vec *x, const phys_vec *other)
+{
+    const double square = phys_dot(x, x);
+    *x = square > 0 ? *x / sqrt(square) : *other;
+}
+
+/* The axes of a triangle. Without area it gets any axes, which do not turn with it. */
+static void find_axes(const phys_vec x[3], phys_vec axis[3])
+{
+    const phys_vec first = {1, 0, 0, 0}, last = {0, 0, 1, 0}, side = x[2] - x[0];
+    axis[0] = x[1] - x[0];
+    cross_product(axis, &side, axis + 2);
+    normalise_axis(axis, &first);
+    normalise_axis(axis + 2, &last);
+    cross_product(axis + 2, axis, axis + 1);
+}
+
+/* Finds the anchor of a vertex at x, m, when a run starts: the nearest point of the body, of equals
+ * that of the first facet. place: the body's vertices at the start. */
+static void find_anchor(const struct model *model, uint32_t obstacle, const phys_vec *place,
+                        const phys_vec *x, struct flow_anchor *anchor)
+{
+    const struct contact_body *body = body_of(model, obstacle);
+    const struct contact_facet *facet = contact_body_facets(body);
+    double least = INFINITY;
+    phys_vec axis[3], way = *x;
+    *anchor = (struct flow_anchor){.obstacle = obstacle};
+    for (uint32_t f = 0; f < body->n_triangles; f++) {
+        const uint32_t *corner = facet[f].corner;
+        const phys_vec at[4] = {*x, place[corner[0]], place[corner[1]], place[corner[2]]};
+        struct contact_nearest nearest;
+        contact_nearest_of(CONTACT_VT, at, &nearest);
+        if (!(nearest.gap < least))
+            continue;
+        least = nearest.gap;
+        for (int k = 0; k < 3; k++) {
+            anchor->corner[k] = corner[k];
+            anchor->weight[k] = -nearest.weight[k + 1];
+        }
+    }
+    const phys_vec at[3] = {place[anchor->corner[0]], place[anchor->corner[1]],
+                            place[anchor->corner[2]]};
+    find_axes(at, axis);
+    for (int k = 0; k < 3; k++)
+        way -= anchor->weight[k] * at[k];
+    for (int k = 0; k < 3; k++)
+        anchor->offset[k] = phys_dot(&way, axis + k);
+}
+
+void flow_anchor_place(const struct model *model, const struct flow_anchor *anchor, double time,
+                       phys_vec *to)
+{
+    phys_vec at[3], axis[3];
+    for (int k = 0; k < 3; k++)
+        place_vertex(model, anchor->obstacle, anchor->corner[k], time, at + k);
+    find_axes(at, axis);
+    *to = (phys_vec){0};
+    for (int k = 0; k < 3; k++)
+        *to += anchor->weight[k] * at[k] + anchor->offset[k] * axis[k];
+}
 
 static uint32_t followed_by(const struct flow_particles *p, const struct model *model, uint32_t v)
 {
@@ -14,9 +110,7 @@ static uint32_t followed_by(const struct flow_particles *p, const struct model *
 
 static bool has_frames(const struct model *model, uint32_t obstacle)
 {
-    const struct contact_body *body =
-        contact_bodies_at(&model->bodies, model->obstacles[obstacle].body);
-    return body && body->n_frames;
+    return body_of(model, obstacle) && body_of(model, obstacle)->n_frames;
 }
 
 static void start_of(const struct flow_particles *p, const struct model *model, uint32_t cloth,
@@ -28,7 +122,8 @@ static void start_of(const struct flow_particles *p, const struct model *model, 
 }
 
 /* Marks all vertices that follow an obstacle, and those welded to them. */
-static int mark(struct flow_particles *p, const struct model *model, struct cloth_error *error)
+static int mark_followers(struct flow_particles *p, const struct model *model,
+                          struct cloth_error *error)
 {
     p->attached = cloth_alloc(p->n, sizeof *p->attached, error);
     if (!p->attached)
@@ -49,7 +144,7 @@ static void add_anchors(struct flow_particles *p, const struct model *model, uin
             if (p->attached[v] != obstacle + 1 || flow_root(&p->welds, v) != v)
                 continue;
             start_of(p, model, c, first, v, &x);
-            flow_anchor_find(model, obstacle, place, &x, p->anchor + p->n_anchors);
+            find_anchor(model, obstacle, place, &x, p->anchor + p->n_anchors);
             p->motion[v] = model->n_motions + ++p->n_anchors;
         }
 }
@@ -57,8 +152,7 @@ static void add_anchors(struct flow_particles *p, const struct model *model, uin
 static int anchor_all(struct flow_particles *p, const struct model *model, uint32_t obstacle,
                       struct cloth_error *error)
 {
-    const struct contact_body *body =
-        contact_bodies_at(&model->bodies, model->obstacles[obstacle].body);
+    const struct contact_body *body = body_of(model, obstacle);
     uint32_t n = 0;
     for (uint32_t v = 0; v < p->n; v++)
         n += p->attached[v] == obstacle + 1;
@@ -68,7 +162,7 @@ static int anchor_all(struct flow_particles *p, const struct model *model, uint3
     p->anchor = grown ? grown : p->anchor;
     phys_vec *place = aligned_alloc(sizeof *place, body->n_vertices * sizeof *place);
     if (grown && place) {
-        flow_anchor_places(model, obstacle, place);
+        place_all(model, obstacle, place);
         add_anchors(p, model, obstacle, place);
     } else {
         cloth_fail(error, CLOTH_E_MEMORY, "out of memory for pins that follow a body");
@@ -79,7 +173,7 @@ static int anchor_all(struct flow_particles *p, const struct model *model, uint3
 
 int flow_follow_make(struct flow_particles *p, const struct model *model, struct cloth_error *error)
 {
-    int code = model_follows(model) ? mark(p, model, error) : CLOTH_OK;
+    int code = model_follows(model) ? mark_followers(p, model, error) : CLOTH_OK;
     for (uint32_t i = 0; i < model->n_obstacles && p->attached && !code; i++)
         code = anchor_all(p, model, i, error);
     return code;

@@ -30,7 +30,8 @@ static const struct phys_pose *pose_of(struct flow_pins *pins, uint32_t motion)
 
 /* The place, at the time of the pins, of a vertex that starts at x, by a motion or by an anchor,
  * numbered behind all motions. */
-static void place(struct flow_pins *pins, uint32_t motion, const phys_vec *x, phys_vec *to)
+static void place_vertex_at(struct flow_pins *pins, uint32_t motion, const phys_vec *x,
+                            phys_vec *to)
 {
     const uint32_t n = pins->model->n_motions;
     if (motion > n) {
@@ -127,7 +128,7 @@ static int prescribe_velocity_body(const duite_call *call,
     for (uint32_t i = 0; i < t->n_moved; i++) {
         const uint32_t row = t->moved[i][0];
         phys_vec to;
-        place(&pins, t->moved[i][1], t->position + row, &to);
+        place_vertex_at(&pins, t->moved[i][1], t->position + row, &to);
         v[row] = (to - x[row]) / h;
     }
     for (uint32_t i = 0; i < t->n_sliding; i++) {
@@ -156,7 +157,7 @@ static int prescribe_position_body(const duite_call *call,
     flow_pins_begin(call, t, on->args->time, &pins);
     for (uint32_t i = 0; i < t->n_moved; i++) {
         const uint32_t row = t->moved[i][0];
-        place(&pins, t->moved[i][1], t->position + row, x + row);
+        place_vertex_at(&pins, t->moved[i][1], t->position + row, x + row);
     }
     for (uint32_t i = 0; i < t->n_sliding; i++) {
         flow_pins_slider(&pins, i, &slider);
@@ -195,7 +196,7 @@ void flow_due_acceleration(const duite_call *call, const struct flow_two_steps *
     phys_vec x[3];
     pins_of(call, steps, pins);
     for (int i = 0; i < 3; i++)
-        place(pins + i, motion, start, x + i);
+        place_vertex_at(pins + i, motion, start, x + i);
     second_difference(steps, x, a);
 }
 

@@ -7,6 +7,8 @@
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/state/bodies.h"
 
+#include "cloth/base/order.h"
+
 #include <stddef.h>
 #include <string.h>
 
@@ -29,11 +31,6 @@ static size_t n_frictions(const struct model *model)
 static size_t apart_bytes(const struct model *model)
 {
     return model->contact.apart.apart ? model->n_cloths * sizeof(uint32_t) + n_frictions(model) : 0;
-}
-
-static uint32_t larger(uint32_t a, uint32_t b)
-{
-    return a > b ? a : b;
 }
 
 static int broadcast_head(const duite_call *call)
@@ -73,20 +70,21 @@ static int broadcast_head(const duite_call *call)
         (3 * (uint64_t)head->n_neighbours + head->n_ghosts) * sizeof(uint32_t);
     for (uint32_t b = 0; b < head->n_blocks; b++) {
         const struct flow_table *t = source->shape + b;
-        head->max_rows = larger(t->n, head->max_rows);
-        head->max_neighbours = larger(t->n_neighbours, head->max_neighbours);
-        head->max_halo = larger(t->n_halo, head->max_halo);
-        head->max_ghosts = larger(t->n_ghosts, head->max_ghosts);
+        head->max_rows = (uint32_t)cloth_larger(t->n, head->max_rows);
+        head->max_neighbours = (uint32_t)cloth_larger(t->n_neighbours, head->max_neighbours);
+        head->max_halo = (uint32_t)cloth_larger(t->n_halo, head->max_halo);
+        head->max_ghosts = (uint32_t)cloth_larger(t->n_ghosts, head->max_ghosts);
         for (int kind = 0; kind < ELEMENT_KINDS; kind++)
             head->n_elements += t->n_elements[kind];
-        head->max_entries = larger(t->n_entries + t->n_cut_entries, head->max_entries);
+        head->max_entries =
+            (uint32_t)cloth_larger(t->n_entries + t->n_cut_entries, head->max_entries);
     }
     return 0;
 }
 const duite_kernel flow_broadcast_head = {
     .name = "broadcast_head", .body = broadcast_head, .access = {DUITE_W}};
 
-static char *put(char *to, const void *from, size_t bytes)
+static char *put_bytes(char *to, const void *from, size_t bytes)
 {
     if (bytes)
         memcpy(to, from, bytes);
@@ -99,7 +97,7 @@ static char *put_frictions(char *to, const struct model *model)
         for (uint32_t i = 0; i < model->n_cloths + model->n_obstacles; i++) {
             const double friction =
                 model_meets(model, c, i) ? model_friction(model, c, i) : FLOW_APART;
-            to = put(to, &friction, sizeof friction);
+            to = put_bytes(to, &friction, sizeof friction);
         }
     return to;
 }
@@ -108,7 +106,7 @@ static char *put_ties(char *to, const struct flow_source *source)
 {
     for (uint32_t i = 0; i < source->springs.n_timed; i++) {
         const struct flow_tie tie = flow_joints_tie(source, source->springs.timed + i);
-        to = put(to, &tie, sizeof tie);
+        to = put_bytes(to, &tie, sizeof tie);
     }
     return to;
 }
@@ -118,16 +116,16 @@ static char *put_model(char *to, const struct flow *flow)
 {
     const struct model *model = flow->model;
     const struct flow_source *source = &flow->source;
-    to = put(to, model->bodies.memory, model->bodies.bytes); /* first, as it is aligned */
-    to = put(to, model->obstacles, model->n_obstacles * sizeof *model->obstacles);
-    to = put(to, model->keys, model->n_keys * sizeof *model->keys);
-    to = put(to, model->sliders, model->n_sliders * sizeof *model->sliders);
-    to = put(to, model->curve_keys, model->n_curve_keys * sizeof *model->curve_keys);
-    to = put(to, model->curves, model->n_curves * sizeof *model->curves);
-    to = put(to, model->motions, model->n_motions * sizeof *model->motions);
+    to = put_bytes(to, model->bodies.memory, model->bodies.bytes); /* first, as it is aligned */
+    to = put_bytes(to, model->obstacles, model->n_obstacles * sizeof *model->obstacles);
+    to = put_bytes(to, model->keys, model->n_keys * sizeof *model->keys);
+    to = put_bytes(to, model->sliders, model->n_sliders * sizeof *model->sliders);
+    to = put_bytes(to, model->curve_keys, model->n_curve_keys * sizeof *model->curve_keys);
+    to = put_bytes(to, model->curves, model->n_curves * sizeof *model->curves);
+    to = put_bytes(to, model->motions, model->n_motions * sizeof *model->motions);
     to = put_frictions(to, model);
-    to = put(to, source->particles.anchor,
-             source->particles.n_anchors * sizeof *source->particles.anchor);
+    to = put_bytes(to, source->particles.anchor,
+                   source->particles.n_anchors * sizeof *source->particles.anchor);
     return put_ties(to, source);
 }
 
@@ -136,12 +134,12 @@ static char *put_blocks(char *to, const struct flow_source *source)
     const uint32_t n_blocks = source->blocks.n_blocks;
     const struct flow_neighbours *all = &source->neighbours;
     for (uint32_t b = 0; b < n_blocks; b++)
-        to = put(to, source->shape + b, SHAPE);
-    to = put(to, all->neighbour, all->n_neighbours * sizeof *all->neighbour);
-    to = put(to, all->ghost_start,
-             ((size_t)all->n_neighbours + n_blocks) * sizeof *all->ghost_start);
-    to = put(to, all->ghost, all->n_ghosts * sizeof *all->ghost);
-    return put(to, all->joins, all->n_neighbours * sizeof *all->joins);
+        to = put_bytes(to, source->shape + b, SHAPE);
+    to = put_bytes(to, all->neighbour, all->n_neighbours * sizeof *all->neighbour);
+    to = put_bytes(to, all->ghost_start,
+                   ((size_t)all->n_neighbours + n_blocks) * sizeof *all->ghost_start);
+    to = put_bytes(to, all->ghost, all->n_ghosts * sizeof *all->ghost);
+    return put_bytes(to, all->joins, all->n_neighbours * sizeof *all->joins);
 }
 
 static int broadcast_shared(const duite_call *call)
@@ -151,8 +149,8 @@ static int broadcast_shared(const duite_call *call)
     char *to = put_model(duite_out(call, 0, char), flow);
     to = put_blocks(to, &flow->source);
     if (apart->apart) {
-        to = put(to, apart->end, flow->model->n_cloths * sizeof *apart->end);
-        put(to, apart->apart, n_frictions(flow->model));
+        to = put_bytes(to, apart->end, flow->model->n_cloths * sizeof *apart->end);
+        put_bytes(to, apart->apart, n_frictions(flow->model));
     }
     return 0;
 }
@@ -330,11 +328,6 @@ static int distribute(struct flow_state *state, uint32_t from, uint32_t to)
     return code ? code : failed;
 }
 
-static uint32_t smaller(uint32_t a, uint32_t b)
-{
-    return a < b ? a : b;
-}
-
 static void forget_source(struct flow_state *state)
 {
     struct flow *flow = state->flow;
@@ -360,11 +353,11 @@ int flow_distribute(struct flow_state *state)
     const bool makes = duite_rank(state->rt) == 0;
     int code = DUITE_OK;
     for (uint32_t from = 0; from < n && !code; from += group) {
-        const uint32_t to = from + smaller(group, n - from);
+        const uint32_t to = from + (uint32_t)cloth_smaller(group, n - from);
         if (makes) /* tasks report its failures */
             flow_source_gather(&flow->source, from, to, &flow->trouble);
         for (uint32_t b = from; b < to && !code; b += TRAVEL)
-            code = distribute(state, b, b + smaller(TRAVEL, to - b));
+            code = distribute(state, b, b + (uint32_t)cloth_smaller(TRAVEL, to - b));
     }
     if (makes)
         forget_source(state);

@@ -1,11 +1,15 @@
 /* Loads add up vertex by vertex, with the weights. Loads that vary in time are kept one by one, in
- * the order of the scene. So each vertex has the same sums for any blocks. */
+ * the order of the scene. So each vertex has the same sums for any blocks. In a run they are those
+ * at the time of the state whose forces are computed; the end of the step for implicit ones. */
 #include "cloth/flow/run/source.h"
+#include "cloth/flow/state/bodies.h"
 
 #include "cloth/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
+
+/* ---- Set-up ---- */
 
 /* A load and its addition to a vertex. */
 struct loader {
@@ -116,7 +120,7 @@ int flow_loads_make(struct flow_particles *p, uint32_t first, const struct model
     return code;
 }
 
-static int compare(const void *va, const void *vb)
+static int compare_varying(const void *va, const void *vb)
 {
     const struct flow_varying *a = va, *b = vb;
     const int order = (a->at > b->at) - (a->at < b->at);
@@ -135,7 +139,7 @@ void flow_varying_settle(struct flow_source *source)
     }
     p->n_varying = n;
     if (n)
-        qsort(p->varying, n, sizeof *p->varying, compare);
+        qsort(p->varying, n, sizeof *p->varying, compare_varying);
 }
 
 uint32_t flow_varying_from(const struct flow_source *source, uint32_t place)
@@ -150,4 +154,30 @@ uint32_t flow_varying_from(const struct flow_source *source, uint32_t place)
             high = middle;
     }
     return low;
+}
+
+/* ---- In bodies ---- */
+
+void flow_varying_add(const duite_call *call, const struct flow_table *t, double now, phys_vec *f)
+{
+    const struct model *model = flow_of(call)->model;
+    uint32_t curve = 0; /* that the factor is of */
+    double factor = 1;
+    for (uint32_t i = 0; i < t->n_varying; i++) {
+        if (curve != t->varying[i][1])
+            factor = model_curve_at(model, t->varying[i][1], now);
+        curve = t->varying[i][1];
+        f[t->varying[i][0]] += factor * t->varying_force[i];
+    }
+}
+
+double flow_varying_energy(const duite_call *call, const struct flow_table *t, double now,
+                           const phys_vec *x)
+{
+    const struct model *model = flow_of(call)->model;
+    double sum = 0;
+    for (uint32_t i = 0; i < t->n_varying; i++)
+        sum -= model_curve_at(model, t->varying[i][1], now) *
+               phys_dot(t->varying_force + i, x + t->varying[i][0]);
+    return sum;
 }

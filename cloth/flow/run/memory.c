@@ -8,19 +8,10 @@
 #include "cloth/flow/state/bodies.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static size_t larger(size_t a, size_t b)
-{
-    return a > b ? a : b;
-}
-
-static size_t smaller(size_t a, size_t b)
-{
-    return a < b ? a : b;
-}
 
 /* Takes room on rank 0 to gather a frame, and a part of the state to be hashed. */
 static void take_room(struct flow_state *state)
@@ -61,15 +52,15 @@ static void take_forces(struct flow *flow)
         cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for the forces of a block");
 }
 
-static void take(struct flow_state *state)
+static void take_all(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     const struct flow_head *head = &state->head;
     const size_t tied = model_seeks(flow->model) /* others of a block, at most */
                             ? head->n_blocks
-                            : smaller(head->n_blocks, 2 * (size_t)head->n_ties);
+                            : cloth_smaller(head->n_blocks, 2 * (size_t)head->n_ties);
     const size_t groups = head->n_blocks; /* fewer than that, on all levels */
-    const size_t refs = larger(head->n_blocks, 2 * (size_t)head->max_neighbours) + 4 * tied +
+    const size_t refs = cloth_larger(head->n_blocks, 2 * (size_t)head->max_neighbours) + 4 * tied +
                         groups + DUITE_MAX_ACCESS;
     flow->n_clocks = duite_threads(state->rt);
     flow->clock = aligned_alloc(sizeof *flow->clock, flow->n_clocks * sizeof *flow->clock);
@@ -99,7 +90,7 @@ static void take(struct flow_state *state)
     state->block = cloth_alloc(head->n_blocks, sizeof *state->block, &flow->trouble);
     state->max_refs = refs;
     state->refs = cloth_alloc(FLOW_FORKS_AHEAD * refs, sizeof *state->refs, &flow->trouble);
-    state->rows = cloth_alloc(larger(4 * (size_t)head->max_rows, head->max_neighbours),
+    state->rows = cloth_alloc(cloth_larger(4 * (size_t)head->max_rows, head->max_neighbours),
                               sizeof *state->rows, &flow->trouble);
     state->seam_peaks =
         cloth_alloc(flow->model->n_pulled, sizeof *state->seam_peaks, &flow->trouble);
@@ -136,7 +127,7 @@ int flow_memory_agree(struct flow_state *state)
 
 int flow_memory_take(struct flow_state *state)
 {
-    take(state);
+    take_all(state);
     return flow_memory_agree(state);
 }
 
@@ -165,14 +156,4 @@ void flow_memory_free(struct flow_state *state)
     flow_contact_free(state);
     free(state->bytes);
     XXH64_freeState(state->hash);
-    flow->clock = NULL;
-    flow->sums = NULL;
-    flow->ghost_room = flow->forces = NULL;
-    flow->room = flow->row = flow->probe_values = NULL;
-    state->block = NULL;
-    state->bytes = NULL;
-    state->hash = NULL;
-    state->refs = NULL;
-    state->rows = NULL;
-    state->seam_peaks = state->seam_squares = NULL;
 }

@@ -3,6 +3,7 @@
 #include "cloth/flow/run/source.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 
 #include <stdlib.h>
 
@@ -41,7 +42,7 @@ static void add_need(struct finder *finder, uint32_t reader, uint32_t other, uin
 
 /* Counts an entry between vertices a and b that something joins; that they have one already does
  * no harm. Returns the blocks of both. */
-static void join(struct finder *finder, uint32_t a, uint32_t b, struct flow_table *block[2])
+static void join_blocks(struct finder *finder, uint32_t a, uint32_t b, struct flow_table *block[2])
 {
     const struct flow_source *source = finder->source;
     const uint32_t p = source->blocks.place[a], q = source->blocks.place[b];
@@ -82,11 +83,11 @@ static void count_corrected(struct flow_source *source, const struct flow_spring
     source->cut[source->blocks.place[spring->b]]++;
 }
 
-static void find(void *to, const struct flow_spring *spring)
+static void find_need(void *to, const struct flow_spring *spring)
 {
     struct finder *finder = to;
     struct flow_table *block[2];
-    join(to, spring->a, spring->b, block);
+    join_blocks(to, spring->a, spring->b, block);
     if (spring->correction)
         count_corrected(finder->source, spring, block);
     block[0]->n_stiff += spring->stiffness > 0;
@@ -114,23 +115,18 @@ static void number_halo(const struct flow_source *source, struct flow_table *sha
     shape->halo_start[SOLVE_MAX_PATCHES] = shape->n_halo;
 }
 
-static int compare_u32(uint32_t a, uint32_t b)
-{
-    return (a > b) - (a < b);
-}
-
 static int compare_needs(const void *va, const void *vb)
 {
     const struct need *a = va, *b = vb;
-    int order = compare_u32(a->reader, b->reader);
+    int order = cloth_compare_u32(a->reader, b->reader);
     if (!order)
-        order = compare_u32(a->other, b->other);
-    return order ? order : compare_u32(a->place, b->place);
+        order = cloth_compare_u32(a->other, b->other);
+    return order ? order : cloth_compare_u32(a->place, b->place);
 }
 
 /* Keeps each of the sorted needs once, and counts neighbours and ghosts. Returns how many are left.
  */
-static size_t count(struct flow_source *source, struct need *need, size_t n)
+static size_t count_needs(struct flow_source *source, struct need *need, size_t n)
 {
     size_t kept = 0;
     for (size_t i = 0; i < n; i++) {
@@ -159,7 +155,7 @@ static uint32_t joins_of(const struct flow_source *source, const struct need *ne
 }
 
 /* Fills the arrays, and lets the shapes point into them. */
-static void fill(struct flow_source *source, const struct need *need)
+static void fill_neighbour(struct flow_source *source, const struct need *need)
 {
     uint32_t *neighbour = source->neighbours.neighbour,
              *ghost_start = source->neighbours.ghost_start;
@@ -191,13 +187,14 @@ static void fill(struct flow_source *source, const struct need *need)
     }
 }
 
-static int make(struct flow_source *source, struct cloth_list *needs, struct cloth_error *error)
+static int make_neighbours(struct flow_source *source, struct cloth_list *needs,
+                           struct cloth_error *error)
 {
     struct flow_neighbours *all = &source->neighbours;
     const uint32_t n_blocks = source->blocks.n_blocks;
     if (needs->n)
         qsort(needs->items, needs->n, sizeof(struct need), compare_needs);
-    all->n_ghosts = (uint32_t)count(source, needs->items, needs->n);
+    all->n_ghosts = (uint32_t)count_needs(source, needs->items, needs->n);
     for (uint32_t b = 0; b < n_blocks; b++)
         all->n_neighbours += source->shape[b].n_neighbours;
     all->neighbour = cloth_alloc(all->n_neighbours, sizeof *all->neighbour, error);
@@ -207,7 +204,7 @@ static int make(struct flow_source *source, struct cloth_list *needs, struct clo
     all->joins = cloth_alloc(all->n_neighbours, sizeof *all->joins, error);
     if (!all->neighbour || !all->joins || !all->ghost_start || !all->ghost)
         return CLOTH_E_MEMORY;
-    fill(source, needs->items);
+    fill_neighbour(source, needs->items);
     return CLOTH_OK;
 }
 
@@ -219,11 +216,11 @@ int flow_source_meet(struct flow_source *source, struct cloth_error *error)
         source->cut = cloth_alloc(source->particles.n, sizeof *source->cut, error);
     if (source->model->correction_rounds && !source->cut)
         return CLOTH_E_MEMORY;
-    flow_springs_each(&source->springs, find, &finder);
+    flow_springs_each(&source->springs, find_need, &finder);
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++)
         number_halo(source, source->shape + b);
     if (!finder.code)
-        finder.code = make(source, &finder.needs, error);
+        finder.code = make_neighbours(source, &finder.needs, error);
     free(finder.needs.items);
     return finder.code;
 }

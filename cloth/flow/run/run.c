@@ -27,25 +27,26 @@ double flow_now(void)
 
 const duite_kernel *const *flow_kernels(void)
 {
-#define TASK(name) &flow_kernel_##name.task,
-    static const duite_kernel *const all[FLOW_KERNELS_LISTED + 1] = {FLOW_KERNELS(TASK) &
-                                                                         flow_broadcast_head,
-                                                                     &flow_broadcast_shared,
-                                                                     &flow_ready,
-                                                                     &flow_pack,
-                                                                     &flow_group_factor,
-                                                                     &flow_group_start,
-                                                                     &flow_group_solve,
-                                                                     &flow_meet,
-                                                                     &flow_meet_shape,
-                                                                     &flow_touch,
-                                                                     &flow_cut_ways,
-                                                                     &flow_count_ties,
-                                                                     &flow_tie_contacts,
-                                                                     &flow_save_block,
-                                                                     &flow_send_main,
-                                                                     &flow_load_block,
-                                                                     NULL};
+#define TASK(name)      &flow_kernel_##name.task,
+#define TASK_LESS(name) &flow_kernel_##name##_less,
+    static const duite_kernel *const all[FLOW_KERNELS_LISTED + 1] = {
+        FLOW_KERNELS(TASK) FLOW_KERNELS_IF(TASK_LESS) & flow_broadcast_head,
+        &flow_broadcast_shared,
+        &flow_ready,
+        &flow_pack,
+        &flow_group_factor,
+        &flow_group_start,
+        &flow_group_solve,
+        &flow_meet,
+        &flow_meet_shape,
+        &flow_touch,
+        &flow_cut_ways,
+        &flow_count_ties,
+        &flow_tie_contacts,
+        &flow_save_block,
+        &flow_send_main,
+        &flow_load_block,
+        NULL};
     return all;
 }
 
@@ -76,7 +77,7 @@ static int keep_unused(struct flow *flow, const struct flow_particles *particles
     return CLOTH_OK;
 }
 
-static int build(struct flow *flow, int ranks, struct cloth_error *error)
+static int build_source(struct flow *flow, int ranks, struct cloth_error *error)
 {
     const int code = flow_source_make(&flow->source, flow->model, ranks, error);
     if (code)
@@ -121,7 +122,7 @@ int flow_prepare(struct flow **flow, const struct model *model, int ranks,
                           "end / h makes %g steps; at most 4294967294 are possible",
                           model->end / model->h);
     if (!code)
-        code = build(*flow, ranks, error);
+        code = build_source(*flow, ranks, error);
     if (code) {
         flow_free(*flow);
         *flow = NULL;
@@ -201,7 +202,7 @@ const char *flow_warning(const struct flow *flow, size_t i)
 
 /* ---- Running ---- */
 
-static void describe(const struct flow_state *state)
+static void describe_cloth(const struct flow_state *state)
 {
     const struct flow *flow = state->flow;
     *state->report = (struct flow_report){.vertices = flow->n_vertices,
@@ -214,7 +215,7 @@ static void describe(const struct flow_state *state)
 /* Makes objects, then tables, which go to the ranks of their objects. Everything that bodies find
  * by their context is made before waiting for the tables. A rank that is ahead may send tasks here
  * that this rank's main program has not reached. */
-static int make(struct flow_state *state)
+static int make_objects(struct flow_state *state)
 {
     flow_objects_make(state);
     if (model_is_implicit(state->flow->model))
@@ -236,7 +237,7 @@ int flow_run_begin(struct flow_state *state)
     int code = flow_share_head(state);
     if (code)
         return code;
-    describe(state);
+    describe_cloth(state);
     state->report->rest_seconds = state->report->sewn_seconds = NAN;
     state->report->seams = flow->model->n_pulled;
     state->report->correction_excess = flow->model->correction_rounds ? 0 : NAN;
@@ -246,7 +247,7 @@ int flow_run_begin(struct flow_state *state)
     if (!code)
         code = flow_preconditioner_prepare(state);
     if (!code)
-        code = make(state);
+        code = make_objects(state);
     for (uint32_t i = 0; flow->room && i < flow->unused.n; i++)
         memcpy(flow->room + 3 * (size_t)flow->unused.vertex[i], flow->unused.position[i],
                sizeof flow->unused.position[i]);
@@ -255,7 +256,7 @@ int flow_run_begin(struct flow_state *state)
 }
 
 /* Starts a run that does not go on from a checkpoint. */
-static int start(struct flow_state *state)
+static int start_anew(struct flow_state *state)
 {
     const int code = flow_initialise(state);
     return code ? code : flow_contact_start(state);
@@ -271,7 +272,7 @@ static int run_steps(struct flow_state *state)
     if (!code && implicit && !state->solve.generation)
         code = flow_cg_record(state);
     if (!code)
-        code = state->head.resumed_bytes ? flow_resume_blocks(state) : start(state);
+        code = state->head.resumed_bytes ? flow_resume_blocks(state) : start_anew(state);
     if (!code && !state->complete)
         code = flow_steps(state);
     if (!code && implicit && state->report->steps && state->output && state->output->system)

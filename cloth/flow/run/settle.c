@@ -28,7 +28,7 @@ static void report_progress(struct flow_state *state, uint64_t iterations)
 }
 
 /* Adds an accepted step to the report. */
-static void note(struct flow_state *state, const double status[FLOW_STATUS])
+static void note_step(struct flow_state *state, const double status[FLOW_STATUS])
 {
     struct flow_report *report = state->report;
     const double *lost = status + FLOW_LOST;
@@ -56,7 +56,7 @@ static void note(struct flow_state *state, const double status[FLOW_STATUS])
 }
 
 /* Ends the run: no step is short enough. */
-static int give_up(struct flow_state *state, const struct flow_verdict *verdict)
+static int give_up_step(struct flow_state *state, const struct flow_verdict *verdict)
 {
     const struct flow_step_args args = flow_attempt_args(state);
     if (state->contact.failed && flow_attempt_is_last(state))
@@ -72,7 +72,7 @@ static int give_up(struct flow_state *state, const struct flow_verdict *verdict)
 }
 
 /* The next step has half the length. Returns false if that is less than a tick. */
-static bool halve(struct flow_state *state, enum flow_cause cause)
+static bool halve_step(struct flow_state *state, enum flow_cause cause)
 {
     const bool halved = flow_grid_halve(&state->grid);
     state->report->halved_by[cause] += halved;
@@ -91,11 +91,11 @@ static enum flow_cause cause_of(const struct flow_state *state, const double sta
 }
 
 /* Takes the step back: it is to be made again with half the length. */
-static int refuse(struct flow_state *state, const double status[FLOW_STATUS],
-                  const struct flow_verdict *verdict)
+static int refuse_step(struct flow_state *state, const double status[FLOW_STATUS],
+                       const struct flow_verdict *verdict)
 {
-    if (!state->flow->model->halving || !halve(state, cause_of(state, status, verdict)))
-        return give_up(state, verdict);
+    if (!state->flow->model->halving || !halve_step(state, cause_of(state, status, verdict)))
+        return give_up_step(state, verdict);
     return flow_restore(state);
 }
 
@@ -108,19 +108,20 @@ static bool can_lose(const struct flow_state *state)
            (state->flow->model->halving && state->attempt.length > LEAST_GUARDED);
 }
 
-static int retake(struct flow_state *state, bool second)
+static int retake_step(struct flow_state *state, bool second)
 {
     if (second) {
         state->report->steps_retaken++;
     } else {
-        halve(state, FLOW_CAUSE_ENERGY);
+        halve_step(state, FLOW_CAUSE_ENERGY);
         state->guard.calm = state->attempt.begin + CALM_AFTER_GAIN;
     }
     return flow_restore(state);
 }
 
 /* Waits for the status and verdict of the step that was forked whole. */
-static int await(struct flow_state *state, double status[FLOW_STATUS], struct flow_verdict *verdict)
+static int await_step(struct flow_state *state, double status[FLOW_STATUS],
+                      struct flow_verdict *verdict)
 {
     const struct model *model = state->flow->model;
     const unsigned parity = state->attempt.parity;
@@ -150,8 +151,8 @@ static bool is_disturbed(const struct flow_state *state, const double status[FLO
 }
 
 /* Accepts a step and forks its frames. */
-static int accept(struct flow_state *state, const double status[FLOW_STATUS],
-                  const struct flow_verdict *verdict)
+static int accept_step(struct flow_state *state, const double status[FLOW_STATUS],
+                       const struct flow_verdict *verdict)
 {
     const struct flow_attempt attempt = state->attempt;
     state->length_before = state->length;
@@ -161,7 +162,7 @@ static int accept(struct flow_state *state, const double status[FLOW_STATUS],
         state->report->stretch_highest = state->longest;
     flow_grid_accept(&state->grid, flow_verdict_calm(verdict) &&
                                        attempt.begin + attempt.length >= state->guard.calm);
-    note(state, status);
+    note_step(state, status);
     flow_energy_note(state, is_disturbed(state, status));
     const int code = flow_watched(state);
     return code ? code : flow_frames(state, attempt.begin);
@@ -172,7 +173,7 @@ static int settle_step(struct flow_state *state)
 {
     struct flow_verdict verdict;
     double status[FLOW_STATUS];
-    const int code = await(state, status, &verdict);
+    const int code = await_step(state, status, &verdict);
     if (code)
         return code;
     const bool refused = flow_verdict_refuses(&verdict), second = flow_implicit_is_second(state);
@@ -182,10 +183,10 @@ static int settle_step(struct flow_state *state)
     flow_contact_settled(state, !refused && !gained);
     state->attempt.forked = false;
     if (!refused && !gained)
-        return accept(state, status, &verdict);
+        return accept_step(state, status, &verdict);
     state->settled_forces = false;
     state->guessed = 0; /* dv is of a step that is not made */
-    return refused ? refuse(state, status, &verdict) : retake(state, second);
+    return refused ? refuse_step(state, status, &verdict) : retake_step(state, second);
 }
 
 /* The step that follows the one under way, if that is accepted. */
@@ -246,14 +247,14 @@ static int watch_start(struct flow_state *state)
 }
 
 /* Ends the run early, on request. */
-static int stop(struct flow_state *state)
+static int stop_early(struct flow_state *state)
 {
     const int code = flow_save(state, false);
     state->report->stopped = true;
     return code ? code : flow_frame_last(state);
 }
 
-static int begin(struct flow_state *state)
+static int begin_steps(struct flow_state *state)
 {
     flow_grid_begin(&state->grid, state->flow->n_steps);
     state->next_frame = flow_before(state).frames;
@@ -266,7 +267,7 @@ static int begin(struct flow_state *state)
 }
 
 /* The work between two steps. frame: the next one before the last step. */
-static int pause(struct flow_state *state, uint64_t frame)
+static int pause_between(struct flow_state *state, uint64_t frame)
 {
     state->over = (state->resting || state->sewn) && state->next_frame > frame;
     if (state->over || !state->saving)
@@ -277,7 +278,7 @@ static int pause(struct flow_state *state, uint64_t frame)
 
 int flow_steps(struct flow_state *state)
 {
-    int code = state->head.resumed_bytes ? DUITE_OK : begin(state);
+    int code = state->head.resumed_bytes ? DUITE_OK : begin_steps(state);
     while (!code && !state->over && state->grid.now < state->grid.end) {
         const uint64_t frame = state->next_frame;
         bool begun;
@@ -286,8 +287,8 @@ int flow_steps(struct flow_state *state)
             code = flow_step_end(state);
         else if (!code && state->grid.now < state->grid.end) {
             if (state->stopping)
-                return stop(state);
-            code = pause(state, frame);
+                return stop_early(state);
+            code = pause_between(state, frame);
         }
     }
     if (!code && state->flow->model->sewn > 0 && !state->sewn)

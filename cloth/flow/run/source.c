@@ -2,6 +2,7 @@
 #include "cloth/flow/run/source.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/sets.h"
 
 #include <stdlib.h>
 
@@ -26,6 +27,55 @@ void flow_source_cloth(struct flow_cloths *at, const struct model *model, uint32
         *at = (struct flow_cloths){0};
     while (vertex - at->first >= model->cloths[at->cloth].mesh.n_vertices)
         at->first += model->cloths[at->cloth++].mesh.n_vertices;
+}
+
+/* ---- Pieces ----
+ *
+ * A piece has all vertices that springs and elements join, directly or through others. Pieces are
+ * numbered by their lowest vertex, so that the numbers depend on the scene alone. */
+
+static void join_ends(void *to, const struct flow_spring *spring)
+{
+    uint32_t *parent = to;
+    cloth_sets_join(parent, spring->a, spring->b);
+}
+
+/* Numbers the vertices of pieces: the lowest vertex of a piece gets the number, or 0 if a pin holds
+ * a vertex of the piece; then all others get theirs. Vertices come after the lowest one of their
+ * piece. */
+static uint32_t number_pieces(struct flow_particles *p, uint32_t *parent, const unsigned char *held)
+{
+    uint32_t n = 0;
+    for (uint32_t v = 0; v < p->n; v++) {
+        const uint32_t root = cloth_sets_root(parent, v);
+        const bool counts = root == v && p->used[v] && !held[v];
+        p->piece[v] = counts ? ++n : root == v ? 0 : p->piece[root];
+    }
+    return n;
+}
+
+static int make_pieces(struct flow_source *source, struct cloth_error *error)
+{
+    struct flow_particles *p = &source->particles;
+    uint32_t *parent = cloth_alloc(p->n, sizeof *parent, error);
+    unsigned char *held = cloth_alloc(p->n, 1, error);
+    p->piece = cloth_alloc(p->n, sizeof *p->piece, error);
+    const bool made = parent && held && p->piece;
+    if (made)
+        cloth_sets_start(parent, p->n);
+    if (made)
+        flow_springs_each(&source->springs, join_ends, parent);
+    for (uint32_t i = 0; made && i < p->welds.n; i++)
+        join_ends(parent,
+                  &(struct flow_spring){.a = p->welds.name[i][0], .b = p->welds.name[i][1]});
+    for (uint32_t v = 0; made && v < p->n; v++)
+        if (!p->free[v] || (p->slider && p->slider[v]))
+            held[cloth_sets_root(parent, v)] = 1;
+    if (made)
+        p->n_pieces = number_pieces(p, parent, held);
+    free(parent);
+    free(held);
+    return made ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
 /* ---- Cutting ---- */
@@ -67,7 +117,7 @@ static int cut_roots(struct flow_source *source, const struct mesh_pairs *pairs,
     return code ? code : flow_names_make(&source->names, &p->welds, &source->blocks, error);
 }
 
-static int cut(struct flow_source *source, int ranks, struct cloth_error *error)
+static int cut_blocks(struct flow_source *source, int ranks, struct cloth_error *error)
 {
     const struct mesh_pairs pairs = {&source->springs, each_pair};
     const struct mesh_blocks *blocks = &source->blocks;
@@ -83,21 +133,21 @@ static int cut(struct flow_source *source, int ranks, struct cloth_error *error)
 
 /* ---- Shapes ---- */
 
-static void widen(struct flow_table *shape, uint32_t v)
+static void widen_range(struct flow_table *shape, uint32_t v)
 {
     shape->lowest = v < shape->lowest ? v : shape->lowest;
     shape->highest = v > shape->highest ? v : shape->highest;
 }
 
-static void find_range(const struct flow_source *source, struct flow_table *shape)
+static void find_vertices(const struct flow_source *source, struct flow_table *shape)
 {
     const struct flow_names *names = &source->names;
     const uint32_t end = flow_names_from(names, shape->first + shape->n);
     shape->lowest = UINT32_MAX;
     for (uint32_t i = 0; i < shape->n; i++)
-        widen(shape, source->blocks.vertex[shape->first + i]);
+        widen_range(shape, source->blocks.vertex[shape->first + i]);
     for (uint32_t i = flow_names_from(names, shape->first); i < end; i++)
-        widen(shape, names->name[i][1]);
+        widen_range(shape, names->name[i][1]);
 }
 
 /* Counts the watched vertices of each block. */
@@ -133,7 +183,7 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
         shape->format = source->model->format;
         shape->first = blocks->start[b];
         shape->n = blocks->start[b + 1] - blocks->start[b];
-        find_range(source, shape);
+        find_vertices(source, shape);
         shape->n_moved = count_numbered(source, shape, source->particles.motion);
         shape->n_sliding = count_numbered(source, shape, source->particles.slider);
         shape->n_loose = count_numbered(source, shape, source->particles.piece);
@@ -168,9 +218,9 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
     if (!code)
         code = flow_joints_make(&source->springs, &source->particles, error);
     if (!code && model_is_implicit(model))
-        code = flow_pieces_make(source, error);
+        code = make_pieces(source, error);
     if (!code)
-        code = cut(source, ranks, error);
+        code = cut_blocks(source, ranks, error);
     if (!code)
         code = flow_watched_make(&source->watched, source, error);
     if (!code)

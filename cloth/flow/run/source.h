@@ -4,7 +4,6 @@
 #include "cloth/base/memory.h"
 #include "cloth/element/cloths.h"
 #include "cloth/flow/joints/ties.h"
-#include "cloth/flow/pins/anchor.h"
 #include "cloth/flow/state/tables.h"
 #include "cloth/mesh/blocks.h"
 #include "cloth/mesh/lattice.h"
@@ -27,6 +26,13 @@ static inline void flow_unusual_note(struct flow_unusual *unusual, const struct 
     if (unusual->n++ == 0)
         *unusual = (struct flow_unusual){1, vertex, cloth, place};
 }
+
+/* A vertex that follows a body with frames: a point of a triangle of the body, and where the vertex
+ * is from there in the triangle's own axes. Both go with the triangle. */
+struct flow_anchor {
+    uint32_t obstacle, corner[3]; /* that is the body; vertices of it */
+    double weight[3], offset[3];  /* sum 1; m */
+};
 
 /* A load that varies, on one vertex. */
 struct flow_varying {
@@ -87,6 +93,9 @@ void flow_starts_take(const struct flow_particles *particles, const struct model
  * Local. */
 int flow_follow_make(struct flow_particles *particles, const struct model *model,
                      struct cloth_error *error);
+/* The place of a vertex with an anchor at a time, s. Local. */
+void flow_anchor_place(const struct model *model, const struct flow_anchor *anchor, double time,
+                       phys_vec *to);
 
 /* Makes the loads of a cloth, the first vertex of which is `first`; a part of flow_particles_make,
  * after weights. Local. */
@@ -335,10 +344,6 @@ int flow_source_skin(const struct flow_source *source, uint32_t block, void *mem
 /* Finds the neighbours, and the numbers of rows in halos (source->halo), when blocks and springs
  * are there. Adds both to the shapes. Error: CLOTH_E_MEMORY. Local. */
 int flow_source_meet(struct flow_source *source, struct cloth_error *error);
-
-/* Numbers the pieces of the model that no pin holds, when springs are there: vertices that springs
- * or elements join. Error: CLOTH_E_MEMORY. Local. */
-int flow_pieces_make(struct flow_source *source, struct cloth_error *error);
 
 /* Finds the watched vertices, when blocks are there. Errors: as of flow_pick, and CLOTH_E_INPUT for
  * vertices that no face or edge uses; CLOTH_E_MEMORY. Local. */

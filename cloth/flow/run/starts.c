@@ -22,8 +22,8 @@ static bool is_bounded(const double start[6])
     return phys_diverged(1, FLOW_BOUND, &x) != 0 && phys_diverged(1, FLOW_BOUND, &v) != 0;
 }
 
-static int refuse(const struct model_cloth *cloth, uint32_t vertex, double (*start)[6],
-                  const char *place, struct cloth_error *error)
+static int refuse_start(const struct model_cloth *cloth, uint32_t vertex, double (*start)[6],
+                        const char *place, struct cloth_error *error)
 {
     const double *x = start[vertex], *v = x + 3;
     return model_fail(
@@ -41,7 +41,7 @@ static double wave_at(const struct model_start *how, const double mesh[3])
     return phys_sine(cycles);
 }
 
-static void move(void *to, uint32_t vertex)
+static void move_start(void *to, uint32_t vertex)
 {
     struct starter *starter = to;
     const struct model_start *how = starter->how;
@@ -82,7 +82,7 @@ int flow_starts_make(struct flow_particles *particles, uint32_t first,
     at_mesh(cloth, start);
     int code = CLOTH_OK;
     for (uint32_t i = 0; i < cloth->mesh.n_vertices && !code; i++)
-        code = is_bounded(start[i]) ? CLOTH_OK : refuse(cloth, i, start, cloth->place, error);
+        code = is_bounded(start[i]) ? CLOTH_OK : refuse_start(cloth, i, start, cloth->place, error);
     for (uint32_t i = 0; i < cloth->n_starts && !code; i++) {
         const struct model_pick *pick = &cloth->starts[i].pick;
         struct starter starter = {start, cloth->mesh.position, cloth->starts + i, UINT32_MAX};
@@ -90,11 +90,11 @@ int flow_starts_make(struct flow_particles *particles, uint32_t first,
                                              .cloth = cloth,
                                              .used = particles->used + first,
                                              .what = "a start",
-                                             .visit = move,
+                                             .visit = move_start,
                                              .to = &starter};
         code = flow_pick(&picking, error);
         if (!code && starter.lost != UINT32_MAX)
-            code = refuse(cloth, starter.lost, start, pick->place, error);
+            code = refuse_start(cloth, starter.lost, start, pick->place, error);
     }
     return code;
 }

@@ -124,7 +124,7 @@ static void warn_of_windings(struct flow *flow, const struct model_cloth *cloth,
 }
 
 /* The place of a vertex that follows an obstacle, at a time, s; x: its start. */
-static void follow(const struct flow *flow, uint32_t motion, double time, phys_vec *x)
+static void follow_obstacle(const struct flow *flow, uint32_t motion, double time, phys_vec *x)
 {
     const struct model *model = flow->model;
     if (motion > model->n_motions) {
@@ -142,7 +142,7 @@ static void follow(const struct flow *flow, uint32_t motion, double time, phys_v
     phys_pose_point(&pose, x, x);
 }
 
-static double distance(const double *a, const double *b)
+static double distance_between(const double *a, const double *b)
 {
     const phys_vec way = {b[0] - a[0], b[1] - a[1], b[2] - a[2], 0};
     return sqrt(phys_dot(&way, &way));
@@ -159,7 +159,7 @@ static double length_at(const struct flow *flow, uint32_t first, const struct mo
         const double *at =
             p->start ? p->start[first + end[k]] : cloth->mesh.position + 3 * (size_t)end[k];
         x[k] = (phys_vec){at[0], at[1], at[2], 0};
-        follow(flow, p->motion[flow_root(&p->welds, first + end[k])], time, x + k);
+        follow_obstacle(flow, p->motion[flow_root(&p->welds, first + end[k])], time, x + k);
     }
     const phys_vec way = x[1] - x[0];
     return sqrt(phys_dot(&way, &way));
@@ -182,7 +182,7 @@ static void find_stretched(const struct flow *flow, const struct model_cloth *cl
         if (!attached[edge->a] || !attached[edge->b])
             continue;
         const double rest =
-            distance(position + 3 * (size_t)edge->a, position + 3 * (size_t)edge->b);
+            distance_between(position + 3 * (size_t)edge->a, position + 3 * (size_t)edge->b);
         const double length = fmax(rest, length_at(flow, first, cloth, edge, 0));
         for (int i = 1; i <= TIMES; i++) {
             const double time = flow->model->end * i / TIMES;

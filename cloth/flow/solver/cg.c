@@ -34,16 +34,18 @@ struct begin_args {
     double phase; /* the first one of the solve */
 };
 
-/* The scalars before the first pass, and the coarse part of s that it begins with. */
+/* Forks the scalars before the first pass, and the coarse part of s that it begins with. */
 static int fork_begin(struct flow_state *state, bool guess)
 {
-    const bool moves = flow_is_coarse(state->flow) && !guess;
     const struct begin_args args = {.step = flow_attempt_args(state),
                                     .phase = guess ? SOLVE_OPEN : SOLVE_ON};
-    if (!moves)
-        return flow_fork_one(state, &flow_kernel_cg_begin, &args);
-    const int code = flow_levels_start(state);
-    return code ? code : flow_levels_fork_top(state, &flow_kernel_cg_begin_coarse, &args, false);
+    int code = flow_fork_one(state, &flow_kernel_cg_begin, &args);
+    if (code || guess || !state->flow->conditioner.coarse)
+        return code;
+    code = flow_levels_start(state);
+    return code ? code
+                : flow_levels_fork_top(state, &flow_kernel_cg_motion, &(struct flow_block_args){0},
+                                       false);
 }
 
 /* The number of blocks whose two tasks are forked together: the second still finds the data of the
@@ -58,7 +60,7 @@ int flow_cg_start(struct flow_state *state)
     for (uint32_t first = 0; first < n_blocks && !code; first += BLOCKS_TOGETHER) {
         const uint32_t left = n_blocks - first;
         const uint32_t end = first + (left < BLOCKS_TOGETHER ? left : BLOCKS_TOGETHER);
-        code = flow_preconditioner_factor(state, first, end);
+        code = flow_pass_factor(state, first, end);
         if (!code)
             code = flow_pass_start(state, first, end, guess);
     }
@@ -85,16 +87,11 @@ int flow_cg(struct flow_state *state)
 static int fork_scalars(struct flow_state *state)
 {
     const struct flow_block_args args = {0};
-    if (!flow_is_coarse(state->flow))
-        return flow_fork_one(state,
-                             flow_is_preconditioned(state->flow) ? &flow_kernel_cg_scalars_of_parts
-                                                                 : &flow_kernel_cg_scalars,
-                             &args);
     const int code = flow_levels_solve(state);
-    return code ? code : flow_levels_fork_top(state, &flow_kernel_cg_scalars_coarse, &args, false);
+    return code ? code : flow_levels_fork_top(state, &flow_kernel_cg_scalars, &args, false);
 }
 
-static int build(duite *rt, void *context)
+static int build_round(duite *rt, void *context)
 {
     struct flow_state *state = context;
     int code = DUITE_OK;
@@ -112,32 +109,25 @@ static int build(duite *rt, void *context)
 
 int flow_cg_record(struct flow_state *state)
 {
-    return duite_graph_new(state->rt, build, state, &state->solve);
+    return duite_graph_new(state->rt, build_round, state, &state->solve);
 }
 
 /* ---- The scalars, on every rank ---- */
 
-static struct solve_scalars scalars_before(const struct flow *flow, const struct begin_args *args)
-{
-    const struct flow_step_args *step = &args->step;
-    struct solve_scalars scalars = solve_scalars_start(step->begin, args->phase);
-    scalars.last = step->last;
-    scalars.unit = flow->inertia / (step->h * step->h);
-    return scalars;
-}
-
 FLOW_KERNEL_WITH(cg_begin, FLOW_NO_PART, struct begin_args, (W(scalars)), .replicated = 1)
 static int cg_begin_body(const duite_call *call, const struct cg_begin_fields *on)
 {
-    *on->scalars = scalars_before(flow_of(call), on->args);
+    const struct flow_step_args *step = &on->args->step;
+    *on->scalars = solve_scalars_start(step->begin, on->args->phase);
+    on->scalars->last = step->last;
+    on->scalars->unit = flow_of(call)->inertia / (step->h * step->h);
     return 0;
 }
 
-FLOW_KERNEL_WITH(cg_begin_coarse, FLOW_CG, struct begin_args,
-                 (W(scalars), W(motion), R(coarse), ALL(part)), .replicated = 1)
-static int cg_begin_coarse_body(const duite_call *call, const struct cg_begin_coarse_fields *on)
+FLOW_KERNEL_WITH(cg_motion, FLOW_CG, struct flow_block_args, (W(motion), R(coarse), ALL(part)),
+                 .replicated = 1)
+static int cg_motion_body(const duite_call *call, const struct cg_motion_fields *on)
 {
-    *on->scalars = scalars_before(flow_of(call), on->args);
     flow_coarse_motion(flow_of(call), on->coarse, on->part, on->motion);
     return 0;
 }
@@ -208,15 +198,10 @@ static int next_scalars(const duite_call *call, const double dots[SOLVE_DOTS],
     return outcome == SOLVE_BREAKDOWN ? broken_down(call, after) : 0;
 }
 
-FLOW_KERNEL_WITH(cg_scalars, FLOW_CG, struct flow_block_args,
-                 (W(scalars_next), R(scalars), R(sums)), .replicated = 1)
-static int cg_scalars_body(const duite_call *call, const struct cg_scalars_fields *on)
-{
-    double dots[SOLVE_DOTS] = {0};
-    memcpy(dots, on->sums, flow_dots(flow_of(call)) * sizeof *dots);
-    dots[SOLVE_RZ] = dots[SOLVE_RR];
-    return next_scalars(call, dots, on->scalars, on->scalars_next);
-}
+FLOW_KERNEL_IF(cg_scalars, motion_next, FLOW_CG, struct flow_block_args,
+               (W(scalars_next), R(scalars), W_IF(motion_next), IF_MADE(sums), IF_MADE(coarse),
+                ALL(part)),
+               .replicated = 1)
 
 /* The dots of all blocks, which groups have summed if there are levels. */
 static void add_parts(const struct flow *flow, const duite_param *part, double dots[SOLVE_DOTS])
@@ -226,28 +211,27 @@ static void add_parts(const struct flow *flow, const duite_param *part, double d
             dots[i] += flow_numbers_of(part, b)[i];
 }
 
-FLOW_KERNEL_WITH(cg_scalars_of_parts, FLOW_CG, struct flow_block_args,
-                 (W(scalars_next), R(scalars), ALL(part)), .replicated = 1)
-static int cg_scalars_of_parts_body(const duite_call *call,
-                                    const struct cg_scalars_of_parts_fields *on)
+/* The coarse part: the motion that belongs to the q of the pass, if that made a new one. Returns
+ * its share in q.s. */
+static double move_patches(const struct flow *flow, const struct cg_scalars_fields *on)
 {
-    double dots[SOLVE_DOTS] = {0};
-    add_parts(flow_of(call), on->part, dots);
-    return next_scalars(call, dots, on->scalars, on->scalars_next);
+    if (flow_coarse_moves(on->scalars))
+        return flow_coarse_motion(flow, on->coarse, on->part, on->motion_next);
+    memset(on->motion_next, 0, flow_motion_doubles(flow) * sizeof *on->motion_next);
+    return 0;
 }
 
-/* With a coarse part: the motion that belongs to the q of the pass, if that made a new one. */
-FLOW_KERNEL_WITH(cg_scalars_coarse, FLOW_CG, struct flow_block_args,
-                 (W(scalars_next), R(scalars), W(motion_next), R(coarse), ALL(part)),
-                 .replicated = 1)
-static int cg_scalars_coarse_body(const duite_call *call, const struct cg_scalars_coarse_fields *on)
+static int cg_scalars_body(const duite_call *call, const struct cg_scalars_fields *on)
 {
     const struct flow *flow = flow_of(call);
     double dots[SOLVE_DOTS] = {0};
-    add_parts(flow, on->part, dots);
-    if (flow_coarse_moves(on->scalars))
-        dots[SOLVE_QQ] += flow_coarse_motion(flow, on->coarse, on->part, on->motion_next);
-    else
-        memset(on->motion_next, 0, flow_motion_doubles(flow) * sizeof *on->motion_next);
+    if (on->sums) {
+        memcpy(dots, on->sums, flow_dots(flow) * sizeof *dots);
+        dots[SOLVE_RZ] = dots[SOLVE_RR];
+    } else {
+        add_parts(flow, on->part, dots);
+    }
+    if (on->motion_next)
+        dots[SOLVE_QQ] += move_patches(flow, on);
     return next_scalars(call, dots, on->scalars, on->scalars_next);
 }

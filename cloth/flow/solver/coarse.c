@@ -48,7 +48,7 @@ static int basis_ghosts_body(const duite_call *call, const struct basis_ghosts_f
 int flow_coarse_initialise(struct flow_state *state)
 {
     struct flow_block_args args;
-    if (!flow_is_coarse(state->flow))
+    if (!state->flow->conditioner.coarse)
         return DUITE_OK;
     const int code = flow_fork_each(state, &flow_kernel_basis, &args);
     return code ? code : flow_fork_each(state, &flow_kernel_basis_ghosts, &args);
@@ -58,8 +58,8 @@ int flow_coarse_initialise(struct flow_state *state)
 
 /* Copies the block of patches p <= q to its place in the coupling of p's block, if they are joined.
  */
-static void put(const struct flow *flow, uint32_t p, uint32_t q, const double *matrix,
-                double *coupling)
+static void put_coupling(const struct flow *flow, uint32_t p, uint32_t q, const double *matrix,
+                         double *coupling)
 {
     if (flow_patches_joined(flow, p, q))
         memcpy(coupling + SOLVE_COUPLING * flow_coupling_at(flow, p, q), matrix,
@@ -200,12 +200,12 @@ static int couple_body(const duite_call *call, const struct couple_fields *on)
                                  &cut);
         for (uint32_t k = 0; k < patches.n && t->neighbour[s] > block; k++)
             for (uint32_t l = 0; l < patches.n; l++)
-                put(flow, first + k, patches.n * t->neighbour[s] + l, cut.matrix[k][l],
-                    on->coupling);
+                put_coupling(flow, first + k, patches.n * t->neighbour[s] + l, cut.matrix[k][l],
+                             on->coupling);
     }
     for (uint32_t k = 0; k < patches.n; k++)
         for (uint32_t l = k; l < patches.n; l++)
-            put(flow, first + k, first + l, own.matrix[k][l], on->coupling);
+            put_coupling(flow, first + k, first + l, own.matrix[k][l], on->coupling);
     couple_ties(flow, flow_tie_values(t, values), on);
     return 0;
 }
@@ -240,7 +240,7 @@ static int fork_factor(struct flow_state *state)
 
 int flow_coarse_start(struct flow_state *state)
 {
-    if (!flow_is_coarse(state->flow))
+    if (!state->flow->conditioner.coarse)
         return DUITE_OK;
     int code = model_is_filtered(state->flow->model) ? flow_coarse_initialise(state) : DUITE_OK;
     if (!code)

@@ -40,9 +40,6 @@ void flow_halo_free(struct flow_state *state)
     free(state->flow->at);
     free(state->flow->packed_row);
     free(state->flow->packed_halo);
-    *packed = (struct flow_packed){0};
-    state->flow->at = state->flow->packed_row = NULL;
-    state->flow->packed_halo = NULL;
 }
 
 /* Neighbour s of block b, for a reader: the neighbour's place among all, its rows. */
@@ -174,9 +171,11 @@ static int pack_rows(const duite_call *call)
     return 0;
 }
 
-static int pack(const duite_call *call)
+static int pack_task(const duite_call *call)
 {
     return flow_timed(call, pack_rows, FLOW_CG);
 }
-const duite_kernel flow_pack = {
-    .name = "cg_pack", .body = pack, .access = {DUITE_R, DUITE_W}, .args_size = sizeof(uint32_t)};
+const duite_kernel flow_pack = {.name = "cg_pack",
+                                .body = pack_task,
+                                .access = {DUITE_R, DUITE_W},
+                                .args_size = sizeof(uint32_t)};

@@ -161,7 +161,7 @@ int flow_levels_fork_top(struct flow_state *state, const struct flow_kernel *ker
     }
     for (uint32_t g = 0; top && g < flow_parts(flow); g++)
         state->refs[n++] = couplings ? top[g].coupling : top[g].part;
-    return duite_fork(state->rt, &kernel->task, args, n, state->refs);
+    return duite_fork(state->rt, flow_task_of(state, kernel), args, n, state->refs);
 }
 
 /* ---- The motions that a pass reads ---- */

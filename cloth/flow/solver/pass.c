@@ -1,15 +1,48 @@
-/* A pass of conjugate gradients over a block (cloth/solve/cg.h): one body with and without a
- * preconditioner; without one z is r and s is q. A block keeps z and p of its ghosts, the other
+/* A pass of conjugate gradients over a block (cloth/solve/cg.h). Without a preconditioner, that is
+ * with the identity, z is r and s is q. A block keeps z and p of its ghosts, the other
  * ends of its cut entries. It changes them as their owner does, so it reads only rows of s of a
  * neighbour. The sums of a pass are its part. Without a preconditioner they go to the sums of all
  * blocks. With one they are the block's own, with the coarse right side P' q behind the dots.
  *
- * In reading order: the begin of a solve, a pass by its phases, its kernels, the forks. */
+ * In reading order: the factor of a step's matrix (cloth/solve/local.h), the begin of a solve, a
+ * pass by its phases, its kernel, the forks. */
 #include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
 
 #include <string.h>
+
+/* ---- The factor of a block ---- */
+
+FLOW_KERNEL(factor, FLOW_CG, struct flow_block_args,
+            (R(table), R(a), W(factor), SUM(status), IF_MADE(tie_table)))
+static int factor_body(const duite_call *call, const struct factor_fields *on)
+{
+    const enum solve_local local = flow_of(call)->conditioner.local;
+    struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const phys_vec *values = flow_matrix_in(call, t, on->a);
+    const struct flow_ties ties = flow_ties_open(on->tie_table);
+    const struct solve_ties solved = flow_ties_solved(&ties, flow_tie_values(t, values), NULL);
+    struct solve_cut cut = flow_table_cut_entries(t);
+    cut.ties = &solved;
+    const int tried = solve_local_factor(&t->matrix, &cut, values, local, on->factor);
+    /* The object also has room for double entries (flow_table): zeros. */
+    const size_t used = solve_local_doubles(t->n, t->matrix.row[t->n], local);
+    memset(on->factor + used, 0,
+           (solve_local_doubles(t->n, t->n_entries, local) - used) * sizeof *on->factor);
+    on->status[FLOW_SHIFTED] = tried > 0;
+    return 0;
+}
+
+int flow_pass_factor(struct flow_state *state, uint32_t first, uint32_t end)
+{
+    struct flow_block_args args;
+    return flow_is_preconditioned(state->flow)
+               ? flow_fork_range_as(state, &flow_kernel_factor, first, end, &args, NULL)
+               : DUITE_OK;
+}
+
+/* ---- A pass ---- */
 
 /* A pass as its phases see it, of fields of the kernels below. */
 struct pass {
@@ -33,16 +66,26 @@ struct pass {
 static void show_product(struct pass *pass, double dots[SOLVE_DOTS])
 {
     const struct solve_rows *rows = &pass->rows;
-    if (pass->m.factor)
-        dots[SOLVE_QQ] =
-            flow_precondition(&pass->m, rows->q, rows->s, pass->part + FLOW_PART_COARSE);
+    const struct flow_preconditioner *m = &pass->m;
+    if (m->factor)
+        dots[SOLVE_QQ] = solve_local_apply(&pass->table.matrix, m->flow->conditioner.local,
+                                           m->factor, rows->q, rows->s);
+    if (m->basis)
+        flow_coarse_restrict(m, rows->q, pass->part + FLOW_PART_COARSE);
     flow_pack_halo(&pass->table, rows->s, pass->halo);
+}
+
+/* Without a preconditioner z is r and s is q. */
+static struct solve_rows rows_of(phys_vec *dv, phys_vec *r, phys_vec *p, phys_vec *q, phys_vec *z,
+                                 phys_vec *s)
+{
+    return (struct solve_rows){dv, r, p, q, z ? z : r, s ? s : q};
 }
 
 /* ---- The begin of a solve ---- */
 
 /* Makes the vectors, and the halo that neighbours read. */
-static void begin(struct pass *pass, double *ghosts, size_t n_ghosts)
+static void begin_solve(struct pass *pass, double *ghosts, size_t n_ghosts)
 {
     const struct flow_table *t = &pass->table;
     const struct solve_rows *rows = &pass->rows;
@@ -58,29 +101,15 @@ static void begin(struct pass *pass, double *ghosts, size_t n_ghosts)
         memcpy(pass->part, dots, sizeof dots);
 }
 
-FLOW_KERNEL(cg_start, FLOW_CG, struct flow_block_args,
-            (R(table), R(f), W(dv), W(r), W(p), W(q), W(ghosts), W(halo_q)))
+FLOW_KERNEL_IF(cg_start, part, FLOW_CG, struct flow_block_args,
+               (R(table), R(f), W(dv), W(r), W(p), W(q), W(ghosts), W(halo_q), W_IF(part), W_IF(z),
+                W_IF(s), IF_MADE(factor), IF_MADE(basis)))
 static int cg_start_body(const duite_call *call, const struct cg_start_fields *on)
 {
     struct pass pass = {.call = call,
                         .table = flow_table_in(call, on->table),
                         .b = on->f,
-                        .rows = solve_rows_plain(on->dv, on->r, on->p, on->q),
-                        .halo = on->halo_q};
-    begin(&pass, (double *)on->ghosts, duite_count(call, FLOW_INDEX_OF(cg_start, ghosts)));
-    return 0;
-}
-
-FLOW_KERNEL(cg_start_preconditioned, FLOW_CG, struct flow_block_args,
-            (R(table), R(f), W(dv), W(r), W(p), W(q), W(ghosts), W(halo_q), W(part), W(z), W(s),
-             R(factor), IF_MADE(basis)))
-static int cg_start_preconditioned_body(const duite_call *call,
-                                        const struct cg_start_preconditioned_fields *on)
-{
-    struct pass pass = {.call = call,
-                        .table = flow_table_in(call, on->table),
-                        .b = on->f,
-                        .rows = {on->dv, on->r, on->p, on->q, on->z, on->s},
+                        .rows = rows_of(on->dv, on->r, on->p, on->q, on->z, on->s),
                         .halo = on->halo_q,
                         .part = on->part,
                         .m = {.flow = flow_of(call),
@@ -88,8 +117,7 @@ static int cg_start_preconditioned_body(const duite_call *call,
                               .factor = on->factor,
                               .basis = on->basis}};
     pass.m.table = &pass.table;
-    begin(&pass, (double *)on->ghosts,
-          duite_count(call, FLOW_INDEX_OF(cg_start_preconditioned, ghosts)));
+    begin_solve(&pass, (double *)on->ghosts, duite_count(call, FLOW_INDEX_OF(cg_start, ghosts)));
     return 0;
 }
 
@@ -200,7 +228,7 @@ static void iterate(struct pass *pass, double dots[SOLVE_DOTS])
 }
 
 /* SOLVE_LAST, and the first half of SOLVE_AGAIN. Returns r.r. */
-static double finish(const struct pass *pass)
+static double finish_solve(const struct pass *pass)
 {
     const struct solve_rows *rows = &pass->rows;
     return solve_finish(pass->table.n, pass->scalars->alpha, rows->q, rows->p, rows->dv, rows->r);
@@ -232,7 +260,7 @@ static void multiply(struct pass *pass, double dots[SOLVE_DOTS])
 static void begin_again(struct pass *pass, double dots[SOLVE_DOTS])
 {
     const struct solve_rows *rows = &pass->rows;
-    finish(pass);
+    finish_solve(pass);
     solve_again(pass->table.n, rows->r, rows->p, rows->q);
     const size_t ghosts = (size_t)pass->table.n_ghosts + pass->ties.room.rows;
     memset(pass->z_ghosts, 0, 2 * ghosts * sizeof *pass->z_ghosts);
@@ -248,7 +276,7 @@ static void run_phase(struct pass *pass)
     if (phase == SOLVE_ON)
         iterate(pass, dots);
     else if (phase == SOLVE_LAST)
-        dots[SOLVE_RR] = finish(pass);
+        dots[SOLVE_RR] = finish_solve(pass);
     else if (phase == SOLVE_SHOW)
         flow_pack_halo(&pass->table, pass->rows.dv, pass->halo);
     else if (phase == SOLVE_CHECK || phase == SOLVE_OPEN)
@@ -258,84 +286,58 @@ static void run_phase(struct pass *pass)
     memcpy(pass->part, dots, flow_dots(flow_of(pass->call)) * sizeof *dots);
 }
 
-/* ---- Its kernels ---- */
+/* ---- Its kernel ---- */
 
-FLOW_KERNEL(cg_pass, FLOW_CG, struct flow_block_args,
-            (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(ghosts),
-             RW(halo_q_next), SUM(sums), NEIGHBOURS(halo_q), IF_MADE(tie_table), TIED(tie_q)))
+FLOW_KERNEL_IF(cg_pass, part, FLOW_CG, struct flow_block_args,
+               (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(ghosts),
+                RW(halo_q_next), RW_IF(part), RW_IF(z), RW_IF(s), SUM_ELSE(sums),
+                NEIGHBOURS(halo_q), IF_MADE(factor), IF_MADE(basis), IF_MADE(basis_ghosts),
+                IF_MADE(motion), IF_MADE(lift), IF_MADE(tie_table), TIED(tie_q), TIED(tie_basis)))
 
-static void open_pass(const duite_call *call, const struct cg_pass_fields *on, struct pass *pass)
+/* The preconditioner as the pass sees it. Motions of groups are the last parameters. */
+static struct flow_preconditioner conditioning(const duite_call *call,
+                                               const struct cg_pass_fields *on,
+                                               const struct flow_table *table)
 {
-    pass->call = call;
-    pass->table = *flow_shape_of(call);
-    flow_table_open(&pass->table, on->table);
-    pass->ties = flow_ties_open(on->tie_table);
-    pass->scalars = on->scalars;
-    pass->values = flow_matrix_in(call, &pass->table, on->a);
-    pass->b = on->f;
-    pass->rows = solve_rows_plain(on->dv, on->r, on->p, on->q);
-    pass->z_ghosts = on->ghosts;
-    pass->p_ghosts = on->ghosts + pass->table.n_ghosts;
-    pass->halo = on->halo_q_next;
-    pass->part = on->sums;
-    pass->halos = on->halo_q;
-    pass->m = (struct flow_preconditioner){
-        .flow = flow_of(call), .table = &pass->table, .block = on->args->block};
-    pass->tied_q = on->tied_tie_q;
-    pass->tied_basis = NULL;
-    pass->z_ties = pass->p_ghosts + pass->table.n_ghosts;
-    pass->p_ties = pass->z_ties + pass->ties.room.rows;
-    pass->joined =
-        flow_ties_solved(&pass->ties, flow_tie_values(&pass->table, pass->values), pass->p_ties);
+    const struct flow *flow = flow_of(call);
+    const duite_param *seen = on->tied_tie_basis;
+    if (flow->made[FLOW_FIELD_tie_basis])
+        seen += flow_ties_others(on->tie_table);
+    return (struct flow_preconditioner){.flow = flow,
+                                        .table = table,
+                                        .block = on->args->block,
+                                        .factor = on->factor,
+                                        .basis = on->basis,
+                                        .basis_ghosts = on->basis_ghosts,
+                                        .motion = on->motion,
+                                        .lift = on->lift,
+                                        .seen = seen,
+                                        .n_seen = (size_t)(call->param + call->n_params - seen)};
 }
 
 static int cg_pass_body(const duite_call *call, const struct cg_pass_fields *on)
 {
     struct pass pass;
-    open_pass(call, on, &pass);
-    run_phase(&pass);
-    return 0;
-}
-
-FLOW_KERNEL(cg_pass_preconditioned, FLOW_CG, struct flow_block_args,
-            (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(ghosts),
-             RW(halo_q_next), RW(part), RW(z), RW(s), R(factor), NEIGHBOURS(halo_q), IF_MADE(basis),
-             IF_MADE(basis_ghosts), IF_MADE(motion), IF_MADE(lift), IF_MADE(tie_table), TIED(tie_q),
-             TIED(tie_basis)))
-static int cg_pass_preconditioned_body(const duite_call *call,
-                                       const struct cg_pass_preconditioned_fields *on)
-{
-    const struct cg_pass_fields plain = {
-        .args = on->args,
-        .table = on->table,
-        .scalars = on->scalars,
-        .a = on->a,
-        .f = on->f,
-        .dv = on->dv,
-        .r = on->r,
-        .p = on->p,
-        .q = on->q,
-        .ghosts = on->ghosts,
-        .halo_q_next = on->halo_q_next,
-        .sums = on->part,
-        .halo_q = on->halo_q,
-        .tie_table = on->tie_table,
-        .tied_tie_q = on->tied_tie_q,
-    };
-    struct pass pass;
-    open_pass(call, &plain, &pass);
-    pass.rows.z = on->z;
-    pass.rows.s = on->s;
-    pass.m.factor = on->factor;
-    pass.m.basis = on->basis;
-    pass.m.basis_ghosts = on->basis_ghosts;
-    pass.m.motion = on->motion;
-    pass.m.lift = on->lift;
-    pass.m.seen = on->tied_tie_basis;
-    if (pass.m.flow->made[FLOW_FIELD_tie_basis])
-        pass.m.seen += flow_ties_others(on->tie_table);
-    pass.m.n_seen = (size_t)(call->param + call->n_params - pass.m.seen);
+    pass.call = call;
+    pass.table = *flow_shape_of(call);
+    flow_table_open(&pass.table, on->table);
+    pass.ties = flow_ties_open(on->tie_table);
+    pass.scalars = on->scalars;
+    pass.values = flow_matrix_in(call, &pass.table, on->a);
+    pass.b = on->f;
+    pass.rows = rows_of(on->dv, on->r, on->p, on->q, on->z, on->s);
+    pass.z_ghosts = on->ghosts;
+    pass.p_ghosts = on->ghosts + pass.table.n_ghosts;
+    pass.halo = on->halo_q_next;
+    pass.part = on->part ? on->part : on->sums;
+    pass.halos = on->halo_q;
+    pass.m = conditioning(call, on, &pass.table);
+    pass.tied_q = on->tied_tie_q;
     pass.tied_basis = on->tied_tie_basis;
+    pass.z_ties = pass.p_ghosts + pass.table.n_ghosts;
+    pass.p_ties = pass.z_ties + pass.ties.room.rows;
+    pass.joined =
+        flow_ties_solved(&pass.ties, flow_tie_values(&pass.table, pass.values), pass.p_ties);
     run_phase(&pass);
     return 0;
 }
@@ -343,25 +345,16 @@ static int cg_pass_preconditioned_body(const duite_call *call,
 /* ---- Forks ---- */
 
 /* Forks the vectors of blocks. */
-static int fork_start(struct flow_state *state, uint32_t first, uint32_t end)
-{
-    struct flow_block_args args;
-    return flow_fork_range_as(state,
-                              flow_is_preconditioned(state->flow)
-                                  ? &flow_kernel_cg_start_preconditioned
-                                  : &flow_kernel_cg_start,
-                              first, end, &args, NULL);
-}
-
-static int fork_guess(struct flow_state *state, uint32_t first, uint32_t end, double guess)
+static int fork_vectors(struct flow_state *state, uint32_t first, uint32_t end, double guess)
 {
     struct guess_args args = {.guess = guess};
-    return flow_fork_range_as(state, &flow_kernel_cg_guess, first, end, &args, NULL);
+    return flow_fork_range_as(state, guess != 0 ? &flow_kernel_cg_guess : &flow_kernel_cg_start,
+                              first, end, &args, NULL);
 }
 
 int flow_pass_start(struct flow_state *state, uint32_t first, uint32_t end, double guess)
 {
-    int code = guess != 0 ? fork_guess(state, first, end, guess) : fork_start(state, first, end);
+    int code = fork_vectors(state, first, end, guess);
     for (uint32_t b = first; b < end && !code; b++) {
         code = flow_ties_pack_start(state, b, guess != 0);
         if (!code)
@@ -374,16 +367,15 @@ int flow_pass_start(struct flow_state *state, uint32_t first, uint32_t end, doub
 static int fork_block(struct flow_state *state, const struct flow_block_args *args)
 {
     const struct flow_table *t = state->flow->tables.block + args->block;
-    const bool preconditioned = flow_is_preconditioned(state->flow);
-    const struct flow_kernel *kernel =
-        preconditioned ? &flow_kernel_cg_pass_preconditioned : &flow_kernel_cg_pass;
-    const size_t halos = preconditioned ? cg_pass_preconditioned_at_end : cg_pass_at_end;
-    size_t n = flow_kernel_objects(state, kernel, args->block, NULL);
+    const duite_kernel *task = flow_task_of(state, &flow_kernel_cg_pass);
+    size_t n = flow_kernel_objects(state, &flow_kernel_cg_pass, args->block, NULL), halos = 0;
     const duite_object *read =
         state->packed.read[state->pass] + (t->neighbour - state->flow->tables.neighbour);
+    while (task->access[halos] != DUITE_NONE)
+        halos++;
     memcpy(state->refs + halos, read, t->n_neighbours * sizeof *read);
     n = flow_levels_seen(state, args->block, n);
-    return duite_fork(state->rt, &kernel->task, args, n, state->refs);
+    return duite_fork(state->rt, task, args, n, state->refs);
 }
 
 /* Passes go to and fro over the blocks: the last blocks of one, still in caches, come first in the

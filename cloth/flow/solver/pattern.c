@@ -1,7 +1,8 @@
-/* The pattern of the coarse matrix (coarse.c): the patches that anything joins, later ties too. It
- * is the same on every rank, and is made once a run. */
+/* The preconditioner of a run, and the pattern of its coarse matrix (coarse.c): the patches that
+ * anything joins, later ties too. It is the same on every rank, and is made once a run. */
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/solver/levels.h"
+#include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
 
 #include "cloth/base/memory.h"
@@ -41,7 +42,7 @@ uint32_t flow_patch_of(const struct flow *flow, uint32_t block, uint32_t row)
 }
 
 /* Puts a patch among those from .. end - 1, which ascend, unless it is there. Returns the end. */
-static uint32_t *insert(uint32_t *from, uint32_t *end, uint32_t patch)
+static uint32_t *insert_patch(uint32_t *from, uint32_t *end, uint32_t patch)
 {
     uint32_t *at = from;
     while (at < end && *at < patch)
@@ -65,7 +66,7 @@ static uint32_t *insert_tied(const struct flow *flow, uint32_t b, uint32_t p, ui
         for (uint32_t k = 0; k < at->n && has; k++) {
             const uint32_t patch = flow_patch_of(flow, at->block[k], at->row[k]);
             if (patch != p)
-                end = insert(from, end, patch);
+                end = insert_patch(from, end, patch);
         }
     }
     return end;
@@ -109,11 +110,11 @@ static bool join_patches(struct flow *flow)
 /* Writes the first blocks of runs of at most so many blocks, as METIS' bisections made them
  * (cloth/mesh/blocks.h): the lower half is the smaller one. So runs of more blocks are made of
  * whole runs of fewer. Returns the end. */
-static uint32_t *split(uint32_t from, uint32_t to, uint64_t most, uint32_t *start)
+static uint32_t *split_runs(uint32_t from, uint32_t to, uint64_t most, uint32_t *start)
 {
     const uint32_t middle = from + (to - from) / 2;
     if (to - from > most)
-        return split(middle, to, most, split(from, middle, most, start));
+        return split_runs(middle, to, most, split_runs(from, middle, most, start));
     *start = from;
     return start + 1;
 }
@@ -135,7 +136,7 @@ static int add_level(struct flow *flow, uint64_t most)
     uint32_t *start = cloth_alloc((size_t)n_blocks + 1, sizeof *start, &flow->trouble);
     if (!start)
         return CLOTH_E_MEMORY;
-    const uint32_t n_groups = (uint32_t)(split(0, n_blocks, most, start) - start);
+    const uint32_t n_groups = (uint32_t)(split_runs(0, n_blocks, most, start) - start);
     for (uint32_t g = 0; g < n_groups; g++)
         start[g] = node_of(flow, l, start[g]);
     start[n_groups] = nodes.n;
@@ -197,22 +198,31 @@ size_t flow_coupling_at(const struct flow *flow, uint32_t p, uint32_t q)
     return at;
 }
 
-int flow_coarse_prepare(struct flow_state *state)
+void flow_preconditioner_choose(struct flow *flow, uint32_t n_blocks)
+{
+    const struct model *model = flow->model;
+    flow->conditioner =
+        model_conditioners[model_is_implicit(model) ? model->preconditioner : MODEL_PLAIN];
+    flow->patches = model_patches(model, n_blocks);
+}
+
+int flow_preconditioner_prepare(struct flow_state *state)
 {
     struct flow *flow = state->flow;
+    flow_preconditioner_choose(flow, flow->tables.n_blocks);
+    if (!flow->conditioner.coarse)
+        return DUITE_OK;
     make_pattern(flow);
     if (flow->n_levels && !flow->trouble.code)
         flow_levels_take(state);
     return flow_memory_agree(state);
 }
 
-void flow_coarse_free(struct flow *flow)
+void flow_preconditioner_free(struct flow *flow)
 {
     solve_pattern_free(&flow->pattern);
     for (uint32_t l = 0; l < flow->n_levels; l++)
         solve_level_free(flow->level + l);
-    flow->n_levels = 0;
     free(flow->patch_first);
     free(flow->patch_neighbour);
-    flow->patch_first = flow->patch_neighbour = NULL;
 }

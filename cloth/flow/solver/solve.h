@@ -24,11 +24,11 @@ void flow_halo_free(struct flow_state *state);
 void flow_halo_make(struct flow_state *state); /* flow_run_begin does */
 int flow_halo_pack(struct flow_state *state, uint32_t block, int to);
 
-/* Chooses the preconditioner of a run, the model's, and patches. Local. */
+/* The preconditioner of a run (pattern.c): its parts and patches; then, on all ranks, that and the
+ * pattern of the coarse factor, if there is one, in memory of the flow. The last frees it. The
+ * first and the last are local. */
 void flow_preconditioner_choose(struct flow *flow, uint32_t n_blocks);
-/* Chooses again on all ranks, and makes the pattern of the coarse factor, if there is one. */
 int flow_preconditioner_prepare(struct flow_state *state);
-/* Local. */
 void flow_preconditioner_free(struct flow *flow);
 /* Forks the coarse space, if there is one: once a run, or in each step if the solve is filtered. */
 int flow_coarse_initialise(struct flow_state *state);

@@ -4,9 +4,9 @@
 #include "cloth/flow/state/bodies.h"
 
 /* Shared by the files of the solver. In reading order: system.c makes the system of a step. cg.c
- * solves it, in rounds of passes (pass.c), with a preconditioner (preconditioner.c, coarse.c) or
- * none. halo.c and ties.c bring other blocks' data to a pass. pieces.c corrects the momentum of
- * free pieces after a solve.
+ * solves it, in rounds of passes (pass.c), with a preconditioner that may have a coarse part
+ * (coarse.c). halo.c and ties.c bring other blocks' data to a pass. pieces.c corrects the momentum
+ * of free pieces after a solve.
  *
  * Patch k of block b has the number flow->patches * b + k. */
 
@@ -26,18 +26,13 @@ int flow_ties_pack(struct flow_state *state, uint32_t block);
 int flow_ties_show_basis(struct flow_state *state);
 
 /* Fork the factors of a step's matrix before its solve: the coarse one; those of blocks. Each does
- * nothing if there is none. (coarse.c, preconditioner.c) */
+ * nothing if there is none. (coarse.c, pass.c) */
 int flow_coarse_start(struct flow_state *state);
-int flow_preconditioner_factor(struct flow_state *state, uint32_t first, uint32_t end);
+int flow_pass_factor(struct flow_state *state, uint32_t first, uint32_t end);
 
 /* Forks the tasks that correct dv by the momentum that a solve lost to free pieces, if there are
  * any. (pieces.c) */
 int flow_pieces_fork(struct flow_state *state);
-
-/* The pattern of the coarse factor, in memory of the flow; all ranks have it, or none.
- * (pattern.c) */
-int flow_coarse_prepare(struct flow_state *state);
-void flow_coarse_free(struct flow *flow);
 
 /* ---- In a body: a preconditioner as a pass over a block sees it. Local ---- */
 
@@ -53,11 +48,6 @@ struct flow_preconditioner {
     const duite_param *seen;              /* n_seen motions of groups, ascending */
     size_t n_seen;
 };
-
-/* s = M^-1 q without the coarse part; `right` gets the coarse right side, P' q of each patch.
- * Returns q.s. (preconditioner.c) */
-double flow_precondition(const struct flow_preconditioner *m, const phys_vec *q, phys_vec *s,
-                         double *right);
 
 /* The first adds the coarse part to s. The second is the first half of a pass (solve_advance) for
  * the ghosts of one neighbour, with that part; halo: of its s; `at`: of all ghosts of the block,

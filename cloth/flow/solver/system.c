@@ -116,7 +116,7 @@ static void gather_ties(const struct making *m)
     flow_ties_gather(&ties, (phys_vec *)m->values + flow_value_rows(m->t));
 }
 
-static void make(const struct making *m)
+static void make_block(const struct making *m)
 {
     const struct flow_table *t = m->t;
     const struct solve_cut cut = flow_table_cut_entries(t);
@@ -163,7 +163,7 @@ static void make_system(const duite_call *call, const struct flow_table *t,
                                   .b = b,
                                   .values = begin_matrix(call, t, step->h, matrix),
                                   .sums = sums_of(call, t)};
-    make(&making);
+    make_block(&making);
 }
 
 FLOW_KERNEL(system, FLOW_MATRIX, struct flow_step_args,

@@ -59,7 +59,7 @@ struct solve_ties flow_ties_solved(const struct flow_ties *ties, const phys_vec 
 /* ---- Corners that are shown ---- */
 
 /* Packs the rows that others see; zeros in spare room. */
-static void pack(const struct flow_ties *ties, const phys_vec *y, double *to)
+static void pack_shown(const struct flow_ties *ties, const phys_vec *y, double *to)
 {
     solve_pack(ties->n_shown, ties->shown, y, to);
     memset(to + 3 * (size_t)ties->n_shown, 0,
@@ -72,7 +72,7 @@ static int tie_pack_body(const duite_call *call, const struct tie_pack_fields *o
 {
     const struct flow_ties ties = flow_ties_open(on->tie_table);
     (void)call;
-    pack(&ties, on->q, on->tie_q);
+    pack_shown(&ties, on->q, on->tie_q);
     return 0;
 }
 
@@ -83,7 +83,7 @@ static int tie_pack_pass_body(const duite_call *call, const struct tie_pack_pass
 {
     const struct flow_ties ties = flow_ties_open(on->tie_table);
     (void)call;
-    pack(&ties, on->scalars->phase == SOLVE_SHOW ? on->dv : on->q, on->tie_q_next);
+    pack_shown(&ties, on->scalars->phase == SOLVE_SHOW ? on->dv : on->q, on->tie_q_next);
     return 0;
 }
 

@@ -224,7 +224,7 @@ static int edge_next_body(const duite_call *call, const struct edge_next_fields 
 }
 
 /* Two rounds. */
-static int build(duite *rt, void *context)
+static int build_rounds(duite *rt, void *context)
 {
     const double nothing[2] = {0};
     const struct flow_block_args first = {0};
@@ -244,7 +244,7 @@ static int build(duite *rt, void *context)
 
 /* ---- The end of the rounds ---- */
 
-static void note(const struct solve_rounds *rounds, double *status)
+static void note_rounds(const struct solve_rounds *rounds, double *status)
 {
     status[FLOW_CORRECTED] = rounds->rounds;
     status[FLOW_CORRECTION_UNMET] = rounds->unmet;
@@ -262,7 +262,7 @@ static int edge_end_body(const duite_call *call, const struct edge_end_fields *o
         on->status[FLOW_CORRECTION_ENERGY] =
             solve_correct_velocity(t->n, rounds->t, t->mass, on->edge_moved, on->v);
     if (flow_block_of(call) == 0)
-        note(rounds, on->status);
+        note_rounds(rounds, on->status);
     flow_write_halo(t, on->x, on->halo_x);
     flow_write_halo(t, on->v, on->halo_v);
     return 0;
@@ -278,7 +278,7 @@ int flow_correct(struct flow_state *state)
     args.t = flow_implicit_is_second(state) ? args.step.h * (2.0 / 3) : args.step.h;
     int code = DUITE_OK;
     if (!state->correct.generation)
-        code = duite_graph_new(state->rt, build, state, &state->correct);
+        code = duite_graph_new(state->rt, build_rounds, state, &state->correct);
     if (!code)
         code = flow_fork_each(state, &flow_kernel_edge_start, &args);
     args.block = 0;

@@ -3,6 +3,7 @@
 #include "cloth/flow/run/source.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -18,20 +19,15 @@ struct flow_side {
     const struct model_correction *correction;
 };
 
-static int compare_u32(uint32_t a, uint32_t b)
-{
-    return (a > b) - (a < b);
-}
-
 static int compare_sides(const void *va, const void *vb)
 {
     const struct flow_side *a = va, *b = vb;
-    int order = compare_u32(a->other, b->other);
+    int order = cloth_compare_u32(a->other, b->other);
     if (!order)
-        order = compare_u32(a->here, b->here);
+        order = cloth_compare_u32(a->here, b->here);
     if (!order)
-        order = compare_u32(a->there, b->there);
-    return order ? order : compare_u32(a->spring, b->spring);
+        order = cloth_compare_u32(a->there, b->there);
+    return order ? order : cloth_compare_u32(a->spring, b->spring);
 }
 
 /* The sides of the group: counted from the shapes, then put where their block's part goes on. */
@@ -252,10 +248,10 @@ static void fill_sides(const struct flow_source *source, const struct flow_table
         }
         if (!first || free_here == free_there || (side[i].other && !free_here))
             continue; /* neither end is held, or the free row is the neighbour's */
-        layout->held[held][0] = free_here ? here : there;
-        layout->held[held++][1] = entries - 1;
+        layout->held_at[held][0] = free_here ? here : there;
+        layout->held_at[held++][1] = entries - 1;
     }
-    *layout->n_held = held;
+    *layout->held_entries = held;
 }
 
 /* The limits of a block's edges. An edge between blocks makes the share of its correction that lets

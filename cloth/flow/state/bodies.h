@@ -175,8 +175,8 @@ void flow_elements_assemble(const duite_call *call, const struct flow_table *t, 
 double flow_elements_energy(const duite_call *call, const struct flow_table *t,
                             const struct flow_view *view, double torque[3]);
 
-/* Loads that vary (varying.c), as they are at a time, s: adds them (N) to f; their energy (J) at x,
- * zero at the origin. */
+/* Loads that vary (run/loads.c), as they are at a time, s: adds them (N) to f; their energy (J) at
+ * x, zero at the origin. */
 void flow_varying_add(const duite_call *call, const struct flow_table *t, double now, phys_vec *f);
 double flow_varying_energy(const duite_call *call, const struct flow_table *t, double now,
                            const phys_vec *x);

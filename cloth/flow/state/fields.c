@@ -8,389 +8,142 @@
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/solver/solver.h"
-#include "cloth/flow/state/life.h"
 
-/* ---- How many rows ---- */
-
-static const struct flow_table *table_of(const struct flow_state *state, uint32_t block)
-{
-    return state->flow->tables.block + block;
-}
-
-static size_t one(const struct flow_state *state, uint32_t block)
-{
-    (void)state, (void)block;
-    return 1;
-}
-
-static size_t rows(const struct flow_state *state, uint32_t block)
-{
-    return table_of(state, block)->n;
-}
-
-static size_t halo(const struct flow_state *state, uint32_t block)
-{
-    return table_of(state, block)->n_halo;
-}
-
-static size_t ghosts(const struct flow_state *state, uint32_t block)
-{
-    return table_of(state, block)->n_ghosts;
-}
+/* ---- The words of the columns ---- */
 
 static struct flow_tie_room tie_room(const struct flow_state *state, uint32_t block)
 {
     return state->tied.now.room ? state->tied.now.room[block] : (struct flow_tie_room){0};
 }
 
-static size_t tie_rows(const struct flow_state *state, uint32_t block)
+static struct flow_body_place bodies_end(const struct model *model)
 {
-    return tie_room(state, block).rows;
+    return flow_body_place(model, model->n_obstacles);
 }
 
-/* The first says how many. */
-static size_t tie_links(const struct flow_state *state, uint32_t block)
+static size_t tie_table_bytes(uint32_t n, struct flow_tie_room room)
 {
-    return 1 + (size_t)tie_room(state, block).others;
+    return flow_ties_bytes(n, &room);
 }
 
-static size_t ghosts_tied(const struct flow_state *state, uint32_t block)
+static size_t box_bytes(struct contact_skin skin)
 {
-    return ghosts(state, block) + tie_rows(state, block);
-}
-
-static size_t tie_bytes(const struct flow_state *state, uint32_t block)
-{
-    const struct flow_tie_room room = tie_room(state, block);
-    return flow_ties_bytes(table_of(state, block)->n, &room);
-}
-
-static size_t blocks(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return state->flow->tables.n_blocks;
-}
-
-static size_t sides(const struct flow_state *state, uint32_t block)
-{
-    return blocks(state, block) + state->flow->model->n_obstacles;
-}
-
-static size_t obstacles(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return state->flow->model->n_obstacles;
-}
-
-static struct flow_body_place bodies_end(const struct flow_state *state)
-{
-    return flow_body_place(state->flow->model, state->flow->model->n_obstacles);
-}
-
-static size_t body_skins(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return bodies_end(state).skin;
-}
-
-static size_t body_fans(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return bodies_end(state).vertex;
-}
-
-static size_t body_points(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return bodies_end(state).point;
-}
-
-static size_t body_boxes(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return bodies_end(state).boxes;
-}
-
-static size_t map_bytes(const struct flow_state *state, uint32_t block)
-{
-    return flow_map_bytes(state->flow, block);
-}
-
-/* The record of a block's ties: it may have links to all blocks. */
-static size_t record_bytes(const struct flow_state *state, uint32_t block)
-{
-    return sizeof(struct flow_tie_record) + blocks(state, block) * sizeof(struct flow_tie_link);
-}
-
-static size_t records_bytes(const struct flow_state *state, uint32_t block)
-{
-    return blocks(state, block) * record_bytes(state, block);
-}
-
-static size_t tie_count(const struct flow_state *state, uint32_t block)
-{
-    return tie_room(state, block).ties;
-}
-
-static size_t watched(const struct flow_state *state, uint32_t block)
-{
-    return table_of(state, block)->n_watched;
-}
-
-static size_t saved(const struct flow_state *state, uint32_t block)
-{
-    return flow_system_doubles(table_of(state, block), tie_room(state, block).ties);
-}
-
-static size_t table_bytes(const struct flow_state *state, uint32_t block)
-{
-    return flow_table_bytes(table_of(state, block));
-}
-
-static size_t skin_bytes(const struct flow_state *state, uint32_t block)
-{
-    return flow_skin_bytes(table_of(state, block));
-}
-
-static size_t skin_points(const struct flow_state *state, uint32_t block)
-{
-    return 2 * (size_t)table_of(state, block)->skin.n_points;
-}
-
-static size_t skin_boxes(const struct flow_state *state, uint32_t block)
-{
-    const struct contact_skin skin = flow_skin_counts(table_of(state, block));
     return contact_boxes_bytes(&skin);
 }
 
 /* The diagonal, the filter if there is one, the values of the entries, those of ties, the ties that
  * add something: flow_matrix_in, flow_tie_values, flow_ties_solved. */
-static size_t matrix(const struct flow_state *state, uint32_t block)
+static size_t matrix_numbers(const struct flow_table *t, bool is_filtered, uint32_t ties)
 {
-    const struct flow_table *t = table_of(state, block);
-    const size_t filter = model_is_filtered(state->flow->model) ? 4 * (size_t)t->n : 0;
-    const uint32_t ties = tie_room(state, block).ties;
+    const size_t filter = is_filtered ? 4 * (size_t)t->n : 0;
     return 4 * (flow_diagonal_rows(t) + flow_value_rows(t) + ties + flow_acting_rows(ties)) +
            filter;
 }
 
-static size_t factor(const struct flow_state *state, uint32_t block)
+static const struct flow_integrator *integrator_of(const struct model *model)
 {
-    const struct flow_table *t = table_of(state, block);
-    return solve_local_doubles(t->n, t->n_entries, flow_local(state->flow));
+    return flow_integrators + model->integrator;
 }
 
-static size_t part(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return flow_part_doubles(state->flow);
-}
+/* A word is a function of the state and a block, whose shape is t. */
+#define WORD(type, name, value)                                                                    \
+    static type name(const struct flow_state *state, uint32_t block)                               \
+    {                                                                                              \
+        const struct flow *flow = state->flow;                                                     \
+        const struct flow_table *t = flow->tables.block + block;                                   \
+        const struct model *model = flow->model;                                                   \
+        (void)t, (void)model;                                                                      \
+        return value;                                                                              \
+    }
+#define ROWS(name, value)   WORD(size_t, name, value)
+#define EXISTS(name, value) WORD(bool, name, value)
+#define LIFE(name, value)                                                                          \
+    static enum flow_life name(const struct model *model)                                          \
+    {                                                                                              \
+        (void)model;                                                                               \
+        return value;                                                                              \
+    }
 
-static size_t couplings(const struct flow_state *state, uint32_t block)
-{
-    const uint32_t last = state->flow->patches * (block + 1) - 1;
-    return SOLVE_COUPLING * flow_coupling_at(state->flow, last, UINT32_MAX);
-}
+/* clang-format off */
+/* How many rows. tie_links: the first says how many. record_bytes: a block may have links to all. */
+ROWS(one,           1)
+ROWS(rows,          t->n)
+ROWS(halo,          t->n_halo)
+ROWS(ghosts,        t->n_ghosts)
+ROWS(tie_rows,      tie_room(state, block).rows)
+ROWS(tie_links,     1 + (size_t)tie_room(state, block).others)
+ROWS(tie_count,     tie_room(state, block).ties)
+ROWS(tie_bytes,     tie_table_bytes(t->n, tie_room(state, block)))
+ROWS(ghosts_tied,   ghosts(state, block) + tie_rows(state, block))
+ROWS(record_bytes,  sizeof(struct flow_tie_record) + flow->tables.n_blocks * sizeof(struct flow_tie_link))
+ROWS(records_bytes, flow->tables.n_blocks * record_bytes(state, block))
+ROWS(sides,         (size_t)flow->tables.n_blocks + model->n_obstacles)
+ROWS(obstacles,     model->n_obstacles)
+ROWS(body_skins,    bodies_end(model).skin)
+ROWS(body_fans,     bodies_end(model).vertex)
+ROWS(body_points,   bodies_end(model).point)
+ROWS(body_boxes,    bodies_end(model).boxes)
+ROWS(map_bytes,     flow_map_bytes(flow, block))
+ROWS(watched,       t->n_watched)
+ROWS(saved,         flow_system_doubles(t, tie_room(state, block).ties))
+ROWS(table_bytes,   flow_table_bytes(t))
+ROWS(skin_bytes,    flow_skin_bytes(t))
+ROWS(skin_points,   2 * (size_t)t->skin.n_points)
+ROWS(skin_boxes,    box_bytes(flow_skin_counts(t)))
+ROWS(matrix,        matrix_numbers(t, model_is_filtered(model), tie_room(state, block).ties))
+ROWS(factor,        solve_local_doubles(t->n, t->n_entries, flow->conditioner.local))
+ROWS(part,          flow_part_doubles(flow))
+ROWS(couplings,     SOLVE_COUPLING * flow_coupling_at(flow, flow->patches * (block + 1) - 1, UINT32_MAX))
+ROWS(dots,          flow_dots(flow))
+ROWS(coarse_factor, solve_coarse_doubles(&flow->pattern))
+ROWS(patches,       flow->patches)
+ROWS(lifted,        flow->first_lifted[flow->n_levels])
+ROWS(motion,        flow_motion_doubles(flow))
+ROWS(pulled_seams,  model->n_pulled)
+ROWS(pieces,        state->head.n_pieces)
 
-static size_t dots(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return flow_dots(state->flow);
-}
+/* When a field exists. */
+EXISTS(always,       true)
+EXISTS(kept,         model_keeps(model))
+EXISTS(implicit_run, model_is_implicit(model))
+EXISTS(explicit_run, !model_is_implicit(model))
+EXISTS(sweeps,       flow_contact_mode(model)->sweeps)
+EXISTS(feels,        flow_feels_contact(state))
+EXISTS(meets,        model_seeks(model))
+EXISTS(shows_force,  flow_shows_contact(state))
+EXISTS(meets_bodies, flow_bodies_are_met(model))
+EXISTS(mapped,       block < flow_map_strips(flow))
+EXISTS(corrected,    model->correction_rounds > 0)
+EXISTS(in_stages,    integrator_of(model)->in_stages)
+EXISTS(staged,       integrator_of(model)->in_stages || integrator_of(model)->ends_forces)
+EXISTS(two_steps,    integrator_of(model)->two_steps)
+EXISTS(based,        two_steps(state, block) || (implicit_run(state, block) && model->newton_steps > 1))
+EXISTS(filtered,     implicit_run(state, block) && model_is_filtered(model))
+EXISTS(conditioned,  flow_is_preconditioned(flow))
+EXISTS(plain_solve,  implicit_run(state, block) && !flow_is_preconditioned(flow))
+EXISTS(coarse_run,   flow->conditioner.coarse)
+EXISTS(by_levels,    flow->n_levels)
+EXISTS(may_be_tied,  flow->n_ties > 0 || model_seeks(model))
+EXISTS(solves_tied,  may_be_tied(state, block) && implicit_run(state, block))
+EXISTS(coarse_tied,  may_be_tied(state, block) && coarse_run(state, block))
+EXISTS(probed,       flow_writes_probes(state) && t->n_watched)
+EXISTS(saves,        implicit_run(state, block) && state->output && state->output->system)
+EXISTS(in_pieces,    state->head.n_pieces)
+EXISTS(tied_pieces,  in_pieces(state, block) && may_be_tied(state, block))
 
-static size_t coarse_factor(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return solve_coarse_doubles(&state->flow->pattern);
-}
-
-static size_t patches(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return state->flow->patches;
-}
-
-static size_t lifted(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return state->flow->first_lifted[state->flow->n_levels];
-}
-
-static size_t motion(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return flow_motion_doubles(state->flow);
-}
-
-static size_t pulled_seams(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return state->flow->model->n_pulled;
-}
-
-static size_t pieces(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return state->head.n_pieces;
-}
-
-/* ---- When a field exists ---- */
-
-static bool always(const struct flow_state *state, uint32_t block)
-{
-    (void)state, (void)block;
-    return true;
-}
-
-static bool kept(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return model_keeps(state->flow->model);
-}
-
-static bool implicit_run(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return model_is_implicit(state->flow->model);
-}
-
-static bool sweeps(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return flow_contact_mode(state->flow->model)->sweeps;
-}
-
-static bool feels(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return flow_feels_contact(state);
-}
-
-static bool meets(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return model_seeks(state->flow->model);
-}
-
-static bool shows_force(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return flow_shows_contact(state);
-}
-
-static bool meets_bodies(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return flow_bodies_are_met(state->flow->model);
-}
-
-static bool mapped(const struct flow_state *state, uint32_t block)
-{
-    return block < flow_map_strips(state->flow);
-}
-
-static bool corrected(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return state->flow->model->correction_rounds > 0;
-}
-
-static bool explicit_run(const struct flow_state *state, uint32_t block)
-{
-    return !implicit_run(state, block);
-}
-
-static const struct flow_integrator *integrator_of(const struct flow_state *state)
-{
-    return flow_integrators + state->flow->model->integrator;
-}
-
-static bool in_stages(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return integrator_of(state)->in_stages;
-}
-
-static bool staged(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return integrator_of(state)->in_stages || integrator_of(state)->ends_forces;
-}
-
-static bool two_steps(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return integrator_of(state)->two_steps;
-}
-
-static bool based(const struct flow_state *state, uint32_t block)
-{
-    return two_steps(state, block) ||
-           (implicit_run(state, block) && state->flow->model->newton_steps > 1);
-}
-
-static bool filtered(const struct flow_state *state, uint32_t block)
-{
-    return implicit_run(state, block) && model_is_filtered(state->flow->model);
-}
-
-static bool conditioned(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return flow_is_preconditioned(state->flow);
-}
-
-static bool plain_solve(const struct flow_state *state, uint32_t block)
-{
-    return implicit_run(state, block) && !conditioned(state, block);
-}
-
-static bool coarse_run(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return flow_is_coarse(state->flow);
-}
-
-static bool by_levels(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return state->flow->n_levels;
-}
-
-static bool may_be_tied(const struct flow_state *state, uint32_t block)
-{
-    return state->flow->n_ties > 0 || meets(state, block);
-}
-
-static bool solves_tied(const struct flow_state *state, uint32_t block)
-{
-    return may_be_tied(state, block) && implicit_run(state, block);
-}
-
-static bool coarse_tied(const struct flow_state *state, uint32_t block)
-{
-    return may_be_tied(state, block) && coarse_run(state, block);
-}
-
-static bool probed(const struct flow_state *state, uint32_t block)
-{
-    return flow_writes_probes(state) && table_of(state, block)->n_watched;
-}
-
-static bool saves(const struct flow_state *state, uint32_t block)
-{
-    return implicit_run(state, block) && state->output && state->output->system;
-}
-
-static bool in_pieces(const struct flow_state *state, uint32_t block)
-{
-    return pieces(state, block);
-}
-
-static bool tied_pieces(const struct flow_state *state, uint32_t block)
-{
-    return in_pieces(state, block) && may_be_tied(state, block);
-}
+/* The use between two steps. derived_once: the filter, and so the basis, changes in each step with
+ * sliders that move. state_of_ends: a step may begin with the forces that ended the one before.
+ * state_of_guess: a linear step may begin its solve with dv of the step before. state_of_frames: a
+ * frame may show the end of the step before. */
+LIFE(state_field,       FLOW_STATE_FIELD)
+LIFE(derived,           FLOW_DERIVED)
+LIFE(work,              FLOW_WORK)
+LIFE(derived_once,      model_is_filtered(model) ? FLOW_WORK : FLOW_DERIVED)
+LIFE(derived_of_bodies, flow_bodies_move(model) ? FLOW_WORK : FLOW_DERIVED)
+LIFE(state_of_ends,     integrator_of(model)->ends_forces && model_leaves_ends(model) ? FLOW_STATE_FIELD : FLOW_WORK)
+LIFE(state_of_guess,    model_is_linear(model) && model->guess != MODEL_GUESS_ZERO ? FLOW_STATE_FIELD : FLOW_WORK)
+LIFE(state_of_frames,   model->contact.force ? FLOW_STATE_FIELD : FLOW_WORK)
+/* clang-format on */
 
 /* ---- The table ---- */
 
@@ -402,13 +155,13 @@ static bool tied_pieces(const struct flow_state *state, uint32_t block)
              : DUITE_I64, default                                                                  \
              : DUITE_F64)
 #define FIELD(name, turns, place, type, width, rows, exists, life)                                 \
-    {#name, turns, place, TYPE_OF(type), width, rows, exists, flow_##life},
+    {#name, turns, place, TYPE_OF(type), width, rows, exists, life},
 #define ROW(name, many, ...)   ROW_##many(name, __VA_ARGS__)
 #define ROW_ONE(name, ...)     FIELD(name, FLOW_ONE, 0, __VA_ARGS__)
 #define ROW_SIZED(name, ...)   FIELD(name, FLOW_SIZED, 0, __VA_ARGS__)
-#define ROW_BY_STEP(name, ...) ROWS(name, FLOW_BY_STEP, __VA_ARGS__)
-#define ROW_BY_PASS(name, ...) ROWS(name, FLOW_BY_PASS, __VA_ARGS__)
-#define ROWS(name, turns, ...) FIELD(name, turns, 0, __VA_ARGS__) FIELD(name, turns, 1, __VA_ARGS__)
+#define ROW_BY_STEP(name, ...) PAIR(name, FLOW_BY_STEP, __VA_ARGS__)
+#define ROW_BY_PASS(name, ...) PAIR(name, FLOW_BY_PASS, __VA_ARGS__)
+#define PAIR(name, turns, ...) FIELD(name, turns, 0, __VA_ARGS__) FIELD(name, turns, 1, __VA_ARGS__)
 
 const struct flow_field flow_fields[FLOW_FIELDS_OF_ALL] = {FLOW_FIELDS(ROW)};
 

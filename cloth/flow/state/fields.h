@@ -15,8 +15,8 @@
 /* The fields of a run: every shared object that lives as long as the run, in one list. A row
  * has a field's name, the number of its objects, the type of its numbers in C, numbers a row, and
  * the number of rows (at least one is made). Then it says when the field exists, and its use
- * between two steps (enum flow_life). The words in the last three columns are functions of fields.c
- * and life.c. Loops over the list make, free and colocate objects (objects.c); kernels name them
+ * between two steps (enum flow_life). The words in the last three columns are functions of
+ * fields.c. Loops over the list make, free and colocate objects (objects.c); kernels name them
  * (kernel.h). A checkpoint must have the fields that the last column says; test_fields.c holds runs
  * to it. A new field is one row.
  *
@@ -35,132 +35,132 @@ enum {
 /* clang-format off */
 #define FLOW_BLOCK_FIELDS(X)                                                                       \
     /* the state, and its rows for neighbours */                                                   \
-    X(x,            ONE,     phys_vec,      4, rows,          always,       is_state)              \
-    X(v,            ONE,     phys_vec,      4, rows,          always,       is_state)              \
-    X(f,            ONE,     phys_vec,      4, rows,          always,       is_state_of_ends)      \
-    X(halo_x,       ONE,     phys_vec,      4, halo,          always,       is_derived)            \
-    X(halo_v,       ONE,     phys_vec,      4, halo,          always,       is_derived)            \
-    X(table,        ONE,     unsigned char, 1, table_bytes,   always,       is_derived)            \
-    /* its ties (ties.h). tie_links: the number of blocks that it shares ties with, then each with  \
+    X(x,            ONE,     phys_vec,      4, rows,          always,       state_field)           \
+    X(v,            ONE,     phys_vec,      4, rows,          always,       state_field)           \
+    X(f,            ONE,     phys_vec,      4, rows,          always,       state_of_ends)         \
+    X(halo_x,       ONE,     phys_vec,      4, halo,          always,       derived)               \
+    X(halo_v,       ONE,     phys_vec,      4, halo,          always,       derived)               \
+    X(table,        ONE,     unsigned char, 1, table_bytes,   always,       derived)               \
+    /* its ties (ties.h). tie_links: the number of blocks that it shares ties with, then each with \
      * the place of its ghosts there. x, then v of the rows shown; the coarse motions there */     \
-    X(tie_links,    ONE,     uint32_t,      2, tie_links,     may_be_tied,  is_derived)            \
-    X(tie_table,    ONE,     unsigned char, 1, tie_bytes,     may_be_tied,  is_derived)            \
-    X(tie_halo,     ONE,     phys_vec,      8, tie_rows,      may_be_tied,  is_work)               \
-    X(tie_basis,    ONE,     phys_vec,      4, tie_rows,      coarse_tied,  is_work)               \
+    X(tie_links,    ONE,     uint32_t,      2, tie_links,     may_be_tied,  derived)               \
+    X(tie_table,    ONE,     unsigned char, 1, tie_bytes,     may_be_tied,  derived)               \
+    X(tie_halo,     ONE,     phys_vec,      8, tie_rows,      may_be_tied,  work)                  \
+    X(tie_basis,    ONE,     phys_vec,      4, tie_rows,      coarse_tied,  work)                  \
     /* before a step that may be given up */                                                       \
-    X(kept_x,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
-    X(kept_v,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
-    /* contact: skins (skin.h); before a step, and x of skins before and after            \
+    X(kept_x,       ONE,     phys_vec,      4, rows,          kept,         work)                  \
+    X(kept_v,       ONE,     phys_vec,      4, rows,          kept,         work)                  \
+    /* contact: skins (skin.h); before a step, and x of skins before and after                     \
      * it, and their boxes */                                                                      \
-    X(skin,         ONE,     unsigned char, 1, skin_bytes,    meets,        is_derived)            \
-    X(kept_halo_x,  ONE,     phys_vec,      4, halo,          sweeps,       is_work)               \
-    X(skin_x,       ONE,     phys_vec,      4, skin_points,   meets,        is_work)               \
-    X(skin_boxes,   ONE,     unsigned char, 1, skin_boxes,    meets,        is_work)               \
+    X(skin,         ONE,     unsigned char, 1, skin_bytes,    meets,        derived)               \
+    X(kept_halo_x,  ONE,     phys_vec,      4, halo,          sweeps,       work)                  \
+    X(skin_x,       ONE,     phys_vec,      4, skin_points,   meets,        work)                  \
+    X(skin_boxes,   ONE,     unsigned char, 1, skin_boxes,    meets,        work)                  \
     /* of each row: struct flow_cut_run (contact/cut.c) */                                         \
-    X(cut_runs,     ONE,     uint32_t,      4, rows,          sweeps,       is_state)              \
-    /* its strip of the maps of bodies (contact/image.h) */                                         \
-    X(maps,         ONE,     unsigned char, 1, map_bytes,     mapped,       is_derived)            \
+    X(cut_runs,     ONE,     uint32_t,      4, rows,          sweeps,       state_field)           \
+    /* its strip of the maps of bodies (contact/image.h) */                                        \
+    X(maps,         ONE,     unsigned char, 1, map_bytes,     mapped,       derived)               \
     /* velocity correction (springs/correct.c). X with 1 / m in the fourth lane; moves of x since the \
      * solve of the step. Rows that others need: X and 1 / m, x at the step's begin, S; x as it is. \
      * 1 if no inner edge needs a correction, and the largest excess of these */                   \
-    X(edge_base,    ONE,     phys_vec,      4, rows,          corrected,    is_work)               \
-    X(edge_moved,   ONE,     phys_vec,      4, rows,          corrected,    is_work)               \
-    X(edge_ends,    ONE,     phys_vec,      12, halo,         corrected,    is_work)               \
-    X(edge_x,       BY_PASS, phys_vec,      4, halo,          corrected,    is_work)               \
-    X(edge_calm,    ONE,     double,        2, one,           corrected,    is_work)               \
+    X(edge_base,    ONE,     phys_vec,      4, rows,          corrected,    work)                  \
+    X(edge_moved,   ONE,     phys_vec,      4, rows,          corrected,    work)                  \
+    X(edge_ends,    ONE,     phys_vec,      12, halo,         corrected,    work)                  \
+    X(edge_x,       BY_PASS, phys_vec,      4, halo,          corrected,    work)                  \
+    X(edge_calm,    ONE,     double,        2, one,           corrected,    work)                  \
     /* explicit integrators (explicit.c); x0, v0: where a step began, or Verlet's half step */     \
-    X(spare_halo_x, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
-    X(spare_halo_v, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
-    X(v0,           ONE,     phys_vec,      4, rows,          staged,       is_work)               \
-    X(x0,           ONE,     phys_vec,      4, rows,          in_stages,    is_work)               \
-    X(sum_x,        ONE,     phys_vec,      4, rows,          in_stages,    is_work)               \
-    X(sum_v,        ONE,     phys_vec,      4, rows,          in_stages,    is_work)               \
+    X(spare_halo_x, ONE,     phys_vec,      4, halo,          explicit_run, work)                  \
+    X(spare_halo_v, ONE,     phys_vec,      4, halo,          explicit_run, work)                  \
+    X(v0,           ONE,     phys_vec,      4, rows,          staged,       work)                  \
+    X(x0,           ONE,     phys_vec,      4, rows,          in_stages,    work)                  \
+    X(sum_x,        ONE,     phys_vec,      4, rows,          in_stages,    work)                  \
+    X(sum_v,        ONE,     phys_vec,      4, rows,          in_stages,    work)                  \
     /* implicit integrators: struct phys_states */                                                 \
-    X(base_x,       ONE,     phys_vec,      4, rows,          based,        is_work)               \
-    X(base_v,       ONE,     phys_vec,      4, rows,          based,        is_work)               \
-    X(last_x,       ONE,     phys_vec,      4, rows,          two_steps,    is_state)              \
-    X(last_v,       ONE,     phys_vec,      4, rows,          two_steps,    is_state)              \
+    X(base_x,       ONE,     phys_vec,      4, rows,          based,        work)                  \
+    X(base_v,       ONE,     phys_vec,      4, rows,          based,        work)                  \
+    X(last_x,       ONE,     phys_vec,      4, rows,          two_steps,    state_field)           \
+    X(last_v,       ONE,     phys_vec,      4, rows,          two_steps,    state_field)           \
     /* contact: the box around the skin of the block over the step (pairs.c); the record of its    \
      * ties; its contacts in the step under way: struct contact_row (rows.c) */                    \
-    X(root,         ONE,     double,        FLOW_ROOT, one,       meets,        is_work)               \
-    X(tie_record,   SIZED,   unsigned char, 1, record_bytes,  meets,        is_work)               \
-    X(contact_rows, ONE,     struct contact_row, FLOW_ROW_NUMBERS, tie_count, meets,     is_work)  \
+    X(root,         ONE,     double,        FLOW_ROOT, one,       meets,        work)              \
+    X(tie_record,   SIZED,   unsigned char, 1, record_bytes,  meets,        work)                  \
+    X(contact_rows, ONE,     struct contact_row, FLOW_ROW_NUMBERS, tie_count, meets,     work)     \
     /* of each of these the obstacle that it is with, from 1; 0: none */                           \
-    X(contact_obstacles, ONE, uint32_t,     1, tie_count,     meets,        is_work)               \
+    X(contact_obstacles, ONE, uint32_t,     1, tie_count,     meets,        work)                  \
     /* where it is asked for: the force of contact on each row in the last step, N */              \
-    X(contact_force, ONE,    phys_vec,      4, rows,          feels,        is_state_of_frames)    \
-    X(kept_contact_force, ONE, phys_vec,    4, rows,          shows_force,  is_work)               \
-    /* the system of a step: matrix (flow_matrix_in), its filter if any; its solve */        \
-    X(a,            ONE,     phys_vec,      1, matrix,        implicit_run, is_work)               \
-    X(filter,       ONE,     phys_vec,      4, rows,          filtered,     is_work)               \
-    X(dv,           ONE,     phys_vec,      4, rows,          implicit_run, is_state_of_guess)     \
-    X(r,            ONE,     phys_vec,      4, rows,          implicit_run, is_work)               \
-    X(p,            ONE,     phys_vec,      4, rows,          implicit_run, is_work)               \
-    X(q,            ONE,     phys_vec,      4, rows,          implicit_run, is_work)               \
+    X(contact_force, ONE,    phys_vec,      4, rows,          feels,        state_of_frames)       \
+    X(kept_contact_force, ONE, phys_vec,    4, rows,          shows_force,  work)                  \
+    /* the system of a step: matrix (flow_matrix_in), its filter if any; its solve */              \
+    X(a,            ONE,     phys_vec,      1, matrix,        implicit_run, work)                  \
+    X(filter,       ONE,     phys_vec,      4, rows,          filtered,     work)                  \
+    X(dv,           ONE,     phys_vec,      4, rows,          implicit_run, state_of_guess)        \
+    X(r,            ONE,     phys_vec,      4, rows,          implicit_run, work)                  \
+    X(p,            ONE,     phys_vec,      4, rows,          implicit_run, work)                  \
+    X(q,            ONE,     phys_vec,      4, rows,          implicit_run, work)                  \
     /* r (with a preconditioner z) of the ghosts, then p, then both of the ghosts of ties.         \
      * Rows of q (of s) for neighbours; for others that ties join */                               \
-    X(ghosts,       ONE,     phys_vec,      8, ghosts_tied,   implicit_run, is_work)               \
-    X(halo_q,       BY_PASS, double,        3, halo,          implicit_run, is_work)               \
-    X(tie_q,        BY_PASS, double,        3, tie_rows,      solves_tied,  is_work)               \
+    X(ghosts,       ONE,     phys_vec,      8, ghosts_tied,   implicit_run, work)                  \
+    X(halo_q,       BY_PASS, double,        3, halo,          implicit_run, work)                  \
+    X(tie_q,        BY_PASS, double,        3, tie_rows,      solves_tied,  work)                  \
     /* a preconditioner; part: sums of a pass and the coarse right side */                         \
-    X(z,            ONE,     phys_vec,      4, rows,          conditioned,  is_work)               \
-    X(s,            ONE,     phys_vec,      4, rows,          conditioned,  is_work)               \
-    X(factor,       ONE,     double,        1, factor,        conditioned,  is_work)               \
-    X(part,         ONE,     double,        1, part,          conditioned,  is_work)               \
+    X(z,            ONE,     phys_vec,      4, rows,          conditioned,  work)                  \
+    X(s,            ONE,     phys_vec,      4, rows,          conditioned,  work)                  \
+    X(factor,       ONE,     double,        1, factor,        conditioned,  work)                  \
+    X(part,         ONE,     double,        1, part,          conditioned,  work)                  \
     /* its coarse part */                                                                          \
-    X(basis,        ONE,     phys_vec,      4, rows,          coarse_run,   is_derived_once)       \
-    X(halo_basis,   ONE,     phys_vec,      4, halo,          coarse_run,   is_derived_once)       \
-    X(basis_ghosts, ONE,     phys_vec,      4, ghosts,        coarse_run,   is_derived_once)       \
-    X(coupling,     ONE,     double,        1, couplings,     coarse_run,   is_work)               \
-    X(patch_frame,  ONE,     struct solve_frame, FLOW_FRAME, patches, by_levels, is_derived)       \
+    X(basis,        ONE,     phys_vec,      4, rows,          coarse_run,   derived_once)          \
+    X(halo_basis,   ONE,     phys_vec,      4, halo,          coarse_run,   derived_once)          \
+    X(basis_ghosts, ONE,     phys_vec,      4, ghosts,        coarse_run,   derived_once)          \
+    X(coupling,     ONE,     double,        1, couplings,     coarse_run,   work)                  \
+    X(patch_frame,  ONE,     struct solve_frame, FLOW_FRAME, patches, by_levels, derived)          \
     /* at probes: the force on each row; the values that they report */                            \
-    X(probe_force,  ONE,     phys_vec,      4, rows,          probed,       is_work)               \
-    X(probe_values, ONE,     double,        FLOW_PROBE_VALUES, watched,       probed,       is_work) \
+    X(probe_force,  ONE,     phys_vec,      4, rows,          probed,       work)                  \
+    X(probe_values, ONE,     double,        FLOW_PROBE_VALUES, watched,       probed,       work)  \
     /* what travels to rank 0 on its own, empty in between; saved: of the system of a step */      \
-    X(gathered,     SIZED,   unsigned char, FLOW_VERTEX_BYTES, rows,          always,       is_work) \
-    X(saved,        ONE,     double,        1, saved,         saves,        is_work)
+    X(gathered,     SIZED,   unsigned char, FLOW_VERTEX_BYTES, rows,          always,       work)  \
+    X(saved,        ONE,     double,        1, saved,         saves,        work)
 
 /* Fields of the whole run; they live where the first block lives. */
 #define FLOW_RUN_FIELDS(X)                                                                         \
     /* sums of a step; trial, slope: of a Newton step */                                           \
-    X(status,       BY_STEP, double,        FLOW_STATUS, one,           always,       is_work)     \
-    X(stretch,      BY_STEP, double,        1, one,           always,       is_work)               \
-    X(peaks,        BY_STEP, double,        FLOW_PEAKS, one,           always,       is_work)      \
+    X(status,       BY_STEP, double,        FLOW_STATUS, one,           always,       work)        \
+    X(stretch,      BY_STEP, double,        1, one,           always,       work)                  \
+    X(peaks,        BY_STEP, double,        FLOW_PEAKS, one,           always,       work)         \
     /* of each pulled seam the square of the largest distance of partners, m^2 */                  \
-    X(seam_peaks,   BY_STEP, double,        1, pulled_seams,  always,       is_work)               \
-    X(energies,     BY_STEP, double,        FLOW_SUMS, one,           always,       is_work)       \
-    X(trial,        ONE,     double,        FLOW_STATUS, one,           implicit_run, is_work)     \
-    X(slope,        ONE,     double,        1, one,           implicit_run, is_work)               \
-    X(roots,        ONE,     double,        FLOW_ROOT, sides,     meets,        is_work)               \
-    X(tie_said,     SIZED,   unsigned char, 1, records_bytes, meets,        is_work)               \
-    X(cut_counts,   ONE,     double,        FLOW_CUT_COUNTS, one, sweeps,       is_work)               \
-    X(cut_longest,  ONE,     double,        1, one,           sweeps,       is_work)               \
-    X(obstacle_force, ONE,   phys_vec,      4, obstacles,     feels,        is_work)               \
-    X(contact_energy, ONE,   double,        FLOW_HELD, one, meets,        is_work)                   \
-    /* bodies by their skins (contact/body.h) */                                   \
-    X(body_skins,   ONE,     unsigned char, 1, body_skins,   meets_bodies, is_derived)             \
-    X(body_fans,    ONE,     uint32_t,      1, body_fans,    meets_bodies, is_derived)             \
-    X(body_points,  ONE,     phys_vec,      4, body_points,  meets_bodies, is_derived_of_bodies)   \
-    X(body_boxes,   ONE,     unsigned char, 1, body_boxes,   meets_bodies, is_derived_of_bodies)   \
+    X(seam_peaks,   BY_STEP, double,        1, pulled_seams,  always,       work)                  \
+    X(energies,     BY_STEP, double,        FLOW_SUMS, one,           always,       work)          \
+    X(trial,        ONE,     double,        FLOW_STATUS, one,           implicit_run, work)        \
+    X(slope,        ONE,     double,        1, one,           implicit_run, work)                  \
+    X(roots,        ONE,     double,        FLOW_ROOT, sides,     meets,        work)              \
+    X(tie_said,     SIZED,   unsigned char, 1, records_bytes, meets,        work)                  \
+    X(cut_counts,   ONE,     double,        FLOW_CUT_COUNTS, one, sweeps,       work)              \
+    X(cut_longest,  ONE,     double,        1, one,           sweeps,       work)                  \
+    X(obstacle_force, ONE,   phys_vec,      4, obstacles,     feels,        work)                  \
+    X(contact_energy, ONE,   double,        FLOW_HELD, one, meets,        work)                    \
+    /* bodies by their skins (contact/body.h) */                                                   \
+    X(body_skins,   ONE,     unsigned char, 1, body_skins,   meets_bodies, derived)                \
+    X(body_fans,    ONE,     uint32_t,      1, body_fans,    meets_bodies, derived)                \
+    X(body_points,  ONE,     phys_vec,      4, body_points,  meets_bodies, derived_of_bodies)      \
+    X(body_boxes,   ONE,     unsigned char, 1, body_boxes,   meets_bodies, derived_of_bodies)      \
     /* its rounds, and the result of the last one */                                               \
-    X(edge_rounds,  BY_PASS, struct solve_rounds, SOLVE_ROUNDS_NUMBERS, one, corrected, is_work)   \
-    X(edge_excess,  BY_PASS, double,        2, one,           corrected,    is_work)               \
+    X(edge_rounds,  BY_PASS, struct solve_rounds, SOLVE_ROUNDS_NUMBERS, one, corrected, work)      \
+    X(edge_excess,  BY_PASS, double,        2, one,           corrected,    work)                  \
     /* a solve. Coarse, motion: factor, and its part of s. Lift: places of patches in groups, and  \
      * of these in those of the level above. Pieces: what it left of free pieces */                \
-    X(sums,         BY_PASS, double,        1, dots,          plain_solve,  is_work)               \
-    X(scalars,      BY_PASS, struct solve_scalars, SOLVE_SCALARS, one,           implicit_run, is_work) \
-    X(coarse,       ONE,     double,        1, coarse_factor, coarse_run,   is_work)               \
-    X(motion,       BY_PASS, double,        1, motion,        coarse_run,   is_work)               \
-    X(lift,         ONE,     double,        FLOW_LIFT, lifted, by_levels,   is_derived)            \
-    X(pieces,       ONE,     double,        FLOW_PIECE_SUMS, pieces,        in_pieces,    is_work) \
-    /* a piece: the lowest one that ties join it with, counted from 1; 0: they join it with what a  \
+    X(sums,         BY_PASS, double,        1, dots,          plain_solve,  work)                  \
+    X(scalars,      BY_PASS, struct solve_scalars, SOLVE_SCALARS, one,           implicit_run, work) \
+    X(coarse,       ONE,     double,        1, coarse_factor, coarse_run,   work)                  \
+    X(motion,       BY_PASS, double,        1, motion,        coarse_run,   work)                  \
+    X(lift,         ONE,     double,        FLOW_LIFT, lifted, by_levels,   derived)               \
+    X(pieces,       ONE,     double,        FLOW_PIECE_SUMS, pieces,        in_pieces,    work)    \
+    /* a piece: the lowest one that ties join it with, counted from 1; 0: they join it with what a \
      * pin holds */                                                                                \
-    X(groups,       ONE,     uint64_t,      1, pieces,        tied_pieces,  is_derived)            \
+    X(groups,       ONE,     uint64_t,      1, pieces,        tied_pieces,  derived)               \
     /* reports; the holder of the token writes a frame or a row */                                 \
-    X(token,        ONE,     int64_t,       1, one,           always,       is_work)               \
-    X(seconds,      ONE,     double,        FLOW_PARTS, one,           always,       is_work)      \
-    X(energy,       ONE,     double,        FLOW_SUMS, one,           always,       is_work)       \
-    X(broadcast,    ONE,     uint64_t,      FLOW_BROADCAST, one,           always,       is_work)
+    X(token,        ONE,     int64_t,       1, one,           always,       work)                  \
+    X(seconds,      ONE,     double,        FLOW_PARTS, one,           always,       work)         \
+    X(energy,       ONE,     double,        FLOW_SUMS, one,           always,       work)          \
+    X(broadcast,    ONE,     uint64_t,      FLOW_BROADCAST, one,           always,       work)
 /* clang-format on */
 
 #define FLOW_FIELDS(X) FLOW_BLOCK_FIELDS(X) FLOW_RUN_FIELDS(X)

@@ -131,7 +131,7 @@ struct flow {
         *at; /* of each ghost of all blocks: its place in the neighbour's rows that a pass reads */
     struct flow_packed_halo *packed_halo; /* of halo.c */
     uint32_t *packed_row;
-    enum model_preconditioner preconditioner;
+    struct model_conditioner conditioner; /* of an explicit run the identity */
     uint32_t patches;          /* of a block; patch k of block b is number patches * b + k */
     uint32_t *patch_first;     /* if there is a coarse part: patches + 1, of each patch's
                                 * neighbours among all */
@@ -157,20 +157,9 @@ struct flow {
     size_t saving_room;            /* bytes */
 };
 
-/* The parts of a run's preconditioner. An explicit run has none. */
 static inline bool flow_is_preconditioned(const struct flow *flow)
 {
-    return flow->preconditioner != MODEL_PLAIN;
-}
-static inline bool flow_is_coarse(const struct flow *flow)
-{
-    return flow->preconditioner == MODEL_COARSE || flow->preconditioner == MODEL_IC0_COARSE;
-}
-static inline enum solve_local flow_local(const struct flow *flow)
-{
-    return flow->preconditioner == MODEL_IC0 || flow->preconditioner == MODEL_IC0_COARSE
-               ? SOLVE_IC0
-               : SOLVE_JACOBI;
+    return flow->conditioner.local != SOLVE_IDENTITY;
 }
 
 /* Seconds since some start. Local. */

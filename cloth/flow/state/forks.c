@@ -26,7 +26,8 @@ static bool is_there(const struct flow_state *state, enum flow_whose whose,
 {
     if (whose == FLOW_OF_TIED && !state->tied.now.first)
         return false;
-    return (whose != FLOW_IF_MADE && whose != FLOW_OF_TIED) || flow_fields[field].exists(state, 0);
+    return whose == FLOW_OWN || whose == FLOW_OF_NEIGHBOURS || whose == FLOW_OF_ALL ||
+           flow_fields[field].exists(state, 0);
 }
 
 static void find_places(const struct flow_state *state, const struct flow_kernel *kernel,
@@ -77,12 +78,17 @@ static size_t list_objects(const struct flow_state *state, const struct places *
     for (size_t i = 0; i < places->n; i++) {
         const enum flow_whose whose = places->of[i].whose;
         const size_t at = places->of[i].at;
-        if (whose == FLOW_OWN || whose == FLOW_IF_MADE)
+        if (whose == FLOW_OWN || whose == FLOW_OWN_IF_MADE || whose == FLOW_IF_MADE)
             *end++ = object_at(state, at, block);
         else
             end = add_others(state, block, whose, places->of[i].field, at, end);
     }
     return (size_t)(end - refs);
+}
+
+const duite_kernel *flow_task_of(const struct flow_state *state, const struct flow_kernel *kernel)
+{
+    return kernel->less && !state->flow->made[kernel->with] ? kernel->less : &kernel->task;
 }
 
 size_t flow_kernel_objects(struct flow_state *state, const struct flow_kernel *kernel,
@@ -98,7 +104,7 @@ int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel,
 {
     const uint32_t *block = args;
     const size_t n = flow_kernel_objects(state, kernel, *block, as);
-    return duite_fork(state->rt, &kernel->task, args, n, state->refs);
+    return duite_fork(state->rt, flow_task_of(state, kernel), args, n, state->refs);
 }
 
 int flow_fork_one(struct flow_state *state, const struct flow_kernel *kernel, const void *args)
@@ -130,6 +136,7 @@ int flow_fork_range_as(struct flow_state *state, const struct flow_kernel *kerne
                        uint32_t end, void *args, const struct flow_as *as)
 {
     uint32_t *block = args;
+    const duite_kernel *task = flow_task_of(state, kernel);
     size_t n[FLOW_FORKS_AHEAD];
     struct places places;
     int code = DUITE_OK;
@@ -139,7 +146,7 @@ int flow_fork_range_as(struct flow_state *state, const struct flow_kernel *kerne
         duite_object *refs = state->refs + turn * state->max_refs;
         if (b >= first + FLOW_FORKS_AHEAD) {
             *block = b - FLOW_FORKS_AHEAD;
-            code = duite_fork(state->rt, &kernel->task, args, n[turn], refs);
+            code = duite_fork(state->rt, task, args, n[turn], refs);
         }
         if (b >= end)
             continue;
@@ -169,5 +176,5 @@ int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *k
 {
     const uint32_t *block = args;
     const size_t n = flow_kernel_objects(state, kernel, *block, as);
-    return duite_fork_at(state->rt, rank, &kernel->task, args, n, state->refs);
+    return duite_fork_at(state->rt, rank, flow_task_of(state, kernel), args, n, state->refs);
 }

@@ -23,6 +23,8 @@
  *
  *     R W RW     reads, overwrites, changes: a field of the task's block or of the run
  *     SUM MAX    contributes to it, added up, or the largest counts
+ *     W_IF RW_IF overwrites, changes it if it exists in the run; else the pointer is NULL
+ *     SUM_ELSE   contributes to it in a run that lacks those
  *     NEIGHBOURS reads this field of each neighbour, ascending by block
  *     ALL        reads this field of every block that has it; the last parameter of a kernel
  *     IF_MADE    reads it if it exists in the run, in all blocks or in none; else the pointer is
@@ -30,8 +32,9 @@
  *     TIED       reads this field of each block that ties (ties.h) join this one with, ascending,
  *                if it exists in the run; a member tied_field. IF_MADE(tie_table) comes before it
  *
- * NEIGHBOURS, IF_MADE and TIED come behind the others, in this order; ALL comes last. A body gets
- * NEIGHBOURS, ALL and TIED as parameters: flow_rows_of, flow_numbers_of.
+ * W_IF, RW_IF and SUM_ELSE, then NEIGHBOURS, IF_MADE and TIED come behind the others, in this
+ * order; ALL comes last. A body gets NEIGHBOURS, ALL and TIED as parameters: flow_rows_of,
+ * flow_numbers_of.
  * FLOW_INDEX_OF(velocity, v) is the index of a parameter, for calls of the runtime that want one.
  *
  * The arguments are a struct whose first member is `uint32_t block`: that alone (struct
@@ -46,12 +49,22 @@
 
 /* The same with more members of duite_kernel, such as .replicated = 1 or .side_effects = 1. */
 #define FLOW_KERNEL_WITH(name, part, arguments, fields, ...)                                       \
-    FLOW_KERNEL_DECLARE(name, arguments, fields)                                                   \
-    static int name##_task(const duite_call *call)                                                 \
-    {                                                                                              \
-        return (part) == FLOW_NO_PART ? name##_open(call) : flow_timed(call, name##_open, part);   \
-    }                                                                                              \
-    FLOW_KERNEL_DEFINE(name, arguments, fields, __VA_ARGS__)
+    FLOW_KERNEL_OPEN(name, part, arguments, fields)                                                \
+    const struct flow_kernel flow_kernel_##name = {                                                \
+        .task = FLOW_TASK(name, #name, WITH, arguments, fields, __VA_ARGS__),                      \
+        .parameter = {FLOW_EACH(FLOW_GIVEN, name, fields)}};
+
+/* A kernel with W_IF, RW_IF, SUM_ELSE, which exist together with this field. The runtime knows two,
+ * name and name_less: it is in the list FLOW_KERNELS_IF, too. */
+#define FLOW_KERNEL_IF(name, field, part, arguments, fields, ...)                                  \
+    FLOW_KERNEL_OPEN(name, part, arguments, fields)                                                \
+    const duite_kernel flow_kernel_##name##_less =                                                 \
+        FLOW_TASK(name, #name "_less", LESS, arguments, fields, __VA_ARGS__);                      \
+    const struct flow_kernel flow_kernel_##name = {                                                \
+        .task = FLOW_TASK(name, #name, WITH, arguments, fields, __VA_ARGS__),                      \
+        .less = &flow_kernel_##name##_less,                                                        \
+        .with = FLOW_FIELD_##field,                                                                \
+        .parameter = {FLOW_EACH(FLOW_GIVEN, name, fields)}};
 
 #define FLOW_INDEX_OF(name, field) name##_at_##field
 
@@ -61,6 +74,7 @@
 enum flow_whose {
     FLOW_NOBODY,
     FLOW_OWN,
+    FLOW_OWN_IF_MADE,
     FLOW_OF_NEIGHBOURS,
     FLOW_IF_MADE,
     FLOW_OF_TIED,
@@ -76,6 +90,8 @@ enum { FLOW_MAX_PARAMETERS = 24 }; /* as many as FLOW_EACH takes */
 
 struct flow_kernel {
     duite_kernel task;
+    const duite_kernel *less; /* the task in runs without the field `with`; NULL: the same */
+    enum flow_field_id with;
     struct flow_parameter parameter[FLOW_MAX_PARAMETERS + 1]; /* ended by FLOW_NOBODY */
 };
 
@@ -114,104 +130,83 @@ struct flow_kernel {
 #define FLOW_E23(f, k, a, ...)                                                                    f(k, a) FLOW_E22(f, k, __VA_ARGS__)
 #define FLOW_E24(f, k, a, ...)                                                                    f(k, a) FLOW_E23(f, k, __VA_ARGS__)
 
-/* A word with its field as two arguments. */
-#define FLOW_WORD_R(field)          R, field
-#define FLOW_WORD_W(field)          W, field
-#define FLOW_WORD_RW(field)         RW, field
-#define FLOW_WORD_SUM(field)        SUM, field
-#define FLOW_WORD_MAX(field)        MAX, field
-#define FLOW_WORD_NEIGHBOURS(field) NEIGHBOURS, field
-#define FLOW_WORD_ALL(field)        ALL, field
-#define FLOW_WORD_IF_MADE(field)    IF_MADE, field
-#define FLOW_WORD_TIED(field)       TIED, field
+/* clang-format off */
+/* A word: its kind, `const` if it only reads, mode and law in the runtime, whose object, the field. */
+#define FLOW_WORD_R(field)          FIXED, const, DUITE_R, NULL, FLOW_OWN, field
+#define FLOW_WORD_W(field)          FIXED, , DUITE_W, NULL, FLOW_OWN, field
+#define FLOW_WORD_RW(field)         FIXED, , DUITE_RW, NULL, FLOW_OWN, field
+#define FLOW_WORD_SUM(field)        FIXED, , DUITE_CW, &duite_sum, FLOW_OWN, field
+#define FLOW_WORD_MAX(field)        FIXED, , DUITE_CW, &duite_max, FLOW_OWN, field
+#define FLOW_WORD_W_IF(field)       WITH, , DUITE_W, NULL, FLOW_OWN_IF_MADE, field
+#define FLOW_WORD_RW_IF(field)      WITH, , DUITE_RW, NULL, FLOW_OWN_IF_MADE, field
+#define FLOW_WORD_SUM_ELSE(field)   LESS, , DUITE_CW, &duite_sum, FLOW_OWN_IF_MADE, field
+#define FLOW_WORD_IF_MADE(field)    READ, const, , , FLOW_IF_MADE, field
+#define FLOW_WORD_NEIGHBOURS(field) MANY, const, , , FLOW_OF_NEIGHBOURS, field
+#define FLOW_WORD_ALL(field)        MANY, const, , , FLOW_OF_ALL, field
+#define FLOW_WORD_TIED(field)       TIED, const, , , FLOW_OF_TIED, field
 #define FLOW_SPREAD(f, ...)         f(__VA_ARGS__)
 
 /* name_at_field, of parameters that are always there. */
-#define FLOW_INDEX(k, word)             FLOW_SPREAD(FLOW_INDEX_WORD, k, FLOW_WORD_##word)
-#define FLOW_INDEX_WORD(k, mode, field) FLOW_INDEX_##mode(k, field)
-#define FLOW_INDEX_R(k, field)          FLOW_INDEX_OF(k, field),
-#define FLOW_INDEX_W(k, field)          FLOW_INDEX_OF(k, field),
-#define FLOW_INDEX_RW(k, field)         FLOW_INDEX_OF(k, field),
-#define FLOW_INDEX_SUM(k, field)        FLOW_INDEX_OF(k, field),
-#define FLOW_INDEX_MAX(k, field)        FLOW_INDEX_OF(k, field),
-#define FLOW_INDEX_NEIGHBOURS(k, field)
-#define FLOW_INDEX_ALL(k, field)
-#define FLOW_INDEX_IF_MADE(k, field)
+#define FLOW_INDEX(k, word) FLOW_SPREAD(FLOW_INDEX_IN, k, FLOW_WORD_##word)
+#define FLOW_INDEX_IN(k, kind, only, mode, law, whose, field) FLOW_INDEX_##kind(k, field)
+#define FLOW_INDEX_FIXED(k, field) FLOW_INDEX_OF(k, field),
+#define FLOW_INDEX_WITH(k, field)
+#define FLOW_INDEX_LESS(k, field)
+#define FLOW_INDEX_READ(k, field)
+#define FLOW_INDEX_MANY(k, field)
 #define FLOW_INDEX_TIED(k, field)
 
 /* Members of struct name_fields. */
-#define FLOW_HAS(k, word)             FLOW_SPREAD(FLOW_HAS_WORD, k, FLOW_WORD_##word)
-#define FLOW_HAS_WORD(k, mode, field) FLOW_HAS_##mode(field)
-#define FLOW_HAS_R(field)             const flow_type_of_##field *field;
-#define FLOW_HAS_W(field)             flow_type_of_##field *field;
-#define FLOW_HAS_RW(field)            flow_type_of_##field *field;
-#define FLOW_HAS_SUM(field)           flow_type_of_##field *field;
-#define FLOW_HAS_MAX(field)           flow_type_of_##field *field;
-#define FLOW_HAS_NEIGHBOURS(field)    const duite_param *field;
-#define FLOW_HAS_ALL(field)           const duite_param *field;
-#define FLOW_HAS_IF_MADE(field)       const flow_type_of_##field *field;
-#define FLOW_HAS_TIED(field)          const duite_param *tied_##field;
+#define FLOW_HAS(k, word) FLOW_SPREAD(FLOW_HAS_IN, k, FLOW_WORD_##word)
+#define FLOW_HAS_IN(k, kind, only, mode, law, whose, field) FLOW_HAS_##kind(only, field)
+#define FLOW_HAS_FIXED(only, field) only flow_type_of_##field *field;
+#define FLOW_HAS_WITH(only, field)  only flow_type_of_##field *field;
+#define FLOW_HAS_LESS(only, field)  only flow_type_of_##field *field;
+#define FLOW_HAS_READ(only, field)  only flow_type_of_##field *field;
+#define FLOW_HAS_MANY(only, field)  only duite_param *field;
+#define FLOW_HAS_TIED(only, field)  only duite_param *tied_##field;
 
 /* Fills them. */
-#define FLOW_OPEN(k, word)             FLOW_SPREAD(FLOW_OPEN_WORD, k, FLOW_WORD_##word)
-#define FLOW_OPEN_WORD(k, mode, field) FLOW_OPEN_##mode(k, field)
-#define FLOW_OPEN_R(k, field)          on.field = call->param[FLOW_INDEX_OF(k, field)].data;
-#define FLOW_OPEN_W(k, field)          FLOW_OPEN_R(k, field)
-#define FLOW_OPEN_RW(k, field)         FLOW_OPEN_R(k, field)
-#define FLOW_OPEN_SUM(k, field)        FLOW_OPEN_R(k, field)
-#define FLOW_OPEN_MAX(k, field)        FLOW_OPEN_R(k, field)
-#define FLOW_OPEN_NEIGHBOURS(k, field)                                                             \
-    on.field = call->param + next;                                                                 \
-    next += flow_shape_of(call)->n_neighbours;
-#define FLOW_OPEN_ALL(k, field)                                                                    \
-    on.field = call->param + next;                                                                 \
-    next += flow_of(call)->tables.n_blocks;
-#define FLOW_OPEN_IF_MADE(k, field)                                                                \
+#define FLOW_OPEN(k, word) FLOW_SPREAD(FLOW_OPEN_IN, k, FLOW_WORD_##word)
+#define FLOW_OPEN_IN(k, kind, only, mode, law, whose, field) FLOW_OPEN_##kind(k, whose, field)
+#define FLOW_OPEN_FIXED(k, whose, field) on.field = call->param[FLOW_INDEX_OF(k, field)].data;
+#define FLOW_OPEN_WITH(k, whose, field)  FLOW_OPEN_READ(k, whose, field)
+#define FLOW_OPEN_LESS(k, whose, field)  FLOW_OPEN_READ(k, whose, field)
+#define FLOW_OPEN_READ(k, whose, field)                                                            \
     on.field = flow_of(call)->made[FLOW_FIELD_##field] ? call->param[next++].data : NULL;
-#define FLOW_OPEN_TIED(k, field)                                                                   \
+#define FLOW_OPEN_MANY(k, whose, field)                                                            \
+    on.field = call->param + next;                                                                 \
+    next += whose == FLOW_OF_ALL ? flow_of(call)->tables.n_blocks : flow_shape_of(call)->n_neighbours;
+#define FLOW_OPEN_TIED(k, whose, field)                                                            \
     on.tied_##field = call->param + next;                                                          \
     next += flow_of(call)->made[FLOW_FIELD_##field] ? flow_ties_others(on.tie_table) : 0;
 
-/* Members of the runtime's kernel. */
-#define FLOW_MODE(k, word)             FLOW_SPREAD(FLOW_MODE_WORD, k, FLOW_WORD_##word)
-#define FLOW_MODE_WORD(k, mode, field) FLOW_MODE_##mode
-#define FLOW_MODE_R                    DUITE_R,
-#define FLOW_MODE_W                    DUITE_W,
-#define FLOW_MODE_RW                   DUITE_RW,
-#define FLOW_MODE_SUM                  DUITE_CW,
-#define FLOW_MODE_MAX                  DUITE_CW,
-#define FLOW_MODE_NEIGHBOURS
-#define FLOW_MODE_ALL
-#define FLOW_MODE_IF_MADE
-#define FLOW_MODE_TIED
-#define FLOW_LAW(k, word)             FLOW_SPREAD(FLOW_LAW_WORD, k, FLOW_WORD_##word)
-#define FLOW_LAW_WORD(k, mode, field) FLOW_LAW_##mode
-#define FLOW_LAW_R                    NULL,
-#define FLOW_LAW_W                    NULL,
-#define FLOW_LAW_RW                   NULL,
-#define FLOW_LAW_SUM                  &duite_sum,
-#define FLOW_LAW_MAX                  &duite_max,
-#define FLOW_LAW_NEIGHBOURS
-#define FLOW_LAW_ALL
-#define FLOW_LAW_IF_MADE
-#define FLOW_LAW_TIED
+/* Members of the runtime's kernel, of the form WITH or LESS what a run may lack. */
+#define FLOW_MODE(form, word) FLOW_SPREAD(FLOW_MODE_IN, form, FLOW_WORD_##word)
+#define FLOW_MODE_IN(form, kind, only, mode, law, whose, field) FLOW_##kind##_IN_##form(mode)
+#define FLOW_LAW(form, word) FLOW_SPREAD(FLOW_LAW_IN, form, FLOW_WORD_##word)
+#define FLOW_LAW_IN(form, kind, only, mode, law, whose, field) FLOW_##kind##_IN_##form(law)
+#define FLOW_FIXED_IN_WITH(member) member,
+#define FLOW_FIXED_IN_LESS(member) member,
+#define FLOW_WITH_IN_WITH(member)  member,
+#define FLOW_WITH_IN_LESS(member)
+#define FLOW_LESS_IN_WITH(member)
+#define FLOW_LESS_IN_LESS(member)  member,
+#define FLOW_READ_IN_WITH(member)
+#define FLOW_READ_IN_LESS(member)
+#define FLOW_MANY_IN_WITH(member)
+#define FLOW_MANY_IN_LESS(member)
+#define FLOW_TIED_IN_WITH(member)
+#define FLOW_TIED_IN_LESS(member)
 
 /* The parameters at the fork. */
-#define FLOW_GIVEN(k, word)               FLOW_SPREAD(FLOW_GIVEN_WORD, k, FLOW_WORD_##word)
-#define FLOW_GIVEN_WORD(k, mode, field)   {FLOW_WHOSE_##mode, FLOW_FIELD_##field},
-#define FLOW_WHOSE_R                      FLOW_OWN
-#define FLOW_WHOSE_W                      FLOW_OWN
-#define FLOW_WHOSE_RW                     FLOW_OWN
-#define FLOW_WHOSE_SUM                    FLOW_OWN
-#define FLOW_WHOSE_MAX                    FLOW_OWN
-#define FLOW_WHOSE_NEIGHBOURS             FLOW_OF_NEIGHBOURS
-#define FLOW_WHOSE_ALL                    FLOW_OF_ALL
-#define FLOW_WHOSE_IF_MADE                FLOW_IF_MADE
-#define FLOW_WHOSE_TIED                   FLOW_OF_TIED
-#define FLOW_FURTHER(k, word)             FLOW_SPREAD(FLOW_FURTHER_WORD, k, FLOW_WORD_##word)
-#define FLOW_FURTHER_WORD(k, mode, field) || FLOW_WHOSE_##mode != FLOW_OWN
+#define FLOW_GIVEN(k, word) FLOW_SPREAD(FLOW_GIVEN_IN, k, FLOW_WORD_##word)
+#define FLOW_GIVEN_IN(k, kind, only, mode, law, whose, field) {whose, FLOW_FIELD_##field},
+#define FLOW_FURTHER(k, word) FLOW_SPREAD(FLOW_FURTHER_IN, k, FLOW_WORD_##word)
+#define FLOW_FURTHER_IN(k, kind, only, mode, law, whose, field) || whose > FLOW_OWN_IF_MADE
+/* clang-format on */
 
-#define FLOW_KERNEL_DECLARE(name, arguments, fields)                                               \
+#define FLOW_KERNEL_OPEN(name, part, arguments, fields)                                            \
     enum { FLOW_EACH(FLOW_INDEX, name, fields) name##_at_end };                                    \
     struct name##_fields {                                                                         \
         const arguments *args;                                                                     \
@@ -225,20 +220,21 @@ struct flow_kernel {
         FLOW_EACH(FLOW_OPEN, name, fields)                                                         \
         (void)next;                                                                                \
         return name##_body(call, &on);                                                             \
-    }
-#define FLOW_KERNEL_DEFINE(k, arguments, fields, ...)                                              \
-    _Static_assert(FLOW_KERNEL_##k >= 0 && offsetof(arguments, block) == 0 &&                      \
+    }                                                                                              \
+    static int name##_task(const duite_call *call)                                                 \
+    {                                                                                              \
+        return (part) == FLOW_NO_PART ? name##_open(call) : flow_timed(call, name##_open, part);   \
+    }                                                                                              \
+    _Static_assert(FLOW_KERNEL_##name >= 0 && offsetof(arguments, block) == 0 &&                   \
                        _Generic(((arguments *)NULL)->block, uint32_t : 1, default : 0),            \
-                   "a kernel is in the list, and its arguments begin with the block");             \
-    const struct flow_kernel flow_kernel_##k = {                                                   \
-        .task = {.name = #k,                                                                       \
-                 .body = k##_task,                                                                 \
-                 .access = {FLOW_EACH(FLOW_MODE, k, fields)},                                      \
-                 .law = {FLOW_EACH(FLOW_LAW, k, fields)},                                          \
-                 .variadic = (0 FLOW_EACH(FLOW_FURTHER, k, fields)) ? DUITE_R : DUITE_NONE,        \
-                 .args_size = sizeof(arguments),                                                   \
-                 __VA_ARGS__},                                                                     \
-        .parameter = {FLOW_EACH(FLOW_GIVEN, k, fields)}};
+                   "a kernel is in the list, and its arguments begin with the block");
+#define FLOW_TASK(k, text, form, arguments, fields, ...)                                           \
+    {                                                                                              \
+        .name = text, .body = k##_task, .access = {FLOW_EACH(FLOW_MODE, form, fields)},            \
+        .law = {FLOW_EACH(FLOW_LAW, form, fields)},                                                \
+        .variadic = (0 FLOW_EACH(FLOW_FURTHER, k, fields)) ? DUITE_R : DUITE_NONE,                 \
+        .args_size = sizeof(arguments), __VA_ARGS__                                                \
+    }
 
 /* flow_type_of_name: the C type of a field's object. */
 #define FLOW_FIELD_TYPE(name, many, type, ...) FLOW_FIELD_TYPE_##many(name, type)
@@ -279,6 +275,9 @@ int flow_fork_range_as(struct flow_state *state, const struct flow_kernel *kerne
                        uint32_t end, void *args, const struct flow_as *as);
 int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *kernel,
                  const void *args, const struct flow_as *as);
+
+/* The runtime's kernel of a run. */
+const duite_kernel *flow_task_of(const struct flow_state *state, const struct flow_kernel *kernel);
 
 /* Puts the objects that a fork of the kernel on a block gives into state->refs. Returns how many:
  * for forks that give others in place of some. */

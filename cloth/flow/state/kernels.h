@@ -17,17 +17,22 @@
     X(implicit) X(implicit_next) X(predict) X(correct) X(shift) X(residual)                    \
     X(system) X(system_of_forces) X(matrix) X(factor)                                              \
     X(basis) X(basis_ghosts) X(patch_frame) X(lift) X(couple) X(factor_coarse)                     \
-    X(cg_begin) X(cg_begin_coarse) X(cg_start) X(cg_start_preconditioned) X(cg_guess)              \
-    X(cg_pass) X(cg_pass_preconditioned) X(tie_pack) X(tie_pack_pass) X(tie_show_basis)            \
-    X(cg_scalars) X(cg_scalars_of_parts) X(cg_scalars_coarse) X(piece_sums) X(piece_shift)         \
+    X(cg_begin) X(cg_motion) X(cg_start) X(cg_guess) X(cg_pass)                              \
+    X(tie_pack) X(tie_pack_pass) X(tie_show_basis)            \
+    X(cg_scalars) X(piece_sums) X(piece_shift)         \
     X(stretch) X(energy) X(level) X(watch) X(seams) X(contact_force) X(probe) X(row)                         \
     X(frame) X(frame_beside) X(frame_force) X(collect) X(seconds) X(broadcast) X(system_part) X(system_save)
 /* clang-format on */
+
+/* Those of them that are two to the runtime. */
+#define FLOW_KERNELS_IF(X) X(cg_start) X(cg_pass) X(cg_scalars)
 
 #define FLOW_KERNEL_NUMBER(name) FLOW_KERNEL_##name,
 #define FLOW_KERNEL_EXTERN(name) extern const struct flow_kernel flow_kernel_##name;
 enum { FLOW_KERNELS(FLOW_KERNEL_NUMBER) FLOW_KERNELS_OF_ALL };
 FLOW_KERNELS(FLOW_KERNEL_EXTERN)
+#define FLOW_KERNEL_EXTERN_LESS(name) extern const duite_kernel flow_kernel_##name##_less;
+FLOW_KERNELS_IF(FLOW_KERNEL_EXTERN_LESS)
 
 /* Kernels of objects that are not fields. */
 extern const duite_kernel flow_broadcast_head; /* w head: on rank 0 */
@@ -46,6 +51,6 @@ extern const duite_kernel flow_meet, flow_meet_shape, flow_touch, flow_cut_ways,
 /* Checkpoints: checkpoint/checkpoint.h. */
 extern const duite_kernel flow_save_block, flow_send_main, flow_load_block;
 
-enum { FLOW_KERNELS_LISTED = FLOW_KERNELS_OF_ALL + 16 }; /* by flow_kernels (run.h) */
+enum { FLOW_KERNELS_LISTED = FLOW_KERNELS_OF_ALL + 19 }; /* by flow_kernels (run.h) */
 
 #endif

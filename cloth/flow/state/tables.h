@@ -16,8 +16,7 @@
  * it, and a run that reaches it diverged. */
 #define FLOW_BOUND 1e6
 
-/* A position or speed of this size (m, m/s, along an axis) is an error: a run does not start with
- * it, and a run that reaches it diverged. */
+/* The counts of a block's skin (contact/skin.h). */
 struct flow_skin_size {
     uint32_t n_points, n_triangles, n_edges, n_vertices;
     uint32_t cloth[2]; /* its points are of these cloths and some between them */
@@ -30,6 +29,42 @@ struct flow_cut_edge {
     uint32_t row, neighbour; /* row here; which of the neighbours */
     double share;            /* of its correction that either block makes at once */
 };
+
+/* clang-format off */
+/* The arrays of a table, in the order of its memory: X(type, name, rows), PAIR(name, rows) of two
+ * numbers a row. t: its shape. */
+#define FLOW_TABLE_ARRAYS(X, PAIR)                                                                 \
+    X(phys_vec, load, t->n)              /* N, gravity included */                                 \
+    X(phys_vec, position, t->n)          /* m, m/s, at the start */                                \
+    X(phys_vec, velocity, t->n)                                                                    \
+    X(double, mass, t->n)                /* kg */                                                  \
+    X(double, drag, t->n)                /* kg/s, viscous + mass damping */                        \
+    X(double, free, t->n)                /* 1, or 0 where held */                                  \
+    X(double, stiffness, sides)                                                                    \
+    X(double, damping, sides)                                                                      \
+    X(double, length, sides)                                                                       \
+    PAIR(end, sides)                     /* inner: rows; cut: row here, place in the neighbour's halo */ \
+    PAIR(ghost_end, t->n_cut_entries)    /* row here, number of the ghost */                       \
+    PAIR(held_at, t->n_held)             /* struct solve_held: row, entry */                       \
+    X(uint32_t, vertex, t->n)            /* of the input */                                        \
+    X(uint32_t, row, t->n + 1)           /* struct solve_block */                                  \
+    X(uint32_t, column, t->n_entries)                                                              \
+    X(uint32_t, halo, t->n_halo)         /* rows, ascending */                                     \
+    X(uint32_t, cut, t->n_neighbours + 1) /* springs into neighbour s are n_inner + cut[s] .. */   \
+    X(uint32_t, cut_entry, t->n_neighbours + 1) /* cut entries into it are cut_entry[s] .. */      \
+    X(uint32_t, at, t->format == SOLVE_SPRINGS ? 0 : sides) /* of each spring, its entry */        \
+    X(uint32_t, held_entries, 1)         /* how many of held_at there are */                       \
+    PAIR(moved, t->n_moved)              /* row, ascending; number of its motion, from 1 */        \
+    PAIR(sliding, t->n_sliding)          /* row, ascending; number of its slider, from 1 */        \
+    PAIR(loose, t->n_loose)              /* row, ascending; number of its piece, from 1 */         \
+    PAIR(varying, t->n_varying)          /* row, ascending; number of its curve, from 1 */         \
+    X(phys_vec, varying_force, t->n_varying) /* N, times the curve */                              \
+    X(uint32_t, watched, t->n_watched)   /* rows, ascending */                                     \
+    X(unsigned char, stretch, sides)     /* counts for the largest stretch */                      \
+    PAIR(pulled, t->n_pulled)            /* spring, ascending; number of its seam, from 1 */       \
+    X(struct solve_edge, corrected, t->n_corrected) /* their ends are rows here */                 \
+    X(struct flow_cut_edge, corrected_cut, t->n_corrected_cut) /* neighbour after neighbour */
+/* clang-format on */
 
 /* One block. Its springs: first the inner ones, sorted by (lower row, higher row), then those cut
  * by its border, neighbour after neighbour. Both blocks know a cut spring. The entries of its
@@ -65,31 +100,12 @@ struct flow_table {
     const uint32_t *joins;       /* n_neighbours: which patches here and there */
     const uint32_t *ghost; /* n_ghosts: places in the neighbour's halo, ascending in a neighbour */
     /* The table itself, in memory that is not owned; NULL but where one is open. */
-    const uint32_t *vertex; /* n: of the input */
-    const uint32_t
-        *cut; /* n_neighbours + 1: the springs into neighbour s are n_inner + cut[s] .. */
-    const uint32_t *halo;           /* n_halo: ascending */
-    const uint32_t *watched;        /* n_watched: rows, ascending */
-    const uint32_t (*moved)[2];     /* n_moved: row, ascending; number of its motion, from 1 */
-    const uint32_t (*sliding)[2];   /* n_sliding: row, ascending; number of its slider, from 1 */
-    const uint32_t (*loose)[2];     /* n_loose: row, ascending; number of its piece, from 1 */
-    const uint32_t (*varying)[2];   /* n_varying: row, ascending; number of its curve, from 1 */
-    const phys_vec *varying_force;  /* n_varying: N, times the curve */
-    const uint32_t (*end)[2];       /* inner: rows; cut: row here, place in the neighbour's halo */
-    const uint32_t (*ghost_end)[2]; /* cut entries: row here, number of the ghost */
-    const uint32_t
-        *cut_entry;     /* n_neighbours + 1: the cut entries into neighbour s are cut_entry[s] .. */
-    const uint32_t *at; /* half storage: of each spring, its entry */
-    const double *stiffness, *damping, *length;
-    const unsigned char *stretch; /* counts for the largest stretch */
-    const uint32_t (*pulled)[2];  /* n_pulled: spring, ascending; number of its seam, from 1 */
-    const struct solve_edge *corrected;        /* n_corrected: their ends are rows here */
-    const struct flow_cut_edge *corrected_cut; /* n_corrected_cut, neighbour after neighbour */
+#define FLOW_TABLE_MEMBER(type, name, rows) const type *name;
+#define FLOW_TABLE_MEMBERS(name, rows)      const uint32_t(*name)[2];
+    FLOW_TABLE_ARRAYS(FLOW_TABLE_MEMBER, FLOW_TABLE_MEMBERS)
     struct element_list list[ELEMENT_KINDS];
     struct solve_block matrix; /* its diagonal: of each step, NULL here */
     struct solve_held held;
-    const double *mass, *drag, *free; /* kg; kg/s, viscous + mass damping; 1 or 0 where held */
-    const phys_vec *load, *position, *velocity; /* N, gravity included; m, m/s, at the start */
 };
 
 struct flow_tables {
@@ -100,26 +116,9 @@ struct flow_tables {
 
 /* The arrays of a table as they lie in its memory, one piece, while it is made. */
 struct flow_layout {
-    phys_vec *load, *position, *velocity; /* n */
-    double *mass, *drag, *free;           /* n */
-    double *stiffness, *damping, *length; /* n_inner + n_cut */
-    uint32_t (*end)[2];                   /* n_inner + n_cut */
-    uint32_t (*ghost_end)[2];             /* n_cut_entries */
-    uint32_t (*held)[2];                  /* n_held */
-    uint32_t (*moved)[2];                 /* n_moved */
-    uint32_t (*sliding)[2];               /* n_sliding */
-    uint32_t (*loose)[2];                 /* n_loose */
-    uint32_t (*varying)[2];               /* n_varying */
-    phys_vec *varying_force;              /* n_varying */
-    uint32_t *vertex /* n */, *row /* n + 1 */, *column /* n_entries */, *halo;
-    uint32_t *cut, *cut_entry; /* n_neighbours + 1 */
-    uint32_t *watched;         /* n_watched */
-    uint32_t *at;              /* n_inner + n_cut; of springs as entries: none */
-    uint32_t *n_held;          /* 1: held entries */
-    unsigned char *stretch;    /* n_inner + n_cut */
-    uint32_t (*pulled)[2];     /* n_pulled */
-    struct solve_edge *corrected;
-    struct flow_cut_edge *corrected_cut;
+#define FLOW_LAYOUT_MEMBER(type, name, rows) type *name;
+#define FLOW_LAYOUT_MEMBERS(name, rows)      uint32_t(*name)[2];
+    FLOW_TABLE_ARRAYS(FLOW_LAYOUT_MEMBER, FLOW_LAYOUT_MEMBERS)
     struct element_list list[ELEMENT_KINDS];
 };
 

@@ -112,8 +112,7 @@ const struct scene_rule scene_solver_keys[] = {
      "the solution in the norm of the matrix; it costs one and a half iterations.",
      .needs = "previous: integrator = implicit_euler and newton.steps = 1"},
     {"preconditioner", SCENE_CHOICE, .fallback = "ic0_coarse", INTO(struct model, preconditioner),
-     WORDS({"none", MODEL_PLAIN}, {"jacobi", MODEL_JACOBI}, {"ic0", MODEL_IC0}, {"coarse",
-     MODEL_COARSE}, {"ic0_coarse", MODEL_IC0_COARSE}),
+     .words = model_preconditioners,
      .about = "of conjugate gradients",
      .more = "`jacobi` has the inverses of the 3 x 3 blocks on the diagonal, `ic0` incomplete "
      "Cholesky of each block of vertices. `coarse` is `jacobi` and a coarse space of motions "

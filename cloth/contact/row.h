@@ -144,9 +144,8 @@ PHYS_INLINE void contact_row_press(struct contact_row *row, const phys_vec *poin
     row->pushed = push > 0 ? 1 : -1;
 }
 
-/* The force on the first side in a step that ended at this point: that of the linear solve, which
- * had this value, or it times the square of something. Friction has the stiffness that it had
- * there. */
+/* The force on the first side in a step that ended at this point, by the linear solve that had this
+ * value. Friction has the stiffness that it had there. */
 PHYS_INLINE void contact_row_force(const struct contact_row *row, const phys_vec *point,
                                    const phys_vec *value, phys_vec *force)
 {

@@ -114,8 +114,8 @@ int api_migrate(duite *rt, const struct plan_record *record, uint64_t replay, ui
 int api_wait(duite *rt, const char *call);
 /* Ends the trace, if there is one that has not ended, as duite_trace_end; messages name `call`. */
 int api_trace_end(duite *rt, const char *call);
-/* Begins to record. All ranks have started. */
-void api_trace_begin(duite *rt);
+/* Begins to record, if all steps are. All ranks have started. */
+void api_trace_begin(duite *rt, const duite_options *options);
 
 /* Copies the bytes to `values`, or the number of elements to `count`, if not NULL, on the ranks
  * that want it. */

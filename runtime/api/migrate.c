@@ -316,10 +316,10 @@ static int migration_run(struct migration *m, uint64_t replay, uint64_t *map_at)
     if (code)
         return code;
     code = migration_move(m);
-    work_note(rt->pool, &(struct trace_event){.begin = ticks,
-                                              .took = base_ticks() - ticks,
-                                              .number = last->objects - moved,
-                                              .kind = TRACE_MIGRATE});
+    trace_put(rt->worker->ring, &(struct trace_event){.begin = ticks,
+                                                      .took = base_ticks() - ticks,
+                                                      .number = last->objects - moved,
+                                                      .kind = TRACE_MIGRATE});
     last->since = base_seconds();
     last->took = last->since - begun;
     return code;

@@ -272,7 +272,7 @@ int duite_start(duite **out, const duite_options *options)
                      options->balance->migrate || options->mapping->map_tasks;
         if (rt->comm && moves)
             comm_measure(rt->comm);
-        api_trace_begin(rt);
+        api_trace_begin(rt, options);
         comm_open(rt->comm, options->balance->victim != NULL);
         *out = rt;
     }

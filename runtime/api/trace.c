@@ -5,12 +5,12 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 
-void api_trace_begin(duite *rt)
+void api_trace_begin(duite *rt, const duite_options *options)
 {
     if (!rt->trace)
         return;
     trace_align(rt->trace, rt->mpi);
-    if (trace_wants_all(rt->trace))
+    if (options->trace_first == 0 && options->trace_end == UINT64_MAX)
         trace_switch(rt->trace, true, 0, 0);
 }
 
@@ -35,7 +35,7 @@ int duite_trace_step(duite *rt, uint64_t step)
         trace_flush(rt->trace);
         trace_switch(rt->trace, wants, step, rt->graph.root.forks);
     }
-    work_note(rt->pool,
+    trace_put(rt->worker->ring,
               &(struct trace_event){.begin = base_ticks(), .number = step, .kind = TRACE_STEP});
     trace_flush(rt->trace);
     return code;

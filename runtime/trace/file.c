@@ -314,11 +314,6 @@ bool trace_wants(const struct trace *trace, uint64_t step)
     return step >= trace->header.first && step < trace->header.end;
 }
 
-bool trace_wants_all(const struct trace *trace)
-{
-    return trace->header.first == 0 && trace->header.end == UINT64_MAX;
-}
-
 bool trace_is_on(const struct trace *trace)
 {
     return atomic_load_explicit(&trace->on, memory_order_relaxed);

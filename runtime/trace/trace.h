@@ -42,10 +42,8 @@ int trace_close(struct trace *trace, const struct trace_counters *counters);
  */
 void trace_free(struct trace *trace, bool mpi);
 
-/* True if this step is to be recorded; if everything is, from the start; if events are recorded at
- * the moment. */
+/* True if this step is to be recorded; if events are recorded at the moment. */
 bool trace_wants(const struct trace *trace, uint64_t step);
-bool trace_wants_all(const struct trace *trace);
 bool trace_is_on(const struct trace *trace);
 /* Recording begins or ends with a step, when no task runs; forks: so far. Main thread. */
 void trace_switch(struct trace *trace, bool on, uint64_t step, uint64_t forks);

@@ -260,11 +260,6 @@ static void note_message(struct worker *worker, bool sends, int peer, size_t byt
 const struct comm_report work_report = {
     .message = note_message, .begins = note_messages_begin, .ends = note_messages_end};
 
-void work_note(struct work_pool *pool, const struct trace_event *event)
-{
-    trace_put(pool->queues.worker[0].ring, event);
-}
-
 void work_note_counters(struct work_pool *pool, struct trace_counters *counters)
 {
     for (unsigned i = 0; i < pool->setup.threads; i++) {

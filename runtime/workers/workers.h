@@ -110,8 +110,7 @@ void work_count(struct work_pool *pool, duite_counters *counters);
 double work_block_seconds(struct work_pool *pool, uint32_t block);
 uint64_t work_migrate(struct work_pool *pool, const duite_blocks *blocks, int *home);
 
-/* For the trace: an event of worker 0; the counts of each worker of this rank. Main thread. */
-void work_note(struct work_pool *pool, const struct trace_event *event);
+/* For the trace: the counts of each worker of this rank. Main thread. */
 void work_note_counters(struct work_pool *pool, struct trace_counters *counters);
 
 /* True if the calling thread is the main thread and not inside a body. */

@@ -44,8 +44,8 @@ static void print_halved(FILE *file, const struct summary *summary)
         [FLOW_CAUSE_ENERGY] = "for energy gained (time.energy_growth)",
         [FLOW_CAUSE_CONTACT] = "for ways that contact cut (contact)"};
     const struct flow_report *report = summary->report;
-    fprintf(file, "  shorter steps    down to h / %.0f; halved %" PRIu64 " times",
-            summary->model->h / report->shortest_step, report->steps_halved);
+    fprintf(file, "  shorter steps    down to %g s; halved %" PRIu64 " times",
+            report->shortest_step, report->steps_halved);
     const char *before = ": ";
     for (int i = 0; i < FLOW_CAUSES; i++) {
         if (!report->halved_by[i])
@@ -116,8 +116,8 @@ static void print_what_ran(FILE *file, const struct summary *summary)
             summary->options->mapping_name, summary->options->balance_name);
     fprintf(file, "  cores            %u a rank (%s)\n", summary->cores, summary->cores_from);
     fprintf(file, "  instructions     %s\n", cloth_simd_name());
-    fprintf(file, "  steps            %" PRIu64 " of %g s, %g s simulated\n", report->steps,
-            model->h, report->simulated_seconds);
+    fprintf(file, "  steps            %" PRIu64 " of %g s%s, %g s simulated\n", report->steps,
+            model->h, report->steps_halved ? " at most" : "", report->simulated_seconds);
 }
 
 static void print_events(FILE *file, const struct summary *summary)

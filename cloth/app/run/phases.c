@@ -192,6 +192,7 @@ static void take_peaks(struct flow_report *to, const struct flow_report *of)
     to->momentum_lost = fmax(to->momentum_lost, of->momentum_lost);
     to->mass_norm_error = fmax(to->mass_norm_error, of->mass_norm_error);
     to->correction_excess = fmax(to->correction_excess, of->correction_excess);
+    to->shortest_step = fmin(to->shortest_step, of->shortest_step);
     to->stretch_highest = fmax(to->stretch_highest, of->stretch_highest);
 }
 

@@ -20,6 +20,9 @@ check_PROGRAMS = $(TSAN_ALL) $(ASAN_TESTS) $(PLAIN_TESTS)
 dist_check_SCRIPTS = $(LEAK_SH) $(ASAN_SH) $(PLAIN_SH) $(LONG_SH)
 check_LIBRARIES =
 check_DATA =
+# Memory that runs out.
+SCARCE = tests/support/scarce.c tests/support/scarce.h
+SCARCE_WRAP = $(AM_LDFLAGS) -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc
 DUITE_TEST_LIBS = tests/support/libunit.a $(CORE_LIBS) $(CHECK_LIBS)
 
 # Comments, which have the errors against closed forms, are shown as tests go.

@@ -27,8 +27,7 @@ void refused_end(void)
 
 void says(const char *sentence)
 {
-    ck_assert_msg(strstr(duite_message(), sentence) != NULL, "'%s' does not say '%s'",
-                  duite_message(), sentence);
+    unit_says(duite_message(), sentence);
 }
 
 void refused(int code, int expected)

@@ -201,11 +201,6 @@ static void end(void)
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
 
-static void says(const char *text, const char *what)
-{
-    ck_assert_msg(strstr(text, what) != NULL, "'%s' does not say '%s'", text, what);
-}
-
 /* A parent in that mode asks and is told the code and the sentence; so is the main program, unless
  * the body asked what there is to be told. */
 static void asks(duite_mode mode, struct args args, int code, const char *what)
@@ -216,10 +211,10 @@ static void asks(duite_mode mode, struct args args, int code, const char *what)
 
     ck_assert_msg(told == code, "mode %s, deed %d, child %s: code %d, not %d: %s", MODE[mode],
                   (int)args.deed, MODE[args.child], told, code, sentence);
-    says(sentence, what);
+    unit_says(sentence, what);
     if (code && args.deed != GET && args.deed != GET_NOWHERE && args.deed != GET_COUNT) {
         ck_assert_int_eq(waited, code);
-        says(duite_message(), what);
+        unit_says(duite_message(), what);
     } else {
         ck_assert_int_eq(waited, DUITE_OK);
     }
@@ -246,7 +241,7 @@ UNIT_TEST(rights)
                  may ? DUITE_OK : DUITE_E_RIGHT, may ? "" : what);
             snprintf(what, sizeof what, "of its kernel parent %s, and %s is wanted", MODE[held],
                      MODE[wanted]);
-            says(may ? what : sentence, what);
+            unit_says(may ? what : sentence, what);
         }
 }
 
@@ -261,7 +256,7 @@ UNIT_TEST(other_objects)
     asks(DUITE_RWP, with, DUITE_E_OBJECT, "was freed, or is another task's");
     with.deed = FORK_FOREIGN;
     asks(DUITE_RWP, with, DUITE_E_RIGHT, "holds no right on object");
-    says(sentence, "of the main program, rw is wanted");
+    unit_says(sentence, "of the main program, rw is wanted");
     with.deed = FORK_FREED;
     asks(DUITE_NONE, with, DUITE_E_OBJECT, "was freed, or is another task's");
     with.deed = FREE_TWICE;
@@ -316,7 +311,7 @@ UNIT_TEST(resizing_what_is_postponed)
     duite_new_sized(rt, DUITE_I32, 1, 4, &sized);
     DUITE_FORK(rt, &parents[DUITE_RWP], &args, sized);
     ck_assert_int_eq(duite_wait(rt), DUITE_E_SIZE);
-    says(sentence, "parameter 0 is its children's alone");
+    unit_says(sentence, "parameter 0 is its children's alone");
     duite_free(rt, sized);
 }
 
@@ -362,5 +357,5 @@ UNIT_TEST(looked_at)
     duite_set(rt, object, NULL);
     DUITE_FORK(rt, &parents[DUITE_RWP], &args, object);
     ck_assert_int_eq(duite_wait(rt), DUITE_E_RIGHT);
-    says(duite_message(), "holds no right");
+    unit_says(duite_message(), "holds no right");
 }

@@ -24,19 +24,8 @@ static size_t grown;   /* bytes that a body's forks left */
 
 /* ---- Kernels ---- */
 
-static int put(const duite_call *call);
-static int append(const duite_call *call);
-static int copy(const duite_call *call);
-static int fails(const duite_call *call);
-static int deeper(const duite_call *call);
-static int deeper_waiting(const duite_call *call);
-static int append_all(const duite_call *call);
-static int fail_all(const duite_call *call);
-static int for_ever(const duite_call *call);
-static int through_reader(const duite_call *call);
-static int twice(const duite_call *call);
-static int own_least(const duite_call *call);
-static int own_twice(const duite_call *call);
+static duite_body put, append, copy, fails, deeper, deeper_waiting, append_all, fail_all, for_ever,
+    through_reader, twice, own_least, own_twice;
 
 #define ARGS .args_size = sizeof(struct args)
 static const duite_kernel
@@ -261,11 +250,6 @@ static void holds(duite_object what, int32_t expected)
     ck_assert_int_eq(value, expected);
 }
 
-static void says(const char *text, const char *what)
-{
-    ck_assert_msg(strstr(text, what) != NULL, "'%s' does not say '%s'", text, what);
-}
-
 UNIT_FIXTURE(begin, end)
 
 UNIT_TEST(depth)
@@ -320,9 +304,9 @@ UNIT_TEST(failures)
     duite_new(rt, DUITE_I32, 1, &other);
     DUITE_FORK(rt, &FAIL_ALL, DUITE_ARGS(struct args, .n = 1), object, other);
     ck_assert_int_eq(duite_wait(rt), 21);
-    says(duite_message(), "task 1.1 (kernel fails) failed on rank 0 with code 21: on purpose");
+    unit_says(duite_message(), "task 1.1 (kernel fails) failed on rank 0 with code 21: on purpose");
     ck_assert_int_eq(waited, 21);
-    says(said, "task 1.1 (kernel fails)");
+    unit_says(said, "task 1.1 (kernel fails)");
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
     ck_assert_int_eq(duite_get(rt, object, &value), 22);
     ck_assert_int_eq(duite_get(rt, other, &value), 21);

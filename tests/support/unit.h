@@ -13,6 +13,7 @@
  * the one process that MPI knows. A test that takes 20 minutes is taken to hang. */
 
 #include <check.h>
+#include <string.h>
 
 /* What a file adds to the program's tests. */
 struct unit_cases {
@@ -64,6 +65,10 @@ void unit_register(struct unit_cases *cases);
         _Pragma("GCC diagnostic pop") const int unit_code = (CALL);                                \
         ck_assert_msg(unit_code == 0, "%s", error.text);                                           \
     } while (0)
+
+/* The text has the part. */
+#define unit_says(TEXT, PART)                                                                      \
+    ck_assert_msg(strstr(TEXT, PART) != NULL, "'%s' does not say '%s'", TEXT, PART)
 
 /* Before a variable of a test: FREE(&variable) at the end of its scope. */
 #define UNIT_OWNED(FREE) __attribute__((cleanup(FREE)))

@@ -14,7 +14,7 @@ static void refused(struct trace_file *file, const struct predict_cluster *clust
     struct predict_result result;
     struct trace_run *run = predicted_run(file);
     ck_assert_int_eq(predict(run, cluster, &result, NULL), DUITE_E_ARGUMENT);
-    ck_assert_msg(strstr(duite_message(), why) != NULL, "%s", duite_message());
+    unit_says(duite_message(), why);
     trace_run_free(run);
 }
 

@@ -20,10 +20,7 @@ struct surface {
 
 static inline void surface_mesh(const struct surface *s, struct mesh *mesh)
 {
-    struct cloth_error error = {0};
-    ck_assert_msg(mesh_inline(mesh, s->n, *s->x, 0, NULL, s->n_triangles, *s->triangle, &error) ==
-                      0,
-                  "%s", error.text);
+    UNIT_FINE(mesh_inline(mesh, s->n, *s->x, 0, NULL, s->n_triangles, *s->triangle, &error));
 }
 
 static inline void surface_add(struct surface *s, uint32_t a, uint32_t b, uint32_t c)

@@ -14,15 +14,10 @@ static struct surface made;
 static struct contact_bodies bodies;
 static struct mesh mesh;
 
-static void start(void)
-{
-    bodies = (struct contact_bodies){0};
-    mesh = (struct mesh){0};
-}
-
 static void end(void)
 {
     free(bodies.memory);
+    bodies = (struct contact_bodies){0};
     mesh_free(&mesh);
 }
 
@@ -172,7 +167,7 @@ static void check_hit(const phys_vec *x, const struct contact_hit *hit)
         ck_assert_int_eq(hit->gap < 0, is_inside(at));
 }
 
-UNIT_FIXTURE(start, end)
+UNIT_FIXTURE(NULL, end)
 
 UNIT_LOOP(nearest_of_all, 0, N_MADE)
 {

@@ -9,9 +9,8 @@ ASAN_TESTS += tests/cloth/flow/test_motion tests/cloth/flow/test_halving tests/c
 PLAIN_TESTS += tests/cloth/flow/test_solvers tests/cloth/flow/test_obstacles tests/cloth/flow/test_singular \
     tests/cloth/flow/test_integrators tests/cloth/flow/test_chain tests/cloth/flow/test_newton
 tests_cloth_flow_test_failures_SOURCES = tests/cloth/flow/test_failures.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_memory_SOURCES = tests/cloth/flow/test_memory.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_memory_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=malloc -Wl,--wrap=calloc \
-	-Wl,--wrap=realloc -Wl,--wrap=aligned_alloc -Wl,--wrap=flow_memory_take -Wl,--wrap=flow_source_gather
+tests_cloth_flow_test_memory_SOURCES = tests/cloth/flow/test_memory.c $(SCARCE) $(FLOW_TEST_MODELS)
+tests_cloth_flow_test_memory_LDFLAGS = $(SCARCE_WRAP) -Wl,--wrap=flow_memory_take,--wrap=flow_source_gather
 check_PROGRAMS += tests/cloth/flow/test_late
 tests_cloth_flow_test_late_SOURCES = tests/cloth/flow/test_late.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_late_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=flow_halo_make

@@ -1,48 +1,12 @@
 /* Every allocation of the flow fails once: while it prepares, locally; while it runs, on one rank
- * alone, and all ranks must hear of it and end together. The linker puts the functions below in the
- * place of malloc's family (module.mk). */
+ * alone, and all ranks must hear of it and end together. */
 #include "tests/cloth/flow/models.h"
+#include "tests/support/scarce.h"
 #include "tests/support/unit.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static _Thread_local long left = -1; /* allocations until one fails; negative: none does any more */
-
-static int fails_now(void)
-{
-    return left >= 0 && left-- == 0;
-}
-
-void *__real_malloc(size_t n);
-void *__real_calloc(size_t n, size_t size);
-void *__real_realloc(void *block, size_t n);
-void *__real_aligned_alloc(size_t line, size_t n);
-void *__wrap_malloc(size_t n);
-void *__wrap_calloc(size_t n, size_t size);
-void *__wrap_realloc(void *block, size_t n);
-void *__wrap_aligned_alloc(size_t line, size_t n);
-
-void *__wrap_malloc(size_t n)
-{
-    return fails_now() ? NULL : __real_malloc(n);
-}
-
-void *__wrap_calloc(size_t n, size_t size)
-{
-    return fails_now() ? NULL : __real_calloc(n, size);
-}
-
-void *__wrap_realloc(void *block, size_t n)
-{
-    return fails_now() ? NULL : __real_realloc(block, n);
-}
-
-void *__wrap_aligned_alloc(size_t line, size_t n)
-{
-    return fails_now() ? NULL : __real_aligned_alloc(line, n);
-}
 
 /* Prepares once for each allocation, which fails. Returns how many there are. */
 static long prepare_all(const struct model *model)
@@ -50,10 +14,10 @@ static long prepare_all(const struct model *model)
     for (long n = 0;; n++) {
         struct cloth_error error = {0};
         struct flow *flow = NULL;
-        left = n;
+        scarce_left = n;
         const int code = flow_prepare(&flow, model, 1, &error);
-        const bool through = left >= 0;
-        left = -1;
+        const bool through = scarce_left >= 0;
+        scarce_left = -1;
         ck_assert_int_eq(code, error.code);
         ck_assert(!code == (flow != NULL));
         flow_free(flow);
@@ -117,16 +81,16 @@ static long next_run = -1, next_sides = -1; /* which one fails, of this rank; ne
 
 int __wrap_flow_memory_take(struct flow_state *state)
 {
-    left = next_run;
+    scarce_left = next_run;
     return __real_flow_memory_take(state);
 }
 
 int __wrap_flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
                               struct cloth_error *error)
 {
-    left = next_sides;
+    scarce_left = next_sides;
     const int code = __real_flow_source_gather(source, from, to, error);
-    left = -1;
+    scarce_left = -1;
     return code;
 }
 
@@ -135,7 +99,7 @@ static void ends_everywhere(const struct setup *setup, int where)
     UNIT_OWNED(record_free) struct record record = {0};
     char text[64];
     record_run(&record, &setup->model);
-    left = -1;
+    scarce_left = -1;
     snprintf(text, sizeof text, "rank %d: out of memory", where);
     ck_assert_msg(record.code == CLOTH_E_MEMORY && strstr(record.error.text, text) &&
                       strstr(record.error.text, "; no frame was written"),

@@ -88,11 +88,6 @@ static double speed_of(const struct record *r, size_t frame, size_t vertex)
     return moved / (r->time[frame] - r->time[frame - 1]);
 }
 
-static void runs(struct record *record, const struct model *model)
-{
-    record_fine(record, model);
-}
-
 static const struct way {
     enum model_integrator integrator;
     double h;
@@ -119,7 +114,7 @@ UNIT_LOOP(carries_a_row, 0, N_WAYS *N_SHAPES)
     model->h = way->h;
     model->end = 6;
     model->fps = 10;
-    runs(&record, model);
+    record_fine(&record, model);
     const size_t last = record.frames - 1;
     double momentum = 0, weight = 0;
     for (size_t v = MASSES; v-- > 0;) {
@@ -158,7 +153,7 @@ UNIT_LOOP(gives_momentum, 0, N_SHAPES)
     row.keys[1].time = 1.0045;
     row.keys[1].translate[1] = SPEED;
     model->end = 0.02;
-    runs(&record, model);
+    record_fine(&record, model);
     ck_assert_double_eq_tol(speed_of(&record, 4, 0), 0, 1e-9);
     ck_assert_double_eq_tol(speed_of(&record, 5, 0), SPEED / 2, 1e-9);
     for (size_t frame = 6; frame < record.frames; frame++)
@@ -182,7 +177,7 @@ UNIT_TEST(halved_steps_see_their_time)
     model->h = 0.01;
     model->end = 0.2;
     model->fps = 800; /* of parts too */
-    runs(&record, model);
+    record_fine(&record, model);
     ck_assert_uint_gt(record.report.steps_halved, 0);
     for (size_t frame = 0; frame < record.frames; frame++) {
         const double off = record_at(&record, frame, 0, 1) - SPEED * record.time[frame];
@@ -208,7 +203,7 @@ UNIT_TEST(waits_for_a_shape)
     model->rest.speed = 1e-3;
     model->rest.hold = 0.01;
     row.setup.material.damping_viscous = 1;
-    runs(&record, model);
+    record_fine(&record, model);
     ck_assert_double_gt(record.report.rest_seconds, 0.3);
     ck_assert_double_lt(record.report.rest_seconds, 3);
     record_free(&record);
@@ -237,7 +232,7 @@ UNIT_TEST(pushes_a_sheet)
     s.model.h = 0.004;
     s.model.fps = 25;
     s.model.end = 0.8;
-    runs(&record, &s.model);
+    record_fine(&record, &s.model);
     for (size_t frame = 1; frame < record.frames; frame++)
         for (size_t v = 0; v < record.vertices; v++) {
             double square = 0;
@@ -288,7 +283,7 @@ UNIT_TEST(a_ball_of_triangles)
             place.translate[1] = -0.31;
             body_make(&s.model, &mesh, &place);
         }
-        runs(on + i, &s.model);
+        record_fine(on + i, &s.model);
         free_all(&s);
     }
     size_t lies = 0;
@@ -339,7 +334,7 @@ UNIT_TEST(crumples_by_absolute_slopes)
         s.model.fps = 50;
         s.model.full_slope = absolute ? PHYS_ABSOLUTE : PHYS_DEFINITE;
         s.model.energy_steps = true;
-        runs(&record, &s.model);
+        record_fine(&record, &s.model);
         report[absolute] = record.report;
         free_all(&s);
     }
@@ -358,7 +353,7 @@ UNIT_LOOP(a_real_body, 0, access(real_body_path(), R_OK) == 0)
     struct mesh_transform place = {{0.1, 0.1, 0.1}, {1, 0, 0, 0}, {0, -0.8, 0}};
     UNIT_FINE(mesh_read_surface(&mesh, real_body_path(), &error));
     body_make(&s.model, &mesh, &place);
-    runs(&record, &s.model);
+    record_fine(&record, &s.model);
     struct contact_pose pose;
     size_t touched = 0;
     contact_pose_over(&s.plane, NULL, &s.model.bodies, 0, 0, &pose);

@@ -93,8 +93,7 @@ UNIT_LOOP(rounding_is_noticed, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
             ck_assert_double_le(record.report.mass_norm_error, 2 * tolerance[0]);
         } else {
             ck_assert_int_eq(record.code, CLOTH_E_RUN);
-            ck_assert_msg(strstr(record.error.text, "what rounding leaves") != NULL, "%s",
-                          record.error.text);
+            unit_says(record.error.text, "what rounding leaves");
         }
     }
 }
@@ -127,8 +126,7 @@ UNIT_LOOP(compressed_and_not_clamped, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
             ck_assert_uint_gt(record.report.steps_halved, 0);
         } else {
             ck_assert_int_eq(record.code, CLOTH_E_RUN);
-            ck_assert_msg(strstr(record.error.text, "the matrix is not positive definite") != NULL,
-                          "%s", record.error.text);
+            unit_says(record.error.text, "the matrix is not positive definite");
         }
         record_free(&record);
         setup.cloth.start = NULL;

@@ -17,6 +17,6 @@ tests_cloth_mesh_test_blocks_SOURCES = tests/cloth/mesh/test_blocks.c tests/clot
 tests_cloth_mesh_test_shadow_SOURCES = tests/cloth/mesh/test_shadow.c tests/cloth/mesh/tools.h
 tests_cloth_mesh_test_shadow_LDADD = $(CLOTH_TEST_LIBS) -lm
 tests_cloth_mesh_test_real_SOURCES = tests/cloth/mesh/test_real.c tests/cloth/mesh/tools.h
-tests_cloth_mesh_test_memory_SOURCES = tests/cloth/mesh/test_memory.c tests/cloth/mesh/tools.h
-tests_cloth_mesh_test_memory_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=malloc -Wl,--wrap=calloc -Wl,--wrap=realloc
+tests_cloth_mesh_test_memory_SOURCES = tests/cloth/mesh/test_memory.c $(SCARCE) tests/cloth/mesh/tools.h
+tests_cloth_mesh_test_memory_LDFLAGS = $(SCARCE_WRAP)
 endif

@@ -7,11 +7,9 @@
 static struct mesh_lattice lattice_of(const struct mesh *mesh, double stretch, double shear,
                                       double bend, int both)
 {
-    struct cloth_error error = {0};
     struct mesh_lattice lattice;
     struct mesh_moduli moduli = {stretch, shear, bend, both, 0, NULL, stretch};
-    int code = mesh_lattice_build(&lattice, mesh, &moduli, &error);
-    ck_assert_msg(code == CLOTH_OK, "%s", error.text);
+    UNIT_FINE(mesh_lattice_build(&lattice, mesh, &moduli, &error));
     struct mesh_spring *spring = springs_of(&lattice); /* as they are visited, a grid's too */
     free(lattice.spring);
     lattice.spring = spring;

@@ -1,45 +1,17 @@
 /* Every allocation fails once: the code says so, nothing is left over, and nothing is lost (the
- * sanitizer looks). The linker puts the functions below in the place of malloc's family
- * (module.mk). */
+ * sanitizer looks). */
 #include "cloth/base/memory.h"
 #include "cloth/mesh/blocks.h"
 #include "cloth/mesh/lattice.h"
 #include "tests/cloth/mesh/tools.h"
+#include "tests/support/scarce.h"
 
 #include <stdint.h>
 #include <stdlib.h>
 
-static long left = -1; /* allocations until one fails; negative: none does any more */
-static int armed;      /* only while the code under test runs: check allocates, too */
-
-static int fails_now(void)
-{
-    return armed && left >= 0 && left-- == 0;
-}
-
-#define TRY(call) (armed = 1, code = (call), armed = 0, code)
-
-void *__real_malloc(size_t n);
-void *__real_calloc(size_t n, size_t size);
-void *__real_realloc(void *block, size_t n);
-void *__wrap_malloc(size_t n);
-void *__wrap_calloc(size_t n, size_t size);
-void *__wrap_realloc(void *block, size_t n);
-
-void *__wrap_malloc(size_t n)
-{
-    return fails_now() ? NULL : __real_malloc(n);
-}
-
-void *__wrap_calloc(size_t n, size_t size)
-{
-    return fails_now() ? NULL : __real_calloc(n, size);
-}
-
-void *__wrap_realloc(void *block, size_t n)
-{
-    return fails_now() ? NULL : __real_realloc(block, n);
-}
+static long left = -1; /* scarce_left of the next call */
+/* Memory is scarce only while the code under test runs: check allocates, too. */
+#define TRY(call) (scarce_left = left, code = (call), left = scarce_left, scarce_left = -1, code)
 
 /* A strip of 16 squares, so that lists are just full at its end, and a lone edge; with two uv at
  * vertices, and names. */
@@ -105,7 +77,7 @@ UNIT_TEST(each_fails_once)
             continue; /* an array was to be made smaller, and stayed as it was */
         ck_assert_int_eq(code, CLOTH_E_MEMORY);
         ck_assert_int_eq(error.code, CLOTH_E_MEMORY);
-        ck_assert_msg(strstr(error.text, "out of memory") != NULL, "%s", error.text);
+        unit_says(error.text, "out of memory");
         failures++;
     }
     ck_assert_int_gt(failures, 60);

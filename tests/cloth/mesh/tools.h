@@ -29,11 +29,9 @@ static inline struct file file_new(const void *bytes, size_t n)
 /* Reads the text as an OBJ file; it must succeed. */
 static inline struct mesh read_text(const char *text)
 {
-    struct cloth_error error = {0};
     struct mesh mesh;
     struct file file = file_new(text, strlen(text));
-    int code = mesh_read_obj(&mesh, file.path, &error);
-    ck_assert_msg(code == CLOTH_OK && error.code == CLOTH_OK, "%s", error.text);
+    UNIT_FINE(mesh_read_obj(&mesh, file.path, &error));
     close(file.descriptor);
     return mesh;
 }
@@ -41,10 +39,8 @@ static inline struct mesh read_text(const char *text)
 static inline struct mesh grid_of(double width, double height, uint32_t nx, uint32_t ny,
                                   enum mesh_cells cells)
 {
-    struct cloth_error error = {0};
     struct mesh mesh;
-    int code = mesh_grid(&mesh, width, height, nx, ny, cells, &error);
-    ck_assert_msg(code == CLOTH_OK, "%s", error.text);
+    UNIT_FINE(mesh_grid(&mesh, width, height, nx, ny, cells, &error));
     return mesh;
 }
 

@@ -20,12 +20,12 @@ UNIT_TEST(folder_in_the_way)
     sample_write(file, "mine", 4);
     sample.setup.folder = file;
     ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-    ck_assert_ptr_nonnull(strstr(error.text, file));
-    ck_assert_ptr_nonnull(strstr(error.text, "Not a directory"));
+    unit_says(error.text, file);
+    unit_says(error.text, "Not a directory");
     error.code = 0;
     sample.setup.folder = below;
     ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-    ck_assert_ptr_nonnull(strstr(error.text, "Not a directory"));
+    unit_says(error.text, "Not a directory");
     ck_assert_ptr_null(frames);
     char text[8];
     sample_read(file, text, sizeof text);
@@ -43,7 +43,7 @@ UNIT_TEST(file_in_the_way)
         unlink(sample_path(name[i]));
         ck_assert_int_eq(mkdir(sample_path(name[i]), 0777), 0);
         ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-        ck_assert_msg(strstr(error.text, sample_path(name[i])) != NULL, "%s", error.text);
+        unit_says(error.text, sample_path(name[i]));
         ck_assert_ptr_null(frames);
         ck_assert_int_eq(rmdir(sample_path(name[i])), 0);
     }
@@ -59,7 +59,7 @@ UNIT_TEST(mesh_of_the_user)
     sample_write(sample_path("cloth.obj"), "mine", 4);
     ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
     ck_assert_ptr_null(frames);
-    ck_assert_msg(strstr(error.text, sample_path("cloth.obj")) != NULL, "%s", error.text);
+    unit_says(error.text, sample_path("cloth.obj"));
     sample_read(sample_path("cloth.obj"), text, sizeof text);
     ck_assert_str_eq(text, "mine");
     ck_assert_int_ne(access(sample_path("cloth.obj.part"), F_OK), 0);
@@ -169,8 +169,8 @@ UNIT_TEST(folder_where_a_file_goes)
         struct output_frames *frames = NULL;
         ck_assert_int_eq(mkdir(sample_path(name), 0777), 0);
         ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-        ck_assert_msg(strstr(error.text, sample_path(name)), "%s", error.text);
-        ck_assert_ptr_nonnull(strstr(error.text, "Is a directory"));
+        unit_says(error.text, sample_path(name));
+        unit_says(error.text, "Is a directory");
         ck_assert_int_eq(rmdir(sample_path(name)), 0);
         check_untouched(FILES, N_FILES, 3);
     }

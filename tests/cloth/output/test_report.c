@@ -99,19 +99,19 @@ UNIT_TEST(does_not_replace_a_device)
     ck_assert_int_eq(stat("/dev/null", &status), 0);
     ck_assert(S_ISCHR(status.st_mode));
     ck_assert_int_eq(output_report_write(report, "/dev/full", &error), CLOTH_E_IO);
-    ck_assert_ptr_nonnull(strstr(error.text, "No space left"));
+    unit_says(error.text, "No space left");
 }
 
 UNIT_TEST(says_what_is_in_the_way)
 {
     ck_assert_int_eq(output_report_write(report, sample.folder, &error), CLOTH_E_IO);
-    ck_assert_ptr_nonnull(strstr(error.text, "Is a directory"));
+    unit_says(error.text, "Is a directory");
     error.code = 0;
     sample_write(path, "old", 3);
     char below[112];
     snprintf(below, sizeof below, "%s/x.json", path);
     ck_assert_int_eq(output_report_write(report, below, &error), CLOTH_E_INPUT);
-    ck_assert_ptr_nonnull(strstr(error.text, "Not a directory"));
+    unit_says(error.text, "Not a directory");
 }
 
 /* A link to another, in a folder, to a file that is not there yet. */
@@ -144,7 +144,7 @@ UNIT_TEST(links_in_a_ring)
     snprintf(link, sizeof link, "%s/ring.json", sample.folder);
     ck_assert_int_eq(symlink("ring.json", link), 0);
     ck_assert_int_eq(output_report_check(link, NULL, &error), CLOTH_E_INPUT);
-    ck_assert_ptr_nonnull(strstr(error.text, "Too many levels of symbolic links"));
+    unit_says(error.text, "Too many levels of symbolic links");
     error.code = 0;
     ck_assert_int_eq(output_report_write(report, link, &error), CLOTH_E_IO);
 }

@@ -91,9 +91,7 @@ int scene_read_text(struct model *model, const char *text, size_t n_sets,
 struct model scene_read_right(const char *text, size_t n_sets, const struct scene_set *sets)
 {
     struct model model;
-    struct cloth_error error = {0};
-    int code = scene_read_text(&model, text, n_sets, sets, &error);
-    ck_assert_msg(code == CLOTH_OK, "%s", error.text);
+    UNIT_FINE(scene_read_text(&model, text, n_sets, sets, &error));
     return model;
 }
 

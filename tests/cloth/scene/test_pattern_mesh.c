@@ -65,7 +65,7 @@ UNIT_TEST(panels_as_a_mesh)
         ck_assert((mesh->position[3 * v + 2] > 0.015) == front[v]);
     free(front);
     ck_assert_uint_eq(model.n_files, 2);
-    ck_assert_ptr_nonnull(strstr(model.files[1], "/pillow.json"));
+    unit_says(model.files[1], "/pillow.json");
     free(text);
 }
 

@@ -279,16 +279,15 @@ static void look(struct meeting *m)
 
 /* ---- The task ---- */
 
-/* Parameters: w the list, cw the counts, r the skin, its points. */
-enum { AT_LIST, AT_COUNTS, AT_SKIN, AT_POINTS };
-
-static int meet(const duite_call *call)
+FLOW_KERNEL(meet_shape, FLOW_COLLIDE, struct flow_meet_args,
+            (GIVEN_W(near), GIVEN_SUM(counts), R(skin), R(skin_x), R(skin_boxes)))
+static int meet_shape_body(const duite_call *call, const struct meet_shape_fields *on)
 {
-    const struct flow_meet_args *args = call->args;
+    const struct flow_meet_args *args = on->args;
     const struct flow *flow = flow_of(call);
     const struct contact_shape *shape =
         flow->model->obstacles + (args->side[1] - flow->tables.n_blocks);
-    struct flow_list *list = duite_out(call, AT_LIST, struct flow_list);
+    struct flow_list *list = on->near;
     struct meeting m = {.flow = flow,
                         .model = flow->model,
                         .sweeps = flow_contact_mode(flow->model)->sweeps,
@@ -298,15 +297,14 @@ static int meet(const duite_call *call)
                         .h = args->to - args->from,
                         .near = (struct flow_near *)(list + 1),
                         .room = args->room,
-                        .counts = duite_out(call, AT_COUNTS, double) +
-                                  (size_t)FLOW_COUNTS * args->number};
+                        .counts = on->counts + (size_t)FLOW_COUNTS * args->number};
     contact_pose_over(shape, flow->model->keys, &flow->model->bodies, args->from, args->to,
                       &m.pose);
     contact_solid_make(shape, &m.pose, &m.solid);
-    const struct flow_skin skin = flow_skin_open(duite_in(call, AT_SKIN, unsigned char));
+    const struct flow_skin skin = flow_skin_open(on->skin);
     m.skin = skin.skin;
     m.attached = skin.attached;
-    m.x = duite_in(call, AT_POINTS, phys_vec);
+    m.x = on->skin_x;
     m.y = m.x + m.skin.n_points;
     if (m.sweeps)
         look(&m);
@@ -316,19 +314,9 @@ static int meet(const duite_call *call)
     m.counts[FLOW_COUNT_PASSES] = (double)m.passes;
     *list = (struct flow_list){.n = m.n < m.room ? m.n : m.room,
                                .side = {args->side[0], args->side[1]}};
-    return duite_resize(call, AT_LIST, flow_list_bytes(list->n, sizeof *m.near));
+    return duite_resize(call, FLOW_INDEX_OF(meet_shape, near),
+                        flow_list_bytes(list->n, sizeof *m.near));
 }
-
-static int meet_timed(const duite_call *call)
-{
-    return flow_timed(call, meet, FLOW_COLLIDE);
-}
-const duite_kernel flow_meet_shape = {.name = "meet_shape",
-                                      .body = meet_timed,
-                                      .access = {DUITE_W, DUITE_CW},
-                                      .law = {NULL, &duite_sum},
-                                      .variadic = DUITE_R,
-                                      .args_size = sizeof(struct flow_meet_args)};
 
 /* ---- Where a contact is ---- */
 

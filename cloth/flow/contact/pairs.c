@@ -15,7 +15,7 @@
 
 /* m: boxes still meet if they are this much farther apart than a contact reaches. */
 static const double SPARE = 0.02;
-enum { LEAST_ROOM = 256, FLOW_MEET_OBJECTS = 3 };
+enum { LEAST_ROOM = 256 };
 
 /* ---- Boxes ---- */
 
@@ -239,35 +239,27 @@ void flow_contact_keepers(const struct flow_state *state, uint32_t block, unsign
 
 /* ---- Their tasks ---- */
 
-/* The objects of a block, or of all bodies, that a meeting reads. Returns the end. */
-static duite_object *add_side(const struct flow_state *state, uint32_t side, duite_object *refs)
-{
-    const bool block = side < state->flow->tables.n_blocks;
-    *refs++ = block ? state->block[side].skin : state->run.body_skins;
-    *refs++ = block ? state->block[side].skin_x : state->run.body_points;
-    *refs++ = block ? state->block[side].skin_boxes : state->run.body_boxes;
-    return refs; /* FLOW_MEET_OBJECTS more */
-}
-
 static int fork_meeting(struct flow_state *state, uint32_t number)
 {
     const struct flow_meeting *meeting = state->contact.meetings.all + number;
-    const uint32_t *side = meeting->side;
-    const bool shape = is_shape(state, side[1]);
+    const uint32_t *side = meeting->side, n_blocks = state->flow->tables.n_blocks;
     const struct flow_step_args step = flow_attempt_args(state);
     const struct flow_meet_args args = {.side = {side[0], side[1]},
                                         .number = number,
                                         .room = meeting->room,
                                         .from = step.time - step.h,
                                         .to = step.time};
-    duite_object refs[3 + 2 * FLOW_MEET_OBJECTS] = {meeting->near, state->contact.meetings.counts};
-    duite_object *end = add_side(state, side[0], refs + 2);
-    if (side[0] != side[1] && !shape)
-        end = add_side(state, side[1], end);
-    if (!shape && side[1] >= state->flow->tables.n_blocks)
-        *end++ = state->run.body_fans;
-    return duite_fork(state->rt, shape ? &flow_meet_shape : &flow_meet, &args, (size_t)(end - refs),
-                      refs);
+    const struct flow_objects *other = state->block + (side[1] < n_blocks ? side[1] : 0);
+    const duite_object one[] = {meeting->near, state->contact.meetings.counts, other->skin,
+                                other->skin_x, other->skin_boxes};
+    const struct flow_kernel *kernel = &flow_kernel_meet;
+    if (side[0] == side[1])
+        kernel = &flow_kernel_meet_self;
+    else if (is_shape(state, side[1]))
+        kernel = &flow_kernel_meet_shape;
+    else if (side[1] >= n_blocks)
+        kernel = &flow_kernel_meet_figure;
+    return flow_fork_given(state, kernel, &args, &(struct flow_given){.one = one});
 }
 
 /* Forks all meetings and gets their counts. */

@@ -16,13 +16,15 @@ struct touch_args {
     double from, to; /* s: of the step */
 };
 
-/* Parameters: r the present contacts, w the next ones, r the block's own points, cw the energy of
- * the next contacts; then each meeting's list and, with another block, its points. */
-enum { AT_BEFORE, AT_AFTER, AT_POINTS, AT_ENERGY, AT_MEETINGS };
+/* The present contacts, the next ones, the energy of these; each meeting's list and, with another
+ * block, its points. */
+FLOW_KERNEL(touch, FLOW_COLLIDE, struct touch_args,
+            (GIVEN_R(before), GIVEN_W(after), R(skin_x), SUM(contact_energy), REST_R(meetings)))
 
 /* State of the body. */
 struct touching {
     const duite_call *call;
+    const struct touch_fields *on;
     const struct touch_args *args;
     bool carries; /* as the mode does (mode.h) */
     const struct flow_contact *before;
@@ -75,11 +77,15 @@ static size_t lower_bound(const struct flow_contact *list, size_t n,
 
 /* ---- Where its corners are ---- */
 
-/* The points of a side at the end of the step: the block's own, or those in a parameter. */
-static const phys_vec *ends_in(const duite_call *call, size_t at)
+/* The points of a side at the end of the step. */
+static const phys_vec *ends_in(const duite_param *points)
 {
-    const size_t n = duite_count(call, at) / 8; /* begin and end of each, four numbers */
-    return duite_in(call, at, phys_vec) + n;
+    const size_t n = points->count / 8; /* begin and end of each, four numbers */
+    return (const phys_vec *)points->data + n;
+}
+static const phys_vec *own_ends(const struct touching *t)
+{
+    return ends_in(t->call->param + FLOW_INDEX_OF(touch, skin_x));
 }
 
 /* True if a meeting is of two blocks: the other one's points follow its list. */
@@ -91,14 +97,14 @@ static bool is_between_blocks(const duite_call *call, const struct flow_list *li
 /* The points of the block that a contact meets, or of its own. */
 static const phys_vec *ends_of(const struct touching *t, uint32_t side)
 {
-    const duite_call *call = t->call;
+    const struct touch_fields *on = t->on;
     if (side == t->args->block)
-        return ends_in(call, AT_POINTS);
-    for (size_t at = AT_MEETINGS; at < call->n_params; at++) {
-        const struct flow_list *list = duite_in(call, at, struct flow_list);
-        const bool points = is_between_blocks(call, list);
+        return own_ends(t);
+    for (size_t at = 0; at < on->n_meetings; at++) {
+        const struct flow_list *list = on->meetings[at].data;
+        const bool points = is_between_blocks(t->call, list);
         if (points && (list->side[0] == side || list->side[1] == side))
-            return ends_in(call, at + 1);
+            return ends_in(on->meetings + at + 1);
         at += points;
     }
     return NULL;
@@ -109,7 +115,7 @@ static const phys_vec *ends_of(const struct touching *t, uint32_t side)
 static bool find_point(const struct touching *t, const struct flow_contact *contact,
                        phys_vec *point)
 {
-    const phys_vec *y[2] = {ends_in(t->call, AT_POINTS), NULL};
+    const phys_vec *y[2] = {own_ends(t), NULL};
     *point = (phys_vec){0};
     if (contact->first < contact->at.n && !(y[1] = ends_of(t, contact->side[1])))
         return false;
@@ -293,9 +299,9 @@ static void sum_energy(const struct touching *t, double held[FLOW_HELD])
 /* Takes the pairs that the block's meetings listed for it. */
 static void take_lists(struct touching *t)
 {
-    const duite_call *call = t->call;
-    for (size_t at = AT_MEETINGS; at < call->n_params; at++) {
-        const struct flow_list *list = duite_in(call, at, struct flow_list);
+    const struct touch_fields *on = t->on;
+    for (size_t at = 0; at < on->n_meetings; at++) {
+        const struct flow_list *list = on->meetings[at].data;
         const struct flow_near *near = (const struct flow_near *)(list + 1);
         for (uint64_t i = 0; i < list->n; i++) {
             if (near[i].contact.side[0] != t->args->block)
@@ -305,17 +311,18 @@ static void take_lists(struct touching *t)
             else
                 add_failing(t, near + i);
         }
-        at += is_between_blocks(call, list);
+        at += is_between_blocks(t->call, list);
     }
 }
 
-static int touch(const duite_call *call)
+static int touch_body(const duite_call *call, const struct touch_fields *on)
 {
-    const struct touch_args *args = call->args;
-    const struct flow_list *before = duite_in(call, AT_BEFORE, struct flow_list);
-    struct flow_list *after = duite_out(call, AT_AFTER, struct flow_list);
+    const struct touch_args *args = on->args;
+    const struct flow_list *before = on->before;
+    struct flow_list *after = on->after;
     const bool carries = flow_contact_mode(flow_of(call)->model)->carries;
     struct touching t = {.call = call,
+                         .on = on,
                          .args = args,
                          .before = (const struct flow_contact *)(before + 1),
                          .carries = carries,
@@ -330,22 +337,12 @@ static int touch(const duite_call *call)
     else
         end_again(&t);
     if (args->accept)
-        sum_energy(&t, duite_out(call, AT_ENERGY, double));
+        sum_energy(&t, on->contact_energy);
     free(t.used);
     *after = (struct flow_list){.n = t.n};
-    return duite_resize(call, AT_AFTER, flow_contact_index(after, flow_of(call)->tables.n_blocks));
+    return duite_resize(call, FLOW_INDEX_OF(touch, after),
+                        flow_contact_index(after, flow_of(call)->tables.n_blocks));
 }
-
-static int touch_timed(const duite_call *call)
-{
-    return flow_timed(call, touch, FLOW_COLLIDE);
-}
-const duite_kernel flow_touch = {.name = "touch",
-                                 .body = touch_timed,
-                                 .access = {DUITE_R, DUITE_W, DUITE_R, DUITE_CW},
-                                 .law = {[AT_ENERGY] = &duite_sum},
-                                 .variadic = DUITE_R,
-                                 .args_size = sizeof(struct touch_args)};
 
 /* ---- Forks ---- */
 
@@ -383,23 +380,23 @@ int flow_contact_none(struct flow_state *state)
     return code;
 }
 
-/* Adds the meetings of a block and the points of their other blocks. Returns the end. */
-static duite_object *add_meetings(const struct flow_state *state, uint32_t block,
-                                  duite_object *refs)
+/* Puts the meetings of a block and the points of their other blocks into `to`. Returns how many. */
+static size_t list_meetings(const struct flow_state *state, uint32_t block, duite_object *to)
 {
+    duite_object *end = to;
     const struct flow_meetings *meetings = &state->contact.meetings;
     for (uint32_t i = 0; i < meetings->n; i++) {
         const uint32_t *side = meetings->all[i].side;
         if (side[0] != block && side[1] != block)
             continue;
-        *refs++ = meetings->all[i].near;
+        *end++ = meetings->all[i].near;
         if (side[0] != side[1] && side[1] < state->flow->tables.n_blocks)
-            *refs++ = state->block[side[side[0] == block]].skin_x;
+            *end++ = state->block[side[side[0] == block]].skin_x;
     }
-    return refs;
+    return (size_t)(end - to);
 }
 
-static int fork_block(struct flow_state *state, struct touch_args *args, unsigned to)
+static int fork_touch(struct flow_state *state, struct touch_args *args, unsigned to)
 {
     struct flow_contact_state *contact = &state->contact;
     struct flow_kept_contacts *kept = contact->kept + args->block;
@@ -407,12 +404,11 @@ static int fork_block(struct flow_state *state, struct touch_args *args, unsigne
     kept->n[to] = args->accept ? found : kept->n[contact->now] + found;
     make_list(state, args->block, to, kept->n[to]);
     args->room = kept->room[to];
-    contact->refs[AT_BEFORE] = kept->list[contact->now];
-    contact->refs[AT_AFTER] = kept->list[to];
-    contact->refs[AT_POINTS] = state->block[args->block].skin_x;
-    contact->refs[AT_ENERGY] = state->run.contact_energy;
-    const duite_object *end = add_meetings(state, args->block, contact->refs + AT_MEETINGS);
-    return duite_fork(state->rt, &flow_touch, args, (size_t)(end - contact->refs), contact->refs);
+    duite_object *rest = flow_contact_rest(state);
+    const duite_object one[] = {kept->list[contact->now], kept->list[to]};
+    const struct flow_given given = {
+        .one = one, .n = list_meetings(state, args->block, rest), .rest = rest};
+    return flow_fork_given(state, &flow_kernel_touch, args, &given);
 }
 
 /* The list that is written is neither that of the step's begin nor the one that is read. */
@@ -428,7 +424,7 @@ static int fork_blocks(struct flow_state *state, bool accept)
                               .to = step.time};
     int code = duite_set(state->rt, state->run.contact_energy, NULL);
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
-        code = fork_block(state, &args, to);
+        code = fork_touch(state, &args, to);
     contact->now = to;
     return code;
 }

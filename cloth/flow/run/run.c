@@ -28,24 +28,7 @@ double flow_now(void)
 const duite_kernel *const *flow_kernels(void)
 {
 #define TASK(name) &flow_kernel_##name.task,
-    static const duite_kernel *const all[FLOW_KERNELS_LISTED + 1] = {FLOW_KERNELS(TASK) &
-                                                                         flow_broadcast_head,
-                                                                     &flow_broadcast_shared,
-                                                                     &flow_ready,
-                                                                     &flow_pack,
-                                                                     &flow_group_factor,
-                                                                     &flow_group_start,
-                                                                     &flow_group_solve,
-                                                                     &flow_meet,
-                                                                     &flow_meet_shape,
-                                                                     &flow_touch,
-                                                                     &flow_cut_ways,
-                                                                     &flow_count_ties,
-                                                                     &flow_tie_contacts,
-                                                                     &flow_save_block,
-                                                                     &flow_send_main,
-                                                                     &flow_load_block,
-                                                                     NULL};
+    static const duite_kernel *const all[FLOW_KERNELS_OF_ALL + 1] = {FLOW_KERNELS(TASK) NULL};
     return all;
 }
 

@@ -29,9 +29,12 @@
  *                NULL
  *     TIED       reads this field of each block that ties (ties.h) join this one with, ascending,
  *                if it exists in the run; a member tied_field. IF_MADE(tie_table) comes before it
+ *     GIVEN_R GIVEN_W GIVEN_SUM    an object of FLOW_OBJECTS, which the fork gives
+ *     REST_R REST_W                reads, or overwrites, all further ones that the fork gives; the
+ *                                  last parameter, and a member n_object says how many
  *
  * NEIGHBOURS, IF_MADE and TIED come behind the others, in this order; ALL comes last. A body gets
- * NEIGHBOURS, ALL and TIED as parameters: flow_rows_of, flow_numbers_of.
+ * NEIGHBOURS, ALL, TIED and REST as parameters: flow_rows_of, flow_numbers_of.
  * FLOW_INDEX_OF(velocity, v) is the index of a parameter, for calls of the runtime that want one.
  *
  * The arguments are a struct whose first member is `uint32_t block`: that alone (struct
@@ -64,7 +67,9 @@ enum flow_whose {
     FLOW_OF_NEIGHBOURS,
     FLOW_IF_MADE,
     FLOW_OF_TIED,
-    FLOW_OF_ALL
+    FLOW_OF_ALL,
+    FLOW_OF_FORK,
+    FLOW_REST_OF_FORK
 };
 
 struct flow_parameter {
@@ -124,6 +129,11 @@ struct flow_kernel {
 #define FLOW_WORD_ALL(field)        ALL, field
 #define FLOW_WORD_IF_MADE(field)    IF_MADE, field
 #define FLOW_WORD_TIED(field)       TIED, field
+#define FLOW_WORD_GIVEN_R(object)   GIVEN_R, object
+#define FLOW_WORD_GIVEN_W(object)   GIVEN_W, object
+#define FLOW_WORD_GIVEN_SUM(object) GIVEN_SUM, object
+#define FLOW_WORD_REST_R(object)    REST_R, object
+#define FLOW_WORD_REST_W(object)    REST_W, object
 #define FLOW_SPREAD(f, ...)         f(__VA_ARGS__)
 
 /* name_at_field, of parameters that are always there. */
@@ -134,10 +144,15 @@ struct flow_kernel {
 #define FLOW_INDEX_RW(k, field)         FLOW_INDEX_OF(k, field),
 #define FLOW_INDEX_SUM(k, field)        FLOW_INDEX_OF(k, field),
 #define FLOW_INDEX_MAX(k, field)        FLOW_INDEX_OF(k, field),
+#define FLOW_INDEX_GIVEN_R(k, object)   FLOW_INDEX_OF(k, object),
+#define FLOW_INDEX_GIVEN_W(k, object)   FLOW_INDEX_OF(k, object),
+#define FLOW_INDEX_GIVEN_SUM(k, object) FLOW_INDEX_OF(k, object),
 #define FLOW_INDEX_NEIGHBOURS(k, field)
 #define FLOW_INDEX_ALL(k, field)
 #define FLOW_INDEX_IF_MADE(k, field)
 #define FLOW_INDEX_TIED(k, field)
+#define FLOW_INDEX_REST_R(k, object)
+#define FLOW_INDEX_REST_W(k, object)
 
 /* Members of struct name_fields. */
 #define FLOW_HAS(k, word)             FLOW_SPREAD(FLOW_HAS_WORD, k, FLOW_WORD_##word)
@@ -151,6 +166,13 @@ struct flow_kernel {
 #define FLOW_HAS_ALL(field)           const duite_param *field;
 #define FLOW_HAS_IF_MADE(field)       const flow_type_of_##field *field;
 #define FLOW_HAS_TIED(field)          const duite_param *tied_##field;
+#define FLOW_HAS_GIVEN_R(object)      FLOW_HAS_R(object)
+#define FLOW_HAS_GIVEN_W(object)      FLOW_HAS_W(object)
+#define FLOW_HAS_GIVEN_SUM(object)    FLOW_HAS_SUM(object)
+#define FLOW_HAS_REST_R(object)                                                                    \
+    const duite_param *object;                                                                     \
+    size_t n_##object;
+#define FLOW_HAS_REST_W(object) FLOW_HAS_REST_R(object)
 
 /* Fills them. */
 #define FLOW_OPEN(k, word)             FLOW_SPREAD(FLOW_OPEN_WORD, k, FLOW_WORD_##word)
@@ -171,6 +193,13 @@ struct flow_kernel {
 #define FLOW_OPEN_TIED(k, field)                                                                   \
     on.tied_##field = call->param + next;                                                          \
     next += flow_of(call)->made[FLOW_FIELD_##field] ? flow_ties_others(on.tie_table) : 0;
+#define FLOW_OPEN_GIVEN_R(k, object)   FLOW_OPEN_R(k, object)
+#define FLOW_OPEN_GIVEN_W(k, object)   FLOW_OPEN_R(k, object)
+#define FLOW_OPEN_GIVEN_SUM(k, object) FLOW_OPEN_R(k, object)
+#define FLOW_OPEN_REST_R(k, object)                                                                \
+    on.object = call->param + next;                                                                \
+    on.n_##object = call->n_params - next;
+#define FLOW_OPEN_REST_W(k, object) FLOW_OPEN_REST_R(k, object)
 
 /* Members of the runtime's kernel. */
 #define FLOW_MODE(k, word)             FLOW_SPREAD(FLOW_MODE_WORD, k, FLOW_WORD_##word)
@@ -184,6 +213,11 @@ struct flow_kernel {
 #define FLOW_MODE_ALL
 #define FLOW_MODE_IF_MADE
 #define FLOW_MODE_TIED
+#define FLOW_MODE_GIVEN_R   DUITE_R,
+#define FLOW_MODE_GIVEN_W   DUITE_W,
+#define FLOW_MODE_GIVEN_SUM DUITE_CW,
+#define FLOW_MODE_REST_R
+#define FLOW_MODE_REST_W
 #define FLOW_LAW(k, word)             FLOW_SPREAD(FLOW_LAW_WORD, k, FLOW_WORD_##word)
 #define FLOW_LAW_WORD(k, mode, field) FLOW_LAW_##mode
 #define FLOW_LAW_R                    NULL,
@@ -195,21 +229,48 @@ struct flow_kernel {
 #define FLOW_LAW_ALL
 #define FLOW_LAW_IF_MADE
 #define FLOW_LAW_TIED
+#define FLOW_LAW_GIVEN_R   NULL,
+#define FLOW_LAW_GIVEN_W   NULL,
+#define FLOW_LAW_GIVEN_SUM &duite_sum,
+#define FLOW_LAW_REST_R
+#define FLOW_LAW_REST_W
 
+/* clang-format off */
 /* The parameters at the fork. */
-#define FLOW_GIVEN(k, word)               FLOW_SPREAD(FLOW_GIVEN_WORD, k, FLOW_WORD_##word)
-#define FLOW_GIVEN_WORD(k, mode, field)   {FLOW_WHOSE_##mode, FLOW_FIELD_##field},
-#define FLOW_WHOSE_R                      FLOW_OWN
-#define FLOW_WHOSE_W                      FLOW_OWN
-#define FLOW_WHOSE_RW                     FLOW_OWN
-#define FLOW_WHOSE_SUM                    FLOW_OWN
-#define FLOW_WHOSE_MAX                    FLOW_OWN
-#define FLOW_WHOSE_NEIGHBOURS             FLOW_OF_NEIGHBOURS
-#define FLOW_WHOSE_ALL                    FLOW_OF_ALL
-#define FLOW_WHOSE_IF_MADE                FLOW_IF_MADE
-#define FLOW_WHOSE_TIED                   FLOW_OF_TIED
-#define FLOW_FURTHER(k, word)             FLOW_SPREAD(FLOW_FURTHER_WORD, k, FLOW_WORD_##word)
-#define FLOW_FURTHER_WORD(k, mode, field) || FLOW_WHOSE_##mode != FLOW_OWN
+#define FLOW_PARAMETER(k, word) FLOW_SPREAD(FLOW_PARAMETER_WORD, k, FLOW_WORD_##word)
+#define FLOW_PARAMETER_WORD(k, mode, field) FLOW_PARAMETER_##mode(field)
+#define FLOW_PARAMETER_R(field) {FLOW_OWN, FLOW_FIELD_##field},
+#define FLOW_PARAMETER_W(field) {FLOW_OWN, FLOW_FIELD_##field},
+#define FLOW_PARAMETER_RW(field) {FLOW_OWN, FLOW_FIELD_##field},
+#define FLOW_PARAMETER_SUM(field) {FLOW_OWN, FLOW_FIELD_##field},
+#define FLOW_PARAMETER_MAX(field) {FLOW_OWN, FLOW_FIELD_##field},
+#define FLOW_PARAMETER_NEIGHBOURS(field) {FLOW_OF_NEIGHBOURS, FLOW_FIELD_##field},
+#define FLOW_PARAMETER_ALL(field) {FLOW_OF_ALL, FLOW_FIELD_##field},
+#define FLOW_PARAMETER_IF_MADE(field) {FLOW_IF_MADE, FLOW_FIELD_##field},
+#define FLOW_PARAMETER_TIED(field) {FLOW_OF_TIED, FLOW_FIELD_##field},
+#define FLOW_PARAMETER_GIVEN_R(object) {FLOW_OF_FORK, FLOW_FIELDS_OF_ALL},
+#define FLOW_PARAMETER_GIVEN_W(object) {FLOW_OF_FORK, FLOW_FIELDS_OF_ALL},
+#define FLOW_PARAMETER_GIVEN_SUM(object) {FLOW_OF_FORK, FLOW_FIELDS_OF_ALL},
+#define FLOW_PARAMETER_REST_R(object) {FLOW_REST_OF_FORK, FLOW_FIELDS_OF_ALL},
+#define FLOW_PARAMETER_REST_W(object) {FLOW_REST_OF_FORK, FLOW_FIELDS_OF_ALL},
+/* The mode of those whose number varies: one for all of a kernel. */
+#define FLOW_FURTHER(k, word) FLOW_SPREAD(FLOW_FURTHER_WORD, k, FLOW_WORD_##word)
+#define FLOW_FURTHER_WORD(k, mode, field) FLOW_FURTHER_##mode
+#define FLOW_FURTHER_R
+#define FLOW_FURTHER_W
+#define FLOW_FURTHER_RW
+#define FLOW_FURTHER_SUM
+#define FLOW_FURTHER_MAX
+#define FLOW_FURTHER_GIVEN_R
+#define FLOW_FURTHER_GIVEN_W
+#define FLOW_FURTHER_GIVEN_SUM
+#define FLOW_FURTHER_NEIGHBOURS | DUITE_R
+#define FLOW_FURTHER_ALL | DUITE_R
+#define FLOW_FURTHER_IF_MADE | DUITE_R
+#define FLOW_FURTHER_TIED | DUITE_R
+#define FLOW_FURTHER_REST_R | DUITE_R
+#define FLOW_FURTHER_REST_W | DUITE_W
+/* clang-format on */
 
 #define FLOW_KERNEL_DECLARE(name, arguments, fields)                                               \
     enum { FLOW_EACH(FLOW_INDEX, name, fields) name##_at_end };                                    \
@@ -233,12 +294,12 @@ struct flow_kernel {
     const struct flow_kernel flow_kernel_##k = {                                                   \
         .task = {.name = #k,                                                                       \
                  .body = k##_task,                                                                 \
-                 .access = {FLOW_EACH(FLOW_MODE, k, fields)},                                      \
-                 .law = {FLOW_EACH(FLOW_LAW, k, fields)},                                          \
-                 .variadic = (0 FLOW_EACH(FLOW_FURTHER, k, fields)) ? DUITE_R : DUITE_NONE,        \
+                 .access = {FLOW_EACH(FLOW_MODE, k, fields) DUITE_NONE},                           \
+                 .law = {FLOW_EACH(FLOW_LAW, k, fields) NULL},                                     \
+                 .variadic = 0 FLOW_EACH(FLOW_FURTHER, k, fields),                                 \
                  .args_size = sizeof(arguments),                                                   \
                  __VA_ARGS__},                                                                     \
-        .parameter = {FLOW_EACH(FLOW_GIVEN, k, fields)}};
+        .parameter = {FLOW_EACH(FLOW_PARAMETER, k, fields)}};
 
 /* flow_type_of_name: the C type of a field's object. */
 #define FLOW_FIELD_TYPE(name, many, type, ...) FLOW_FIELD_TYPE_##many(name, type)
@@ -248,6 +309,39 @@ struct flow_kernel {
     typedef type flow_type_of_##name, flow_type_of_##name##_next;
 #define FLOW_FIELD_TYPE_BY_PASS(name, type) FLOW_FIELD_TYPE_BY_STEP(name, type)
 FLOW_FIELDS(FLOW_FIELD_TYPE)
+
+/* Objects that are no fields: their number follows from the run, or they live for a moment. */
+#define FLOW_OBJECTS(X)                                                                            \
+    /* set-up: of rank 0 for all; what a rank lacks; a checkpoint's main program, its objects */   \
+    X(head, struct flow_head)                                                                      \
+    X(shared, char)                                                                                \
+    X(lacks, int32_t)                                                                              \
+    X(main_program, unsigned char)                                                                 \
+    X(saved_objects, unsigned char)                                                                \
+    /* contact (contact.h): a meeting's list, the counts of all; of its second side; the contacts  \
+     * of a block before and after, those of blocks */                                             \
+    X(near, struct flow_list)                                                                      \
+    X(counts, double)                                                                              \
+    X(other_skin, unsigned char)                                                                   \
+    X(other_x, phys_vec)                                                                           \
+    X(other_boxes, unsigned char)                                                                  \
+    X(before, struct flow_list)                                                                    \
+    X(after, struct flow_list)                                                                     \
+    X(meetings, struct flow_list)                                                                  \
+    X(keepers, struct flow_list)                                                                   \
+    /* the solver: rows of s that another rank reads (halo.c); a group, what it covers (groups.c)  \
+     */                                                                                            \
+    X(whole_halo, double)                                                                          \
+    X(packed_halo, double)                                                                         \
+    X(group_factor, double)                                                                        \
+    X(group_coupling, double)                                                                      \
+    X(group_motion, double)                                                                        \
+    X(group_part, double)                                                                          \
+    X(covered, double)
+struct flow_head;
+struct flow_list;
+#define FLOW_OBJECT_TYPE(name, type) typedef type flow_type_of_##name;
+FLOW_OBJECTS(FLOW_OBJECT_TYPE)
 
 /* ---- Forks ---- */
 
@@ -279,6 +373,18 @@ int flow_fork_range_as(struct flow_state *state, const struct flow_kernel *kerne
                        uint32_t end, void *args, const struct flow_as *as);
 int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *kernel,
                  const void *args, const struct flow_as *as);
+
+/* The objects that a fork gives: those of GIVEN words, in order; n of REST. As many objects as a
+ * kernel has parameters may be written before `rest`. */
+struct flow_given {
+    const duite_object *one;
+    size_t n;
+    duite_object *rest; /* NULL: none */
+};
+int flow_fork_given(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
+                    const struct flow_given *given);
+int flow_fork_given_at(struct flow_state *state, int rank, const struct flow_kernel *kernel,
+                       const void *args, const struct flow_given *given);
 
 /* Puts the objects that a fork of the kernel on a block gives into state->refs. Returns how many:
  * for forks that give others in place of some. */

@@ -9,6 +9,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* A row counts as halved if it goes less than this part of its way, and what it loses is more than
+ * this part of the thickness: shorter losses do not show. */
+static const double HALF = 0.5, COUNTS = 0.1;
+
 struct cut_args {
     union {
         uint32_t block;
@@ -49,7 +53,7 @@ static void cut_row(const struct flow_step_args *step, double part, double thick
     counts[FLOW_CUT_ROWS]++;
     for (int c = 0; c < 3; c++)
         counts[FLOW_CUT_MOMENTUM + c] += change[c];
-    counts[FLOW_CUT_HALVED] += part < 0.5 && (1 - part) * length > 0.1 * thickness;
+    counts[FLOW_CUT_HALVED] += part < HALF && (1 - part) * length > COUNTS * thickness;
 }
 
 static int cut_body(const duite_call *call, const struct cut_fields *on)

@@ -11,6 +11,10 @@
 
 #include <math.h>
 
+/* A surface that goes down by more from an edge has a ridge there: sine of 3 degrees. Cloth that
+ * slides over less has vertices and triangles that are nearer. */
+static const double RIDGE = 0.05;
+
 /* The state of a query's visits. */
 struct meeting {
     const struct flow *flow;
@@ -140,7 +144,6 @@ static void append(struct meeting *m, const struct flow_near *near)
 static bool is_ridge(const struct meeting *m, int side, uint32_t edge, const phys_vec *normal,
                      double sign)
 {
-    static const double FLAT = 0.05; /* sine of an angle */
     const struct contact_skin *skin = m->skin + side;
     const phys_vec *y = m->side[side].y, *from = y + skin->edge[edge][0];
     const phys_vec along = y[skin->edge[edge][1]] - *from;
@@ -151,7 +154,7 @@ static bool is_ridge(const struct meeting *m, int side, uint32_t edge, const phy
         const phys_vec to = y[skin->beside[edge][k]] - *from;
         const phys_vec across = to - phys_dot(&to, &along) / square * along;
         const double up = sign * phys_dot(&across, normal);
-        ridge = ridge && up > (border ? -FLAT : FLAT) * sqrt(phys_dot(&across, &across));
+        ridge = ridge && up > (border ? -RIDGE : RIDGE) * sqrt(phys_dot(&across, &across));
     }
     return ridge;
 }

@@ -13,9 +13,11 @@
 
 #include "cloth/contact/solid.h"
 
-/* m: boxes still meet if they are this much farther apart than a contact reaches. */
-static const double SPARE = 0.02;
-enum { LEAST_ROOM = 256 };
+/* Thicknesses: boxes still meet if they are this much farther apart than a contact reaches. That is
+ * the way of some steps, so the set of meetings changes seldom; more of it costs queries that find
+ * nothing. */
+static const double SPARE = 20;
+enum { LEAST_ROOM = 256 }; /* items of a list, which doubles where it is short */
 
 /* ---- Boxes ---- */
 
@@ -163,7 +165,8 @@ static int make_meetings(struct flow_state *state)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
     const uint32_t n_blocks = state->flow->tables.n_blocks, n_sides = count_sides(state);
-    const double reach = flow_contact_reach(state->flow->model) + SPARE;
+    const double reach =
+        flow_contact_reach(state->flow->model) + SPARE * state->flow->model->contact.thickness;
     flow_contact_part(state);
     const int code = flow_contact_room(state, count_near(state, reach));
     if (code)

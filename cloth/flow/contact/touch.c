@@ -8,6 +8,15 @@
 #include <float.h>
 #include <stdlib.h>
 
+/* Part of the thickness: a place that is farther by less is as near. */
+static const double HARDLY = 0.05;
+/* Contacts push much the same way if their normals have at least this cosine: 45 degrees. */
+static const double SAME_WAY = 0.7;
+/* A run begins with contacts that may rise by a tenth of the thickness d: k (d / 10)^2 / 2 in k
+ * d^2.
+ */
+static const double FIRST_ENERGY = 0.005;
+
 struct touch_args {
     uint32_t block, room;
     uint32_t accept; /* not zero: the step is over, near pairs become contacts; else the present
@@ -217,7 +226,7 @@ static void part(struct touching *t, const struct flow_contact *before)
 static void stay(const struct touching *t, const struct flow_contact *before,
                  struct flow_contact *after)
 {
-    const double hardly = 0.05 * after->row.thickness;
+    const double hardly = HARDLY * after->row.thickness;
     struct contact_row there = after->row;
     if (before->kind != FLOW_CONTACT_SHAPE || before->feature[1] != FLOW_ON_TRIANGLE)
         return;
@@ -243,21 +252,21 @@ static size_t successor(const struct touching *t, const struct flow_contact *bef
             continue; /* the vertex is another body's */
         if (before->kind == FLOW_CONTACT_SHAPE && after->feature[1] != before->feature[1])
             continue; /* a vertex and a triangle of that number */
-        if (!t->used[t->n_before + i] && phys_dot(&after->row.normal, &before->row.normal) > 0.7)
+        if (!t->used[t->n_before + i] &&
+            phys_dot(&after->row.normal, &before->row.normal) > SAME_WAY)
             return i;
     }
     return t->n;
 }
 
-/* At a run's start, contacts about to rest are in the first solve, though without load. They have
- * the energy to rise by a tenth of the thickness. */
+/* At a run's start, contacts about to rest are in the first solve, though without load. */
 static void begin_all(struct touching *t)
 {
     const double k = flow_contact_stiffness(flow_of(t->call), flow_of(t->call)->model->h);
     for (size_t i = 0; i < t->n; i++) {
         struct contact_row *row = &t->after[i].row;
         row->load = DBL_MIN;
-        row->energy = 0.005 * k * row->thickness * row->thickness;
+        row->energy = FIRST_ENERGY * k * row->thickness * row->thickness;
     }
 }
 

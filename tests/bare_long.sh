@@ -1,6 +1,6 @@
 #!/bin/sh
 # README's two commands on a bare Debian of this machine's release, which debootstrap fetches from this machine's mirror (DUITE_MIRROR names
-# another) with nothing but what every Debian has; on one with MPICH alone the build, README's first program and the tests of the runtime; and on
+# another) with nothing but what every Debian has; on one with MPICH alone the build, a program of the tutorial and the tests of the runtime; and on
 # a third libduite and its tools alone, without the packages of the cloth.
 # Half an hour on two cores, 3 GB each. What is tested is a clone: the last commit.
 . "${srcdir:-.}/tests/support/tap.sh"
@@ -42,9 +42,9 @@ only_mpich() {
         ! ls "$scratch"/mpich/usr/lib/*/libmpi.so.40 && grep -qx 'mpi=MPICH' "$scratch/mpich/usr/local/lib/pkgconfig/duite.pc"
 }
 first() {
-    sed -n '/^<!-- first.c -->/,/^```$/p' "$srcdir/README.md" | sed '/^<!--/d; /^```/d' > "$scratch/mpich/root/first.c"
-    enter mpich 'cd /root && cc first.c -o first $(pkg-config --cflags --libs duite) && ldd first | grep libmpi && { ./first; mpirun -n 2 ./first; mpirun -n 3 ./first; }' &&
-        test "$(grep -c '^170634668000$' "$scratch/said")" = 3
+    cp "$srcdir/tests/examples/dot.c" "$scratch/mpich/root/dot.c" &&
+        enter mpich 'cd /root && cc dot.c -o dot $(pkg-config --cflags --libs duite) && ldd dot | grep libmpi && { ./dot; mpirun -n 2 ./dot; mpirun -n 3 ./dot; }' &&
+        test "$(grep -c '^dot: [0-9]*$' "$scratch/said")" = 3
 }
 runtime() { enter mpich 'make check TESTS="$(make -s --eval='\''print-list:;@echo $(filter tests/runtime/%,$(TESTS))'\'' print-list)"'; }
 without_cloth() {
@@ -58,6 +58,6 @@ ok "README: ./bootstrap && make demo" command_of_readme './bootstrap && make dem
 ok "pictures of it" pictures
 ok "README: ./bootstrap && make check" command_of_readme './bootstrap && make check'
 ok "MPICH alone: build" only_mpich
-ok "MPICH alone: README's first program on 1, 2 and 3 ranks" first
+ok "MPICH alone: the first program on 1, 2 and 3 ranks" first
 ok "MPICH alone: the tests of the runtime" runtime
 ok "without the cloth: make check, and none of its packages" without_cloth

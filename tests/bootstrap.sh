@@ -72,7 +72,7 @@ other_mpi() { # MPICH will do, and with both missing Open MPI is installed
     told 0 0 "libopenmpi-dev openmpi-bin" "" && ! grep -q openmpi "$scratch/asked" 2> /dev/null &&
         told 0 0 "libopenmpi-dev openmpi-bin libmpich-dev mpich" "" && grep -q "libopenmpi-dev openmpi-bin" "$scratch/asked"
 }
-told_of() { "$tree/bootstrap" --help | grep DUITE_NO_INSTALL=1 && grep DUITE_NO_INSTALL=1 "$srcdir/README.md"; }
+told_of() { "$tree/bootstrap" --help | grep DUITE_NO_INSTALL=1 && grep DUITE_NO_INSTALL=1 "$srcdir/docs/install.md"; }
 
 ok "without root and an optional package of the tests" optional check
 ok "without root and an optional package of pictures" optional libglfw3-dev

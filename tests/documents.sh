@@ -203,7 +203,52 @@ stages() { # the stages of a step stand in the document's table in their order
     test -s "$scratch/stages" && cmp -s "$scratch/stages" "$scratch/listed"
 }
 
+# Each link between pages leads to a file that is there, and to a heading of it.
+links() { # PAGE...
+    awk -v home="$srcdir/" '
+        function slug(title) { title = tolower(title); gsub(/`|[.,:;()?!\/"]|\047/, "", title); gsub(/ /, "-", title); return title }
+        function read(file,    line, code) {
+            if (file in there) return there[file]
+            while ((getline line < file) > 0) {
+                there[file] = 1
+                if (line ~ /^```/) code = !code
+                if (!code && line ~ /^#+ /) { sub(/^#+ /, "", line); heading[file, slug(line)] = 1 }
+            }
+            close(file)
+            return there[file] = there[file] + 0
+        }
+        /^```/ { code = !code }
+        !code {
+            page = substr(FILENAME, length(home) + 1)
+            rest = $0
+            while (match(rest, /\]\([^)]*\)/)) {
+                link = substr(rest, RSTART + 2, RLENGTH - 3)
+                rest = substr(rest, RSTART + RLENGTH)
+                if (link ~ /^[a-z]+:/ || link ~ /\/$/) continue
+                file = anchor = link
+                sub(/#.*/, "", file)
+                if (!sub(/^[^#]*#/, "", anchor)) anchor = ""
+                folder = FILENAME
+                sub(/[^\/]*$/, "", folder)
+                file = file == "" ? FILENAME : folder file
+                while (sub(/[^\/]+\/\.\.\//, "", file)) continue
+                count++
+                if (!read(file)) { print page ": " link " is not there"; bad = 1 }
+                else if (anchor != "" && !((file, anchor) in heading)) { print page ": " link " has no such heading"; bad = 1 }
+            }
+        }
+        END { print count " links"; exit bad || count < 100 }' "$@"
+}
+documents="$srcdir/README.md $srcdir/docs/*.md $srcdir/docs/design/*.md"
+lost() { # a link to a heading that is renamed is seen
+    mkdir -p "$scratch/docs" && cp "$srcdir"/docs/*.md "$scratch/docs" && sed -i 's/^## Integrators$/## Schemes/' "$scratch/docs/physics.md" || return
+    ! links "$scratch"/docs/*.md > "$scratch/said" && grep -q 'physics.md#integrators has no such heading' "$scratch/said"
+}
+
 plan_later
+# shellcheck disable=SC2086 # a list of files
+ok "links between pages lead somewhere" links $documents
+ok "a heading that is lost is seen" lost
 ok "docs/runtime.md quotes the examples as they are" quotes "$document"
 ok "a quotation that differs is seen" sees 's/ += x\[i\] \* y\[i\];/ += x[i] - y[i];/'
 ok "a line left out is seen" sees '/DUITE_FORK(rt, &FACTOR, NULL/d'

@@ -66,12 +66,12 @@ check-programs: $(check_PROGRAMS)
 .PHONY: check-long check-threads check-threads-long check-programs
 
 EXTRA_DIST += tests/arrows.txt tests/support/policies.h tests/support/tap.sh tests/support/predicted.sh tests/support/commands.sh \
-	tests/support/bodies.sh tests/support/probes.sh tests/support/dress.awk tests/support/mpi.sh tests/support/rank.h tests/support/run.sh tests/support/screen.sh \
+	tests/support/bodies.sh tests/support/probes.sh tests/support/table.sh tests/support/dress.awk tests/support/mpi.sh tests/support/rank.h tests/support/run.sh tests/support/screen.sh \
 	tests/support/count.sh \
     tests/support/lsan.supp tests/support/tsan.supp tests/support/valgrind.supp
 ASAN_SH += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/completion.sh tests/bootstrap.sh
 PLAIN_SH += tests/install.sh tests/bare.sh tests/two_mpis.sh
-LONG_SH += tests/readme.sh tests/pages.sh tests/bare_long.sh
+LONG_SH += tests/pages.sh tests/bare_long.sh
 
 if HAVE_CHECK
 check_LIBRARIES += tests/support/libunit.a

@@ -109,9 +109,9 @@ shirt_row() { # RANKS THREADS OPTIONS...: mean of the runs; the first row's seco
 partutex_shirt() {
     most=$(nproc)
     set --
-    test $quick = no || set -- --set 'cloths[0].mesh.pattern.vertices=700' --grain 100 --set 'phases[1].set={time.end: 0.003}'
+    test $quick = no || set -- --set 'cloths[0].mesh.pattern.vertices=700' --grain 100 --set 'phases[1].set.time.end=0.003'
     : > "$scratch/hashes" && : > "$scratch/alone"
-    run 1 1 shirt "$@" --set 'phases[1].set={time.end: 0.001}'
+    run 1 1 shirt "$@" --set 'phases[1].set.time.end=0.001'
     echo "Figure 3: the shirt of $(value triangles) triangles, one welded surface; plain conjugate gradients to 1e-3, 25 frames a second"
     echo "gathered, mean of $all_runs of the phase that hangs"
     echo

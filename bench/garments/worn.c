@@ -20,7 +20,8 @@ enum { PATH = 4200, VERTICES = 9150, QUICK_VERTICES = 800 };
 #define PULLED "gravity: [0, 0, 0], time.h: 0.01"
 #define PHASES                                                                                     \
     "--set 'phases[0].set={" PULLED ", time.end: 1.2}' --set 'phases[1].set={" PULLED              \
-    ", time.end: 1, time.sewn: {distance: 0.0025}, \"cloths[0].seams.stiffness\": 3000}'"
+    ", time.end: 1, time.sewn: {distance: 0.0025}, \"cloths[0].seams.stiffness\": 3000}' --set "   \
+    "phases[2].set.time.h=0.02"
 /* With --quick: panels on their way. */
 #define QUICK_PHASES "--set 'phases=[{name: sew, set: {gravity: [0, 0, 0], time.end: 0.06}}]'"
 

@@ -1,7 +1,5 @@
 /* The command line of duite-cloth. Every rank reads it, after MPI has started, and only rank 0
  * prints: a mistake is said once, and all ranks end with the same code. */
-#include "cloth/app/run/environment.h"
-#include "cloth/app/run/shipped.h"
 #include "cloth/app/simulate.h"
 #include "cloth/base/simd.h"
 
@@ -93,7 +91,10 @@ static const struct argp_option OPTIONS[] = {
      3},
     {"seed", SEED, "N", 0, "of all that is random in the policies (default: DUITE_SEED, else 1)",
      3},
-    {"keys", KEYS, NULL, 0, "list the keys of scene files, with units, ranges and defaults", 4},
+    {"keys", KEYS, "FORMAT", OPTION_ARG_OPTIONAL,
+     "list the keys of scene files, with units, ranges and defaults; markdown: in full, as in "
+     "docs/scene.md",
+     4},
     {"scenes", SCENES, NULL, 0, "list the scenes that came with duite, which are found by name", 4},
     {"help", '?', NULL, 0, "this text", 4},
     {"usage", USAGE, NULL, 0, "a short text", 4},
@@ -192,6 +193,21 @@ static void print_scenes(FILE *file)
         fputs("no scenes are installed; those of the sources are in cloth/scenes\n", file);
 }
 
+/* format: of --keys; NULL: none is given. */
+static error_t print_keys(struct command *command, struct argp_state *state, const char *format)
+{
+    command->done = true;
+    if (format && strcmp(format, "markdown") != 0) {
+        argp_failure(state, 0, 0, "--keys=%s: markdown is expected, or no format", format);
+        return EINVAL;
+    }
+    if (command->talks && format)
+        scene_print_page(stdout);
+    else if (command->talks)
+        scene_print_keys(stdout);
+    return 0;
+}
+
 /* Options that print and end the program. */
 static int answer(struct command *command, struct argp_state *state, int key)
 {
@@ -200,8 +216,6 @@ static int answer(struct command *command, struct argp_state *state, int key)
         return 0;
     if (key == 'V')
         print_version(stdout);
-    else if (key == KEYS)
-        scene_print_keys(stdout);
     else if (key == SCENES)
         print_scenes(stdout);
     else
@@ -312,6 +326,8 @@ static error_t parse(int key, char *value, struct argp_state *state)
         return add_key(command, "end", "time.end", value);
     case GRAIN:
         return add_key(command, "grain", "grain", value);
+    case KEYS:
+        return print_keys(command, state, value);
     case SET:
         return add_set(command, value, NULL);
     case SCHEDULER:
@@ -323,7 +339,6 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case THREADS:
     case SEED:
         return parse_number(command, state, key, value);
-    case KEYS:
     case SCENES:
     case USAGE:
     case 'V':

@@ -4,7 +4,6 @@
 
 #include "cloth/app/report/summary.h"
 #include "cloth/app/run/keeper.h"
-#include "cloth/app/run/shipped.h"
 #include "tools/predict/predict.h"
 
 #include <math.h>

@@ -18,6 +18,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/contact/plane.c \
 	cloth/contact/repulse.h \
 	cloth/contact/row.h \
+	cloth/contact/soup.c cloth/contact/soup.h \
 	cloth/contact/shape.c cloth/contact/shape.h \
 	cloth/contact/skin.h cloth/contact/skin_table.h \
 	cloth/contact/skin_flat.c \

@@ -87,17 +87,12 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/contact/stiffness.c \
     cloth/flow/contact/thickness.c \
     cloth/flow/contact/touch.c \
-    cloth/flow/integrators/euler.c \
-    cloth/flow/integrators/explicit.h \
+    cloth/flow/integrators/explicit.c \
     cloth/flow/integrators/implicit.c \
     cloth/flow/integrators/integrator.c \
     cloth/flow/integrators/integrator.h \
     cloth/flow/integrators/limit.c \
     cloth/flow/integrators/long_steps.c \
-    cloth/flow/integrators/long_steps.h \
-    cloth/flow/integrators/midpoint.c \
-    cloth/flow/integrators/runge.c \
-    cloth/flow/integrators/verlet.c \
     cloth/flow/solver/cg.c \
     cloth/flow/solver/coarse.c \
     cloth/flow/solver/groups.c \

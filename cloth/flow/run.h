@@ -184,32 +184,6 @@ const duite_kernel *const *flow_kernels(void);
 
 struct flow; /* a model made ready, or room for one */
 
-/* A program's own filter of the solves of implicit steps (the filter function of Keckeisen &
- * Blochinger 2004; Baraff & Witkin 1998, section 5). Before the solve of each step it gets the
- * vertices of one block after the other. It says along which directions the velocity of each must
- * not change in the step. */
-struct flow_rows {
-    size_t n;               /* vertices of the block */
-    const uint32_t *vertex; /* n: in the numbering of the input meshes, cloth after cloth; of a
-                             * welded vertex its lowest number */
-    const phys_vec *x, *v;  /* n: m, m/s, lanes 0 to 2; where the step begins */
-    double time, h;         /* s: when the step ends; its length */
-    phys_vec *filter;       /* n: S of each row (solve_filter in cloth/solve/block.h), as sliders of
-                             * pins have it; solve_constrain holds a row along a normal more;
-                             * at a point: all 0. Rows of pins are held in any case. */
-};
-struct flow_filter {
-    void *context;
-    /* Called from tasks, of several blocks at once, on the rank that has the block; again if a step
-     * is made again. Blocks are on any rank: write only results of the rows and of values that all
-     * ranks have alike. Use + - * / and sqrt: they round alike everywhere. */
-    void (*rows)(void *context, const struct flow_rows *rows);
-};
-
-/* Sets the filter; before flow_run, on every rank, if the model's own_filter is set (on rank 0,
- * before flow_prepare); else the function is not called. Local. */
-void flow_filter_by(struct flow *flow, struct flow_filter filter);
-
 /* On rank 0 of the run: cuts the model into blocks and prepares their tables. Needs no runtime.
  * Checks pins inside the mesh, masses, lengths of springs, starts out of bounds, more ranks than
  * blocks, which a scene alone cannot. Errors begin with the place that the model gives. The model

@@ -3,7 +3,7 @@
 #include "cloth/garment/girth.h"
 #include "cloth/base/memory.h"
 #include "cloth/base/sets.h"
-#include "cloth/garment/detail/slice.h"
+#include "cloth/mesh/slice.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -120,6 +120,13 @@ struct loop {
     uint32_t n;
 };
 
+/* A place as seen from above. */
+static void flatten(double point[2], const struct slice_end *end)
+{
+    point[0] = end->place[0];
+    point[1] = end->place[2];
+}
+
 /* The loop of a set of segments; girth 0: it is open. */
 static int take_loop(struct loop *loop, const struct slice *slice, uint32_t set,
                      struct cloth_error *error)
@@ -135,7 +142,7 @@ static int take_loop(struct loop *loop, const struct slice *slice, uint32_t set,
             continue;
         for (int k = 0; k < 2; k++) {
             open = open || segment->end[k].open;
-            memcpy(loop->hull[n++], segment->end[k].place, sizeof *loop->hull);
+            flatten(loop->hull[n++], &segment->end[k]);
         }
         loop->girth += segment->length;
     }
@@ -148,8 +155,8 @@ static void measure(const struct slice *body, const struct loop *loop, double (*
 {
     for (uint32_t s = 0; s < body->n; s++) {
         const struct slice_segment *segment = &body->segment[s];
-        const double middle[2] = {0.5 * (segment->end[0].place[0] + segment->end[1].place[0]),
-                                  0.5 * (segment->end[0].place[1] + segment->end[1].place[1])};
+        const double *one = segment->end[0].place, *two = segment->end[1].place;
+        const double middle[2] = {0.5 * (one[0] + two[0]), 0.5 * (one[2] + two[2])};
         const uint32_t root = cloth_sets_root(body->set, s);
         part[root][0] += segment->length;
         if (slice_inside((const double(*)[2])loop->hull, loop->n, middle))
@@ -173,7 +180,7 @@ static int body_girth(double *girth, const struct slice *body, const struct loop
         const double *of = part[cloth_sets_root(body->set, s)];
         clear = clear && (of[1] <= LEAST * of[0] || of[1] >= MOST * of[0]);
         for (int k = 0; k < 2 && of[1] >= MOST * of[0]; k++)
-            memcpy(point[n++], body->segment[s].end[k].place, sizeof *point);
+            flatten(point[n++], &body->segment[s].end[k]);
     }
     if (!code && clear && n > 2)
         code = slice_hull(point, n, &n, error);
@@ -185,6 +192,26 @@ static int body_girth(double *girth, const struct slice *body, const struct loop
 }
 
 /* ---- Levels ---- */
+
+/* Cuts a mesh at a height, m. */
+static int slice_at(struct slice *slice, const struct girth_mesh *mesh, double y,
+                    struct cloth_error *error)
+{
+    uint32_t n = 0;
+    for (uint32_t t = 0; t < mesh->n_triangles; t++)
+        for (int k = 0; k < 3; k++)
+            n = mesh->triangle[t][k] < n ? n : mesh->triangle[t][k] + 1;
+    double *height = cloth_alloc(n, sizeof *height, error);
+    *slice = (struct slice){0};
+    if (!height)
+        return CLOTH_E_MEMORY;
+    for (uint32_t v = 0; v < n; v++)
+        height[v] = mesh->x[v][1] - y;
+    const struct slice_mesh cut = {mesh->n_triangles, mesh->triangle, mesh->x, height};
+    const int code = slice_make(slice, &cut, error);
+    free(height);
+    return code;
+}
 
 struct levels {
     double first; /* m: the height of level 0, WINDOW below the garment */
@@ -209,7 +236,7 @@ static int cut_body(struct levels *levels, const struct girth_mesh *garment,
     int code = levels->body ? CLOTH_OK : CLOTH_E_MEMORY;
     while (!code && levels->n < (uint32_t)n) {
         const double y = levels->first + levels->n * STEP;
-        code = slice_make(&levels->body[levels->n++], body, y, error);
+        code = slice_at(&levels->body[levels->n++], body, y, error);
     }
     return code;
 }
@@ -236,7 +263,7 @@ static int compare_level(struct girth_worst *worst, const struct girth_mesh *gar
                          struct cloth_error *error)
 {
     struct slice slice;
-    int code = slice_make(&slice, garment, levels->first + level * STEP, error);
+    int code = slice_at(&slice, garment, levels->first + level * STEP, error);
     code = code ? code : sew(&slice, seams, error);
     for (uint32_t s = 0; s < slice.n && !code; s++) {
         struct loop loop;

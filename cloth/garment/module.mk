@@ -3,7 +3,6 @@ libduite_cloth_a_SOURCES += \
 	cloth/garment/garment.c cloth/garment/garment.h \
 	cloth/garment/check.c cloth/garment/pattern.c cloth/garment/pattern.h \
 	cloth/garment/girth.c cloth/garment/girth.h \
-	cloth/garment/detail/slice.c cloth/garment/detail/slice.h \
 	cloth/garment/own/draw.c cloth/garment/own/draw.h \
 	cloth/garment/own/own.c cloth/garment/own/own.h \
 	cloth/garment/own/skirt.c \

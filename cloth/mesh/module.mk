@@ -2,7 +2,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/mesh/mesh.h cloth/mesh/lattice.h cloth/mesh/elastic.h cloth/mesh/blocks.h \
 	cloth/mesh/axes.c cloth/mesh/blocks.c cloth/mesh/coincide.c cloth/mesh/disc.c cloth/mesh/edges.c cloth/mesh/elastic.c cloth/mesh/equilateral.c \
 	cloth/mesh/grid.c cloth/mesh/groups.c cloth/mesh/inline.c cloth/mesh/lattice.c cloth/mesh/mesh.c cloth/mesh/obj.c cloth/mesh/pc2.c \
-	cloth/mesh/places.c cloth/mesh/shadow.c \
+	cloth/mesh/places.c cloth/mesh/shadow.c cloth/mesh/slice.c cloth/mesh/slice.h \
 	cloth/mesh/detail/equilateral.h \
 	cloth/mesh/detail/finish.c cloth/mesh/detail/finish.h \
 	cloth/mesh/detail/graph.c cloth/mesh/detail/graph.h \

@@ -1,6 +1,9 @@
 /* A model owns all that its pointers reach; a zeroed model owns nothing. */
 #include "cloth/model/model.h"
 
+#include "cloth/base/memory.h"
+#include "cloth/base/sets.h"
+#include "cloth/physics/limit.h"
 #include "cloth/solve/patches.h"
 
 #include <math.h>
@@ -135,21 +138,21 @@ void model_free(struct model *model)
     *model = (struct model){0};
 }
 
-const struct model_word model_integrators[] = {{"implicit_euler", MODEL_IMPLICIT_EULER},
-                                               {"explicit_euler", MODEL_EXPLICIT_EULER},
-                                               {"symplectic_euler", MODEL_SYMPLECTIC_EULER},
-                                               {"verlet", MODEL_VERLET},
-                                               {"midpoint", MODEL_MIDPOINT},
-                                               {"rk4", MODEL_RK4},
-                                               {"bdf2", MODEL_BDF2},
-                                               {0}};
+/* In the order of sentences that list them. */
+#define INTEGRATORS(X)                                                                             \
+    X(MODEL_IMPLICIT_EULER, "implicit_euler", .linear = true)                                      \
+    X(MODEL_EXPLICIT_EULER, "explicit_euler", .limit = phys_limit_euler)                           \
+    X(MODEL_SYMPLECTIC_EULER, "symplectic_euler", .limit = phys_limit_symplectic,                  \
+      .staggered = true)                                                                           \
+    X(MODEL_VERLET, "verlet", .limit = phys_limit_verlet, .drag_free = true)                       \
+    X(MODEL_RK4, "rk4", .limit = phys_limit_rk4)                                                   \
+    X(MODEL_BDF2, "bdf2", .falls_back = true)
+#define WORD_OF(number, word, ...) {word, number},
+#define ROW_OF(number, word, ...)  [number] = {.name = word, __VA_ARGS__},
+const struct model_word model_integrators[] = {INTEGRATORS(WORD_OF){0}};
+const struct model_scheme model_schemes[] = {INTEGRATORS(ROW_OF)};
 
-const char *model_integrator_name(enum model_integrator integrator)
-{
-    return model_word_of(model_integrators, (int)integrator);
-}
-
-static bool has_material(const struct model_cloth *cloth, uint32_t material)
+bool model_has_material(const struct model_cloth *cloth, uint32_t material)
 {
     bool found = cloth->material == material;
     for (uint32_t i = 0; i < cloth->n_regions; i++)
@@ -162,7 +165,7 @@ void model_parts(const struct model *model, uint32_t material, bool *triangles, 
     *triangles = *edges = false;
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct model_cloth *cloth = model->cloths + c;
-        const bool has = has_material(cloth, material);
+        const bool has = model_has_material(cloth, material);
         *triangles = *triangles || (has && cloth->mesh.n_triangles);
         *edges = *edges || (has && cloth->mesh.n_bare_edges);
     }
@@ -182,7 +185,7 @@ struct mesh_elastic model_elastic(const struct model *model, uint32_t material)
     if (m->model == MODEL_TRIANGLES)
         return (struct mesh_elastic){m->stretch, model_weft(m), m->shear, m->poisson};
     for (uint32_t c = 0; c < model->n_cloths; c++) {
-        if (!has_material(model->cloths + c, material) || !model->cloths[c].mesh.n_triangles)
+        if (!model_has_material(model->cloths + c, material) || !model->cloths[c].mesh.n_triangles)
             continue;
         const struct mesh_moduli moduli = model_moduli(m);
         const struct mesh_elastic one = mesh_elastic_of(model_rest(model->cloths + c), &moduli);
@@ -261,7 +264,7 @@ bool model_is_guarded(const struct model *model)
     const double *wind = model->air.wind;
     const bool blown = model_has_air(model) && (wind[0] != 0 || wind[1] != 0 || wind[2] != 0);
     return model_is_implicit(model) && model->energy_growth > 0 && !blown && !model->n_motions &&
-           !model->n_curves && !model->own_filter && !model_obstacles_move(model);
+           !model->n_curves && !model_obstacles_move(model);
 }
 
 bool model_is_coarse(const struct model *model)
@@ -309,4 +312,39 @@ double model_curve_end(const struct model *model, uint32_t curve)
         return 0;
     const struct model_curve *c = model->curves + curve - 1;
     return c->n ? model->curve_keys[c->first + c->n - 1].time : INFINITY;
+}
+
+/* Gives each vertex of all cloths the lowest vertex that it is welded to. NULL: no memory. */
+static uint32_t *find_welded(const struct model *model, struct cloth_error *error)
+{
+    const uint32_t n = model_first(model, model->n_cloths);
+    uint32_t *same = cloth_alloc(n, sizeof *same, error);
+    if (!same)
+        return NULL;
+    cloth_sets_start(same, n);
+    for (uint32_t w = 0; w < model->n_welds; w++) {
+        const struct model_end *end = model->welds[w].pairs.end;
+        for (uint32_t i = 0; i < end[0].n; i++) {
+            const uint32_t a = model_first(model, end[0].cloth) + end[0].vertices[i];
+            const uint32_t b = model_first(model, end[1].cloth) + end[1].vertices[i];
+            cloth_sets_join(same, a, b);
+        }
+    }
+    for (uint32_t v = 0; v < n; v++)
+        same[v] = cloth_sets_root(same, v);
+    return same;
+}
+
+int model_soup(const struct model *model, struct contact_soup *soup, struct cloth_error *error)
+{
+    *soup = (struct contact_soup){0};
+    const struct mesh **mesh = cloth_alloc(model->n_cloths, sizeof *mesh, error);
+    uint32_t *same = mesh ? find_welded(model, error) : NULL;
+    for (uint32_t i = 0; i < model->n_cloths && same; i++)
+        mesh[i] = &model->cloths[i].mesh;
+    const int code = same ? contact_soup_make(soup, model->n_cloths, mesh, same, model->n_obstacles,
+                                              model->obstacles, &model->bodies, error)
+                          : CLOTH_E_MEMORY;
+    free(mesh);
+    return code;
 }

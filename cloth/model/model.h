@@ -3,6 +3,7 @@
 
 #include "cloth/base/error.h"
 #include "cloth/contact/shape.h"
+#include "cloth/contact/soup.h"
 #include "cloth/mesh/elastic.h"
 #include "cloth/model/cloth.h"
 #include "cloth/model/contact.h"
@@ -31,17 +32,30 @@ struct model_phase {
     char *name, *place;
 };
 
-/* Explicit ones come first. docs/physics.md has their formulas. */
+/* docs/physics.md has their formulas. */
 enum model_integrator {
     MODEL_EXPLICIT_EULER,   /* x by the velocity before the step */
     MODEL_SYMPLECTIC_EULER, /* x by the velocity after it */
     MODEL_VERLET,           /* velocity Verlet, drag solved for in the first half step */
-    MODEL_MIDPOINT,         /* the explicit midpoint method */
     MODEL_RK4,              /* the classical Runge-Kutta method */
     MODEL_IMPLICIT_EULER,
     MODEL_BDF2 /* begins with implicit Euler, also after contact or a change of h */
 };
 enum { MODEL_INTEGRATORS = MODEL_BDF2 + 1 };
+
+/* What the rest asks of an integrator: a row of model_schemes (model.c). Its part of a step is a
+ * row of flow_integrators. */
+struct model_scheme {
+    const char *name; /* in scenes */
+    /* The longest step, s, that lets no vibration of omega, rad/s, with damping, 1/s, grow
+     * (cloth/physics/limit.h). NULL: it is implicit, as no step is too long for it. */
+    double (*limit)(double omega, double damping);
+    bool drag_free;  /* the drag is solved for: it does not shorten the limit */
+    bool staggered;  /* x moves by the new v: v is that of half a step before x */
+    bool linear;     /* its step has one system, of the state that it begins with, if it takes one
+                      * Newton step: dv of the step before is a guess of its dv */
+    bool falls_back; /* a step that gained energy is made again by implicit Euler */
+};
 enum model_stop {
     MODEL_STOP_RELATIVE,
     MODEL_STOP_ABSOLUTE,
@@ -128,7 +142,6 @@ struct model {
     uint32_t patches;  /* of a block, for the coarse space, at most 4; 0: as model_patches finds */
     bool exact_coarse; /* one factor of it, however many patches there are: not in scenes */
     enum solve_format format; /* of the matrix; springs alone can be SOLVE_SPRINGS */
-    int own_filter;           /* solves are filtered by the program's flow_filter, too */
     int full_slope; /* enum phys_slope, of the matrix; only springs know PHYS_ABSOLUTE, which is
                        PHYS_DEFINITE to all else */
 
@@ -144,9 +157,20 @@ struct model {
     char *settings;  /* a line `key: value` of each that the state depends on, sorted */
 };
 
-static inline int model_is_implicit(const struct model *model)
+extern const struct model_scheme model_schemes[MODEL_INTEGRATORS];
+static inline const struct model_scheme *model_scheme(const struct model *model)
 {
-    return model->integrator >= MODEL_IMPLICIT_EULER;
+    return model_schemes + model->integrator;
+}
+static inline bool model_is_implicit(const struct model *model)
+{
+    return !model_scheme(model)->limit;
+}
+
+/* True if each step solves one system, of the state that it begins with. */
+static inline bool model_is_linear(const struct model *model)
+{
+    return model_scheme(model)->linear && model->newton_steps <= 1;
 }
 
 /* The area of a cloth at rest, m^2; while it has its mesh. */
@@ -166,10 +190,10 @@ static inline bool model_seeks(const struct model *model)
     return model_promise(model).near;
 }
 
-/* True if its solves are filtered by more than points: by sliders or the program. */
+/* True if its solves are filtered by more than points: by sliders. */
 static inline int model_is_filtered(const struct model *model)
 {
-    return model_is_implicit(model) && (model->n_sliders || model->own_filter);
+    return model_is_implicit(model) && model->n_sliders;
 }
 
 static inline bool model_follows(const struct model *model)
@@ -200,7 +224,7 @@ bool model_is_guarded(const struct model *model);
 static inline bool model_keeps(const struct model *model)
 {
     return model->halving || model->correction_rounds || model_promise(model).apart ||
-           (model->integrator == MODEL_BDF2 && model_is_guarded(model));
+           (model_scheme(model)->falls_back && model_is_guarded(model));
 }
 
 /* True if x and v stay as an explicit integrator ended a step: no contact, pin or correction
@@ -226,7 +250,6 @@ uint32_t model_patches(const struct model *model, uint32_t n_blocks);
 
 /* Their names in scenes. */
 extern const struct model_word model_integrators[];
-const char *model_integrator_name(enum model_integrator integrator);
 
 /* The shape at rest of a cloth; the modulus along the weft. */
 static inline const struct mesh *model_rest(const struct model_cloth *cloth)
@@ -298,6 +321,9 @@ model_material(const struct model *model, const struct model_cloth *cloth, uint3
  * freed. */
 struct mesh_elastic model_elastic(const struct model *model, uint32_t material);
 
+/* True if the cloth or a region of it is of the material, by number. */
+bool model_has_material(const struct model_cloth *cloth, uint32_t material);
+
 /* Finds whether cloths that have the material, by number, have triangles, and edges without
  * triangles. */
 void model_parts(const struct model *model, uint32_t material, bool *triangles, bool *edges);
@@ -325,6 +351,10 @@ static inline uint32_t model_first(const struct model *model, uint32_t cloth)
         first += model->cloths[c].mesh.n_vertices;
     return first;
 }
+
+/* The soup of a model's cloths and bodies, with its welds; to be freed in any case. Errors: as of
+ * contact_soup_make. While there are meshes. */
+int model_soup(const struct model *model, struct contact_soup *soup, struct cloth_error *error);
 
 /* Makes a cloth start as `start` says (model_cloth.start, which the cloth then owns), whatever it
  * had before. */

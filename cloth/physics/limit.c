@@ -28,21 +28,6 @@ double phys_limit_verlet(double omega, double a)
     return 2 / (a + sqrt(a * a + omega * omega)); /* 4 - 4 h a - h^2 omega^2 >= 0 */
 }
 
-/* A root r of the mode becomes z = h r, and a step multiplies by 1 + z + z^2 / 2. If z is real, the
- * fastest root counts, z >= -2. A pair has the squared size 1 + h (omega^4 h^3 / 4 - a omega^2 h^2
- * / 2 + a^2 h / 2 - a). The bracket rises from -a; Cardano gives its one root, in h omega. */
-double phys_limit_midpoint(double omega, double a)
-{
-    const double over = a * a - 4 * omega * omega;
-    if (over >= 0)
-        return 4 / (a + sqrt(over));
-    if (!(a > 0))
-        return 0;
-    const double b = a / omega, half = 2 * b - 10. / 27 * b * b * b;
-    const double part = cbrt(half + sqrt(half * half + 8. / 729 * pow(b, 6)));
-    return (2. / 3 * b + part - 2. / 9 * b * b / part) / omega;
-}
-
 /* Bisects along the ray of the mode's faster root, where the region of stability ends once. */
 double phys_limit_rk4(double omega, double a)
 {

@@ -17,11 +17,6 @@ double phys_limit_symplectic(double omega, double a);
  * less where there is such damping. */
 double phys_limit_verlet(double omega, double a);
 
-/* The explicit midpoint method. Without damping it is 0: each step makes the mode sqrt(1 + (h
- * omega)^4 / 4) times as large. With little damping it is about 2 zeta^(1/3) / omega. It is 2 /
- * omega where zeta = 1, and less beyond: 2 over the faster rate. */
-double phys_limit_midpoint(double omega, double a);
-
 /* The classical Runge-Kutta method: 2.83 / omega, and 2.79 / a where damping rules. */
 double phys_limit_rk4(double omega, double a);
 

@@ -2,7 +2,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/scene.h \
 	cloth/scene/scene.c \
 	cloth/scene/pattern.h cloth/scene/pattern/reader.h \
-	cloth/scene/pattern/panels.c cloth/scene/pattern/pattern.c cloth/scene/pattern/stitches.c cloth/scene/pattern/values.c \
+	cloth/scene/pattern/panels.c cloth/scene/pattern/pattern.c cloth/scene/pattern/values.c \
 	cloth/scene/yaml/tree.h \
 	cloth/scene/yaml/tree.c \
 	cloth/scene/yaml/load.c \
@@ -13,16 +13,23 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/schema/rules.h \
 	cloth/scene/schema/rules.c \
 	cloth/scene/schema/rules_cloth.c \
+	cloth/scene/schema/rules_contact.c \
+	cloth/scene/schema/rules_joints.c \
 	cloth/scene/schema/rules_mannequin.c \
-	cloth/scene/schema/rules_output.c \
+	cloth/scene/schema/rules_material.c \
+	cloth/scene/schema/rules_obstacle.c \
+	cloth/scene/schema/rules_run.c \
+	cloth/scene/schema/rules_vertices.c \
+	cloth/scene/schema/needs.h \
+	cloth/scene/schema/page.c \
 	cloth/scene/schema/tables.h \
 	cloth/scene/schema/store.h \
 	cloth/scene/schema/store.c \
 	cloth/scene/schema/words.c \
 	cloth/scene/schema/fabrics.h \
 	cloth/scene/schema/fabrics.c \
-	cloth/scene/schema/choice.h \
-	cloth/scene/schema/choice.c \
+	cloth/scene/schema/faults.h \
+	cloth/scene/schema/faults.c \
 	cloth/scene/schema/check.h \
 	cloth/scene/schema/check.c \
 	cloth/scene/build/build.h \
@@ -33,19 +40,17 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/contact.c \
 	cloth/scene/build/crossed.c \
 	cloth/scene/build/girth.c \
-	cloth/scene/build/curve.c \
-	cloth/scene/build/drape.c \
 	cloth/scene/build/fold.c \
 	cloth/scene/build/frames.c \
-	cloth/scene/build/hdf5.c \
-	cloth/scene/build/idle.c \
+	cloth/scene/build/needs.c \
 	cloth/scene/build/unusual.c \
 	cloth/scene/build/joint.c \
 	cloth/scene/build/load.c \
+	cloth/scene/build/made.c \
+	cloth/scene/build/made.h \
 	cloth/scene/build/mannequin.c \
 	cloth/scene/build/region.c \
 	cloth/scene/build/settings.c \
-	cloth/scene/build/settled.c \
 	cloth/scene/build/seams.c \
 	cloth/scene/build/short.c \
 	cloth/scene/build/seams_file.c \
@@ -54,7 +59,11 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/motion.c \
 	cloth/scene/build/obstacle.c \
 	cloth/scene/build/pattern.c \
-	cloth/scene/build/phases.c \
 	cloth/scene/build/pieces.c \
-	cloth/scene/build/probe.c
-EXTRA_DIST += docs/scene.md
+	cloth/scene/build/report.c
+EXTRA_DIST += cloth/scene/schema/opening.md docs/scene.md
+
+# docs/scene.md is made from the tables of keys; tests/whole/test_options.sh compares.
+scene-page: duite-cloth$(EXEEXT)
+	{ cat $(srcdir)/cloth/scene/schema/opening.md && ./duite-cloth$(EXEEXT) --keys=markdown; } > scene-page.new
+	mv scene-page.new $(srcdir)/docs/scene.md

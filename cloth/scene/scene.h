@@ -20,13 +20,18 @@ struct scene_set {
 int scene_read(struct model *model, const char *path, size_t n_sets, const struct scene_set *sets,
                struct cloth_error *error);
 
-/* The same for one of the phases of a scene, counted from 0: the phase's sets change the document
- * before the caller's. scene_read has the first phase. Errors of a later one end with its name.
- * Local. */
-int scene_read_phase(struct model *model, const char *path, uint32_t phase, size_t n_sets,
-                     const struct scene_set *sets, struct cloth_error *error);
+/* Reads the models of all phases of a scene, one where it has none; scene_read has the first. A
+ * model has the document with the sets of its phase and of those before it, then the caller's.
+ * Garments and figures that phases share are made once. Errors of a later phase end with its name.
+ * *models: n, each to be freed by model_free, then the array; also after an error. Local. */
+int scene_read_phases(struct model **models, uint32_t *n, const char *path, size_t n_sets,
+                      const struct scene_set *sets, struct cloth_error *error);
 
 /* Prints every key of a scene with its kind, unit, range and default, one a line. Local. */
 void scene_print_keys(FILE *file);
+
+/* The same in Markdown, with what each key does in full and with examples: the page docs/scene.md
+ * without its opening. Local. */
+void scene_print_page(FILE *file);
 
 #endif

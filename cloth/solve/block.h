@@ -33,21 +33,6 @@ PHYS_INLINE void solve_filter(const phys_vec *filter, phys_vec *y)
     *y = c * *y + ((1 - 2 * c) * phys_dot(&d, y)) * d;
 }
 
-/* Holds a row along one more normal, of length 1: a free one in a plane, one in a plane on a line,
- * one on a line at a point. */
-PHYS_INLINE void solve_constrain(const phys_vec *normal, phys_vec *filter)
-{
-    const phys_vec three = {1, 1, 1, 0}, d = *filter * three;
-    const phys_vec line = SOLVE_YZX(d) * SOLVE_ZXY(*normal) - SOLVE_ZXY(d) * SOLVE_YZX(*normal);
-    const double square = phys_dot(&line, &line), along = phys_dot(&d, normal);
-    if ((*filter)[3] > 0 && phys_dot(&d, &d) <= 0)
-        *filter = (phys_vec){(*normal)[0], (*normal)[1], (*normal)[2], 1};
-    else if ((*filter)[3] > 0 && square > 1e-12)
-        *filter = line * (1 / sqrt(square));
-    else if ((*filter)[3] <= 0 && along * along > 1e-12)
-        *filter = (phys_vec){0};
-}
-
 /* Ties join rows for some solves only, in a block of any format. A tie has up to four corners with
  * weights w_k. It adds w_i w_k N to row i and column k, N a value of SOLVE_SPRINGS: with u the sum
  * of w_k p_k it adds w_i N u to row i. Every block with a corner knows the whole tie. Ties that add

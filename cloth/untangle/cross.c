@@ -76,7 +76,7 @@ static void mark_tangled(struct untangle *all)
     memset(all->tangled, 0, all->n_points);
     for (size_t i = 0; i < all->crossings.n; i++) {
         const struct untangle_edge *edge = all->edge + crossing[i].edge;
-        const uint32_t owner = all->owner[crossing[i].triangle], n_cloths = all->of->n_cloths;
+        const uint32_t owner = all->owner[crossing[i].triangle], n_cloths = all->n_cloths;
         if (edge->owner >= n_cloths || owner >= n_cloths ||
             untangle_layered(all, edge->owner, owner))
             continue;
@@ -108,7 +108,7 @@ int untangle_cross(struct untangle *all)
 {
     const struct verify_soup soup = {.n_points = all->n_points,
                                      .n_triangles = all->n_triangles,
-                                     .n_first = all->of->n_triangles,
+                                     .n_first = all->n_cloth_triangles,
                                      .x = (const double(*)[3])all->place,
                                      .corner = (const uint32_t(*)[3])all->corner,
                                      .joined = all->joined};

@@ -120,8 +120,8 @@ int untangle_layers(struct untangle *all)
     const uint32_t *layer = all->of->layer;
     all->count.layers = 0;
     int code = push_crossings(all);
-    for (uint32_t inner = 0; inner < all->of->n_cloths; inner++)
-        for (uint32_t p = 0; p < all->of->n_points && !code; p++)
+    for (uint32_t inner = 0; inner < all->n_cloths; inner++)
+        for (uint32_t p = 0; p < all->n_cloth_points && !code; p++)
             if (all->used[p] && !all->shared[p] && layer[all->cloth[p]] > layer[inner] &&
                 untangle_meets(all, all->cloth[p], inner))
                 code = look_at_vertex(all, p, inner);

@@ -67,7 +67,7 @@ void untangle_move(struct untangle *all)
     const struct untangle_push *push = all->pushes.items;
     for (int sweep = 0; sweep < SWEEPS; sweep++) {
         for (uint32_t e = 0; e < all->n_edges && sweep; e++)
-            if (all->edge[e].owner < all->of->n_cloths)
+            if (all->edge[e].owner < all->n_cloths)
                 keep_length(all, all->edge + e);
         for (size_t i = 0; i < all->pushes.n; i++)
             apply(all, push + i);

@@ -18,7 +18,7 @@ struct corners {
  * if one is of a body, the cloth of lower number if the two touch. -1: neither. */
 static int base_of(const struct untangle *all, const struct corners *c, double gap)
 {
-    const uint32_t n = all->of->n_cloths;
+    const uint32_t n = all->n_cloths;
     const uint32_t a = all->cloth[c->point[0]], b = all->cloth[c->point[3]];
     if (a >= n || b >= n)
         return a >= n ? 0 : 1;
@@ -100,11 +100,11 @@ int untangle_near(struct untangle *all)
     struct looking looking = {all, {&all->skin, &all->skin}};
     all->count.near = 0;
     contact_query(&cloth, &cloth, all->open, visit, &looking);
-    for (size_t i = 0; i < all->of->n_obstacles; i++) {
+    for (size_t i = 0; i < all->n_obstacles; i++) {
         const struct untangle_body *at = all->body + i;
         if (!at->body)
             continue;
-        const phys_vec *x = all->x + at->point;
+        const phys_vec *x = all->x + at->first.point;
         const struct contact_side body = {&at->skin, at->boxes, x, x};
         looking.skin[1] = &at->skin;
         contact_query(&cloth, &body, all->open, visit, &looking);

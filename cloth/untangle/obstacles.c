@@ -42,7 +42,7 @@ static int push_triangle(struct untangle *all, uint32_t triangle,
 static bool look_at_vertex(struct untangle *all, size_t obstacle, uint32_t point)
 {
     struct contact_hit hit;
-    const uint32_t owner = all->of->n_cloths + (uint32_t)obstacle;
+    const uint32_t owner = all->n_cloths + (uint32_t)obstacle;
     if (!untangle_meets(all, all->cloth[point], owner) || untangle_attached(all, 1, &point, owner))
         return false;
     contact_closest(all->of->obstacles + obstacle, &all->body[obstacle].pose, 1, all->x + point,
@@ -61,10 +61,10 @@ static int look_at_shape(struct untangle *all, size_t obstacle)
     struct contact_solid solid;
     contact_solid_make(shape, &all->body[obstacle].pose, &solid);
     memset(all->seen, 0, all->n_points);
-    for (uint32_t t = 0; t < all->of->n_triangles && !all->error->code; t++) {
+    for (uint32_t t = 0; t < all->n_cloth_triangles && !all->error->code; t++) {
         const uint32_t *corner = all->corner[t];
         const phys_vec x[3] = {all->x[corner[0]], all->x[corner[1]], all->x[corner[2]]};
-        if (!untangle_meets(all, all->owner[t], all->of->n_cloths + (uint32_t)obstacle) ||
+        if (!untangle_meets(all, all->owner[t], all->n_cloths + (uint32_t)obstacle) ||
             contact_solid_pass(&solid, x, x, all->of->thickness, all->open) == CONTACT_PASSES_BY)
             continue;
         bool deep = false;
@@ -77,7 +77,7 @@ static int look_at_shape(struct untangle *all, size_t obstacle)
         struct contact_solid_point at;
         contact_solid_nearest(&solid, CONTACT_BEGIN, x, &at);
         if (!deep && at.gap < all->open &&
-            !untangle_attached(all, 3, corner, all->of->n_cloths + (uint32_t)obstacle))
+            !untangle_attached(all, 3, corner, all->n_cloths + (uint32_t)obstacle))
             push_triangle(all, t, &at);
     }
     return all->error->code;
@@ -85,7 +85,7 @@ static int look_at_shape(struct untangle *all, size_t obstacle)
 
 static int look_at_body(struct untangle *all, size_t obstacle)
 {
-    for (uint32_t p = 0; p < all->of->n_points && !all->error->code; p++)
+    for (uint32_t p = 0; p < all->n_cloth_points && !all->error->code; p++)
         if (all->used[p])
             look_at_vertex(all, obstacle, p);
     return all->error->code;
@@ -96,7 +96,7 @@ int untangle_obstacles(struct untangle *all)
     int code = CLOTH_OK;
     all->count.entered = 0;
     memset(all->inside, 0, all->n_points);
-    for (size_t i = 0; i < all->of->n_obstacles && !code; i++)
+    for (size_t i = 0; i < all->n_obstacles && !code; i++)
         code = all->body[i].body ? look_at_body(all, i) : look_at_shape(all, i);
     return code;
 }

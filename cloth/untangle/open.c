@@ -42,27 +42,27 @@ void untangle_close(struct untangle *all)
 static int count_soup(struct untangle *all)
 {
     const struct untangle_cloths *of = all->of;
-    uint64_t points = of->n_points, triangles = of->n_triangles;
-    all->body = untangle_room(all, of->n_obstacles, sizeof *all->body);
-    if (!all->body)
-        return CLOTH_E_MEMORY;
-    for (size_t i = 0; i < of->n_obstacles; i++) {
-        struct untangle_body *body = all->body + i;
-        body->body = contact_bodies_at(of->bodies, of->obstacles[i].body);
-        body->point = (uint32_t)points;
-        body->triangle = (uint32_t)triangles;
-        contact_pose_over(of->obstacles + i, of->keys, of->bodies, 0, 0, &body->pose);
-        points += body->body ? body->body->n_vertices : 0;
-        triangles += body->body ? body->body->n_triangles : 0;
-    }
-    if (points > UINT32_MAX / 4 || triangles > UINT32_MAX / 4)
+    const struct contact_soup *soup = of->soup;
+    const struct contact_surface cloths = contact_soup_cloths(soup), end = contact_soup_all(soup);
+    all->n_cloths = soup->n_cloths;
+    all->n_obstacles = soup->n_obstacles;
+    all->n_cloth_points = cloths.point;
+    all->n_cloth_triangles = cloths.triangle;
+    all->n_points = end.point;
+    all->n_triangles = end.triangle;
+    if (end.point > UINT32_MAX / 4 || end.triangle > UINT32_MAX / 4)
         return cloth_fail(all->error, CLOTH_E_INPUT,
                           "contact.untangle: cloths and bodies have more than %u vertices or "
                           "triangles",
                           UINT32_MAX / 4);
-    all->n_points = (uint32_t)points;
-    all->n_triangles = (uint32_t)triangles;
-    return CLOTH_OK;
+    all->body = untangle_room(all, all->n_obstacles, sizeof *all->body);
+    for (uint32_t i = 0; i < all->n_obstacles && all->body; i++) {
+        struct untangle_body *body = all->body + i;
+        body->body = contact_bodies_at(of->bodies, of->obstacles[i].body);
+        body->first = soup->surface[all->n_cloths + i];
+        contact_pose_over(of->obstacles + i, of->keys, of->bodies, 0, 0, &body->pose);
+    }
+    return all->error->code;
 }
 
 static int make_room(struct untangle *all)
@@ -100,17 +100,23 @@ static int make_room(struct untangle *all)
     return all->error->code;
 }
 
-static void take_cloths(struct untangle *all, const phys_vec *x)
+static void take_triangles(struct untangle *all)
 {
-    const struct untangle_cloths *of = all->of;
-    memcpy(all->x, x, of->n_points * sizeof *x);
-    memcpy(all->held, of->held, of->n_points);
-    memcpy(all->corner, of->corner, of->n_triangles * sizeof *all->corner);
-    memcpy(all->owner, of->cloth, of->n_triangles * sizeof *all->owner);
-    for (uint32_t t = of->n_triangles; t-- > 0;)
+    const struct contact_soup *soup = all->of->soup;
+    memcpy(all->corner, soup->welded, all->n_triangles * sizeof *all->corner);
+    for (uint32_t i = 0; i < all->n_cloths + all->n_obstacles; i++)
+        for (uint32_t t = soup->surface[i].triangle; t < soup->surface[i + 1].triangle; t++)
+            all->owner[t] = i;
+    for (uint32_t t = all->n_triangles; t-- > 0;)
         for (int k = 0; k < 3; k++)
             all->cloth[all->corner[t][k]] = all->owner[t];
-    for (uint32_t t = 0; t < of->n_triangles; t++)
+}
+
+static void take_cloths(struct untangle *all, const phys_vec *x)
+{
+    memcpy(all->x, x, all->n_cloth_points * sizeof *x);
+    memcpy(all->held, all->of->held, all->n_cloth_points);
+    for (uint32_t t = 0; t < all->n_cloth_triangles; t++)
         for (int k = 0; k < 3; k++) {
             const uint32_t p = all->corner[t][k];
             all->used[p] = 1;
@@ -119,24 +125,13 @@ static void take_cloths(struct untangle *all, const phys_vec *x)
         }
 }
 
-static int take_body(struct untangle *all, size_t obstacle)
+static int place_body(struct untangle *all, const struct untangle_body *at)
 {
-    const struct untangle_body *at = all->body + obstacle;
-    const struct contact_body *body = at->body;
-    const uint32_t owner = all->of->n_cloths + (uint32_t)obstacle;
-    phys_vec way, *end = body ? untangle_room(all, body->n_vertices, sizeof *end) : NULL;
+    phys_vec way, *end = at->body ? untangle_room(all, at->body->n_vertices, sizeof *end) : NULL;
     if (!end)
         return all->error->code;
-    contact_body_ends(body, &at->pose, all->x + at->point, end, &way);
-    for (uint32_t v = 0; v < body->n_vertices; v++) {
-        all->held[at->point + v] = 1;
-        all->cloth[at->point + v] = owner;
-    }
-    for (uint32_t t = 0; t < body->n_triangles; t++) {
-        all->owner[at->triangle + t] = owner;
-        for (int k = 0; k < 3; k++)
-            all->corner[at->triangle + t][k] = at->point + contact_body_facets(body)[t].corner[k];
-    }
+    contact_body_ends(at->body, &at->pose, all->x + at->first.point, end, &way);
+    memset(all->held + at->first.point, 1, at->body->n_vertices);
     return CLOTH_OK;
 }
 
@@ -189,11 +184,11 @@ static int find_edges(struct untangle *all)
 static int find_features(struct untangle *all, unsigned char *stands, struct contact_skin *skin)
 {
     unsigned char *edge = untangle_room(all, all->n_edges, 1);
-    unsigned char *point = untangle_room(all, all->of->n_points, 1);
+    unsigned char *point = untangle_room(all, all->n_cloth_points, 1);
     if (!edge || !point)
         return CLOTH_E_MEMORY;
-    *skin =
-        (struct contact_skin){.n_points = all->of->n_points, .n_triangles = all->of->n_triangles};
+    *skin = (struct contact_skin){.n_points = all->n_cloth_points,
+                                  .n_triangles = all->n_cloth_triangles};
     for (uint32_t t = 0; t < skin->n_triangles; t++)
         for (int k = 0; k < 3; k++) {
             unsigned char *of_point = point + all->corner[t][k], *of_edge = edge + all->side[t][k];
@@ -213,18 +208,18 @@ static int find_joined(struct untangle *all)
         return CLOTH_OK;
     all->joined = untangle_room(all, all->n_points, sizeof *all->joined);
     for (uint32_t p = 0; p < all->n_points && all->joined; p++)
-        all->joined[p] = p < all->of->n_points ? joined[p] : p;
+        all->joined[p] = p < all->n_cloth_points ? joined[p] : p;
     return all->joined ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
 static int make_skin(struct untangle *all)
 {
-    unsigned char *stands = untangle_room(all, all->of->n_triangles, 1);
-    uint32_t *id = untangle_room(all, all->of->n_points, sizeof *id);
+    unsigned char *stands = untangle_room(all, all->n_cloth_triangles, 1);
+    uint32_t *id = untangle_room(all, all->n_cloth_points, sizeof *id);
     struct contact_skin skin;
     if (!stands || !id || find_features(all, stands, &skin))
         return CLOTH_E_MEMORY;
-    for (uint32_t p = 0; p < all->of->n_points; p++)
+    for (uint32_t p = 0; p < all->n_cloth_points; p++)
         id[p] = p;
     const struct contact_skin_source from = {.n_points = skin.n_points,
                                              .n_triangles = skin.n_triangles,
@@ -249,10 +244,11 @@ static int make_body_skin(struct untangle *all, struct untangle_body *at)
         return CLOTH_OK;
     void *table = untangle_room(all, contact_body_skin_bytes(at->body), 1);
     at->boxes = untangle_room(all, contact_body_boxes_bytes(at->body), 1);
-    if (!table || !at->boxes || contact_body_skin_make(at->body, at->point, table, all->error))
+    if (!table || !at->boxes ||
+        contact_body_skin_make(at->body, at->first.point, table, all->error))
         return CLOTH_E_MEMORY;
     at->skin = contact_skin_open(table);
-    contact_refit(&at->skin, all->x + at->point, all->x + at->point, &none, at->boxes);
+    contact_refit(&at->skin, all->x + at->first.point, all->x + at->first.point, &none, at->boxes);
     return CLOTH_OK;
 }
 
@@ -270,7 +266,7 @@ static void box_of(const struct untangle *all, uint32_t triangle, phys_vec *low,
 
 static int make_tree(struct untangle *all)
 {
-    const uint32_t n = all->of->n_triangles;
+    const uint32_t n = all->n_cloth_triangles;
     phys_vec *low = untangle_room(all, n, sizeof *low), *high = untangle_room(all, n, sizeof *high);
     uint32_t *order = untangle_room(all, n, sizeof *order);
     all->n_nodes = contact_tree_nodes(n);
@@ -297,16 +293,18 @@ int untangle_open(struct untangle *all, phys_vec *x)
     all->room = ROOM * all->of->thickness;
     int code = count_soup(all);
     code = code ? code : make_room(all);
-    if (!code)
+    if (!code) {
+        take_triangles(all);
         take_cloths(all, x);
-    for (size_t i = 0; i < all->of->n_obstacles && !code; i++)
-        code = take_body(all, i);
+    }
+    for (uint32_t i = 0; i < all->n_obstacles && !code; i++)
+        code = place_body(all, all->body + i);
     if (!code)
         memcpy(all->start, all->x, all->n_points * sizeof *all->x);
     code = code ? code : find_edges(all);
     code = code ? code : find_joined(all);
     code = code ? code : make_skin(all);
-    for (size_t i = 0; i < all->of->n_obstacles && !code; i++)
+    for (uint32_t i = 0; i < all->n_obstacles && !code; i++)
         code = make_body_skin(all, all->body + i);
     return code ? code : make_tree(all);
 }

@@ -18,20 +18,20 @@ struct link {
 /* Joins points along edges of cloth. cut: by edge; NULL: none is. */
 static void join(const struct untangle *all, const unsigned char *cut, uint32_t *root)
 {
-    cloth_sets_start(root, all->of->n_points);
+    cloth_sets_start(root, all->n_cloth_points);
     for (uint32_t e = 0; e < all->n_edges; e++) {
         const struct untangle_edge *edge = all->edge + e;
-        if (edge->owner >= all->of->n_cloths || (cut && cut[e]))
+        if (edge->owner >= all->n_cloths || (cut && cut[e]))
             continue;
         cloth_sets_join(root, edge->end[0], edge->end[1]);
     }
-    for (uint32_t p = 0; p < all->of->n_points; p++)
+    for (uint32_t p = 0; p < all->n_cloth_points; p++)
         root[p] = cloth_sets_root(root, p);
 }
 
 static bool is_cut(const struct untangle *all, const struct untangle_crossing *crossing)
 {
-    const uint32_t n = all->of->n_cloths, owner = all->owner[crossing->triangle];
+    const uint32_t n = all->n_cloths, owner = all->owner[crossing->triangle];
     const uint32_t of = all->edge[crossing->edge].owner;
     return of < n && owner < n && !untangle_layered(all, of, owner);
 }
@@ -39,7 +39,7 @@ static bool is_cut(const struct untangle *all, const struct untangle_crossing *c
 /* All parts but the largest of each piece, of equal ones the first. largest: room, by point. */
 static void find_wrong(struct untangle *all, uint32_t *largest)
 {
-    const uint32_t n = all->of->n_points;
+    const uint32_t n = all->n_cloth_points;
     memset(all->size, 0, n * sizeof *all->size);
     for (uint32_t p = 0; p < n; p++)
         all->size[all->part[p]]++;
@@ -70,7 +70,7 @@ static int find_links(struct untangle *all)
 {
     const struct untangle_crossing *crossing = all->crossings.items;
     all->links.n = 0;
-    for (uint32_t t = 0; t < all->of->n_triangles; t++)
+    for (uint32_t t = 0; t < all->n_cloth_triangles; t++)
         all->stamp[t] = UNTANGLE_NONE;
     for (size_t i = 0; i < all->crossings.n; i++)
         for (int k = 0; k < 2 && is_cut(all, crossing + i); k++) {
@@ -165,7 +165,7 @@ int untangle_parts(struct untangle *all)
         all->cut[crossing[i].edge] = 0;
     code = find_links(all);
     code = code ? code : untangle_zones(all);
-    for (uint32_t p = 0; p < all->of->n_points && !code; p++)
+    for (uint32_t p = 0; p < all->n_cloth_points && !code; p++)
         code = all->wrong[p] ? push_part(all, p) : CLOTH_OK;
     return code;
 }

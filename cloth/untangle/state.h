@@ -37,13 +37,15 @@ struct untangle_crossing {
 struct untangle_body {
     const struct contact_body *body; /* NULL: the obstacle is none */
     struct contact_pose pose;
-    uint32_t point, triangle; /* its first ones */
+    struct contact_surface first; /* its first point and triangle */
     struct contact_skin skin;
     void *boxes;
 };
 
 struct untangle {
     const struct untangle_cloths *of;
+    uint32_t n_cloths, n_obstacles;
+    uint32_t n_cloth_points, n_cloth_triangles; /* the first ones of: */
     uint32_t n_points, n_triangles, n_edges;
     phys_vec *x, *start, *best;        /* by point; best: of the round with the least wrong */
     phys_vec *normal;                  /* by point: as long as areas are */
@@ -138,7 +140,7 @@ void untangle_move(struct untangle *all);
 /* True if two surfaces, owners of triangles, meet. */
 static inline bool untangle_meets(const struct untangle *all, uint32_t a, uint32_t b)
 {
-    const uint32_t n = all->of->n_cloths, cloth = a < n ? a : b, other = a < n ? b : a;
+    const uint32_t n = all->n_cloths, cloth = a < n ? a : b, other = a < n ? b : a;
     return cloth < n && !(all->of->self_off && a == b) &&
            !(all->of->apart && contact_are_apart(all->of->apart, cloth, other));
 }
@@ -148,10 +150,10 @@ static inline bool untangle_meets(const struct untangle *all, uint32_t a, uint32
 static inline bool untangle_attached(const struct untangle *all, uint32_t n, const uint32_t *point,
                                      uint32_t owner)
 {
-    const uint32_t cloths = all->of->n_cloths;
+    const uint32_t cloths = all->n_cloths;
     bool is = false;
     for (uint32_t k = 0; k < n && all->of->apart && owner >= cloths; k++)
-        is = is || (point[k] < all->of->n_points &&
+        is = is || (point[k] < all->n_cloth_points &&
                     contact_is_attached(all->of->apart, 1, point + k, owner - cloths));
     return is;
 }
@@ -159,7 +161,7 @@ static inline bool untangle_attached(const struct untangle *all, uint32_t n, con
 /* True if two surfaces, owners of triangles, are cloths of different layers. */
 static inline bool untangle_layered(const struct untangle *all, uint32_t a, uint32_t b)
 {
-    const uint32_t n = all->of->n_cloths;
+    const uint32_t n = all->n_cloths;
     return a < n && b < n && all->of->layer[a] != all->of->layer[b];
 }
 

@@ -33,7 +33,7 @@ static void keep(struct untangle *all, struct untangle_result *result)
 
 static void conclude(const struct untangle *all, phys_vec *x, struct untangle_result *result)
 {
-    for (uint32_t p = 0; p < all->of->n_points; p++) {
+    for (uint32_t p = 0; p < all->n_cloth_points; p++) {
         const phys_vec way = all->best[p] - all->start[p];
         const double square = phys_dot(&way, &way);
         if (!(square > 0))
@@ -74,7 +74,7 @@ int untangle(const struct untangle_cloths *cloths, phys_vec *x,
 {
     struct untangle all = {.of = cloths, .error = error};
     *result = (struct untangle_result){0};
-    if (!cloths->n_triangles)
+    if (!contact_soup_cloths(cloths->soup).triangle)
         return CLOTH_OK;
     int code = untangle_open(&all, x);
     code = code ? code : go_round(&all, listener, result);

@@ -3,7 +3,7 @@
 
 #include "cloth/base/error.h"
 #include "cloth/contact/apart.h"
-#include "cloth/contact/shape.h"
+#include "cloth/contact/soup.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -11,18 +11,14 @@
 /* Moves cloths apart that go through each other, themselves or obstacles, before a run starts.
  * Local, on one rank; the same input gives the same bits. */
 
-/* Points that a weld makes one have one number, which all corners use. */
+/* Points that a weld makes one move together: corners are the welded ones of the soup. */
 struct untangle_cloths {
-    uint32_t n_points, n_triangles, n_cloths;
-    const uint32_t (*corner)[3]; /* n_triangles; counterclockwise as seen from outside */
-    const uint32_t *cloth;     /* n_triangles: each one's cloth; those of a cloth follow each other,
-                                * and cloths each other */
+    const struct contact_soup *soup;
     const uint32_t *layer;     /* n_cloths: the higher one of two is outside; equal: neither is */
-    const unsigned char *held; /* n_points: 1: must not move */
-    const struct contact_apart *apart; /* cloths that do not meet; NULL: all meet */
-    bool self_off;                     /* no cloth meets itself */
-    double thickness;                  /* m */
-    size_t n_obstacles;
+    const unsigned char *held; /* points of cloth: 1: must not move */
+    const struct contact_apart *apart;     /* cloths that do not meet; NULL: all meet */
+    bool self_off;                         /* no cloth meets itself */
+    double thickness;                      /* m */
     const struct contact_shape *obstacles; /* where they are at time 0 */
     const struct phys_key *keys;           /* of their motions */
     const struct contact_bodies *bodies;

@@ -41,7 +41,7 @@ bool untangle_zoned(const struct untangle *all, uint32_t a, uint32_t b)
 static bool is_open(const struct untangle *all, const struct untangle_crossing *crossing)
 {
     const struct untangle_edge *edge = all->edge + crossing->edge;
-    const uint32_t owner = all->owner[crossing->triangle], n = all->of->n_cloths;
+    const uint32_t owner = all->owner[crossing->triangle], n = all->n_cloths;
     bool is = edge->owner < n && owner < n && edge->owner != owner &&
               !untangle_layered(all, edge->owner, owner);
     for (int k = 0; k < 2; k++)
@@ -100,7 +100,7 @@ static int find_zoned(struct untangle *all)
 static void find_labels(struct untangle *all, const struct zoned *zoned)
 {
     memset(all->label, 0, all->n_points);
-    for (uint32_t p = 0; p < all->of->n_points; p++) {
+    for (uint32_t p = 0; p < all->n_cloth_points; p++) {
         struct untangle_nearest at;
         phys_vec normal;
         if (all->used[p] && !all->shared[p] && all->cloth[p] == zoned->cloth[0] &&
@@ -111,8 +111,8 @@ static void find_labels(struct untangle *all, const struct zoned *zoned)
 
 static void count_votes(struct untangle *all, const struct zoned *zoned)
 {
-    cloth_sets_start(all->zone, all->of->n_points);
-    for (uint32_t p = 0; p < all->of->n_points; p++)
+    cloth_sets_start(all->zone, all->n_cloth_points);
+    for (uint32_t p = 0; p < all->n_cloth_points; p++)
         all->votes[0][p] = all->votes[1][p] = 0;
     for (uint32_t e = 0; e < all->n_edges; e++) {
         const struct untangle_edge *edge = all->edge + e;
@@ -121,7 +121,7 @@ static void count_votes(struct untangle *all, const struct zoned *zoned)
             continue;
         cloth_sets_join(all->zone, edge->end[0], edge->end[1]);
     }
-    for (uint32_t p = 0; p < all->of->n_points; p++)
+    for (uint32_t p = 0; p < all->n_cloth_points; p++)
         if (all->label[p])
             all->votes[all->label[p] > 0][cloth_sets_root(all->zone, p)]++;
 }
@@ -138,7 +138,7 @@ static int side_of(struct untangle *all, uint32_t point)
 static int push_vertices(struct untangle *all, const struct zoned *zoned)
 {
     int code = CLOTH_OK;
-    for (uint32_t p = 0; p < all->of->n_points && !code; p++) {
+    for (uint32_t p = 0; p < all->n_cloth_points && !code; p++) {
         const int side = side_of(all, p);
         struct untangle_nearest at;
         phys_vec normal;

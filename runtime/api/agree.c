@@ -73,9 +73,9 @@ int api_agree_on_code(MPI_Comm mpi, int code)
         int code, rank;
     } own = {.code = code > 0 ? 0 : code}, worst = {0};
     char why[1024] = "";
-    MPI_Comm_rank(mpi, &own.rank);
-    if (MPI_Allreduce(&own, &worst, 1, MPI_2INT, MPI_MINLOC, mpi))
-        return base_error(DUITE_E_MPI, "MPI_Allreduce failed");
+    if (COMM_MPI(MPI_Comm_rank, mpi, &own.rank) ||
+        COMM_MPI(MPI_Allreduce, &own, &worst, 1, MPI_2INT, MPI_MINLOC, mpi))
+        return DUITE_E_MPI;
     if (!worst.code)
         return code;
     if (own.rank == worst.rank)
@@ -115,9 +115,10 @@ int api_agree_at_start(duite *rt, const duite_options *options, int code)
     code = api_agree_on_code(rt->mpi, code);
     if (!code) {
         const struct start_word own = start_own(rt, options);
-        code = MPI_Allgather(&own, sizeof own, MPI_BYTE, all, sizeof own, MPI_BYTE, rt->mpi)
-                   ? base_error(DUITE_E_MPI, "MPI_Allgather failed")
-                   : start_compare(all, (int)n, rt->graph.rank);
+        code =
+            COMM_MPI(MPI_Allgather, &own, sizeof own, MPI_BYTE, all, sizeof own, MPI_BYTE, rt->mpi);
+        if (!code)
+            code = start_compare(all, (int)n, rt->graph.rank);
     }
     if (!code)
         comm_ring(rt->comm, all[0].lost_seconds, all[((size_t)rt->graph.rank + n - 1) % n].host);

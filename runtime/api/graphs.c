@@ -8,7 +8,6 @@
 #include "runtime/base/memory.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 struct recorded_graph {
     duite_build *build;
@@ -43,7 +42,7 @@ void api_graphs_stop(duite *rt)
     for (size_t i = 0; i < rt->n_recorded; i++)
         if (rt->recorded[i].record)
             plan_record_free(rt->recorded[i].record, NULL);
-    free(rt->recorded);
+    base_free(rt->recorded);
 }
 
 static struct recorded_graph *graph_find(duite *rt, duite_graph name)
@@ -89,7 +88,7 @@ static uint32_t graph_take_slot(duite *rt)
 
 static void graph_free_slot(duite *rt, struct recorded_graph *slot)
 {
-    plan_record_free(slot->record, work_main(rt->pool));
+    plan_record_free(slot->record, rt->worker);
     slot->record = NULL;
     slot->generation++;
 }
@@ -98,7 +97,7 @@ static void graph_free_slot(duite *rt, struct recorded_graph *slot)
 static int graph_record(duite *rt, struct recorded_graph *slot)
 {
     struct plan_record *record = slot->record;
-    plan_record_clear(record, work_main(rt->pool));
+    plan_record_clear(record, rt->worker);
     rt->building = record;
     rt->graphs_recorded++;
     int code = slot->build(rt, slot->context);
@@ -108,7 +107,7 @@ static int graph_record(duite *rt, struct recorded_graph *slot)
     else if (code)
         base_error(code, "the build function of a graph returned %d", code);
     if (code)
-        plan_record_clear(record, work_main(rt->pool));
+        plan_record_clear(record, rt->worker);
     else
         plan_record_end(record);
     if (!code)
@@ -215,7 +214,7 @@ static int replay_fork_rounds(duite *rt, struct plan_record *record, uint64_t fi
 {
     int code = DUITE_OK;
     for (uint64_t i = 0; i < rounds && !code; i++) {
-        code = plan_replay_fork(record, work_main(rt->pool), first + i);
+        code = plan_replay_fork(record, rt->worker, first + i);
         record->rounds += !code;
         work_tick(rt->pool);
         if (!code)
@@ -227,11 +226,11 @@ static int replay_fork_rounds(duite *rt, struct plan_record *record, uint64_t fi
 /* All tags are handed out to plans: reuses those of plans that are over on all ranks. */
 static int replay_make_tags(duite *rt)
 {
-    int code = api_meet(rt, "duite_replay");
+    int code = api_meet(rt, "duite_replay", NULL);
     if (!code)
         code = comm_channels_settle(rt->comm);
     if (!code)
-        code = api_meet(rt, "duite_replay");
+        code = api_meet(rt, "duite_replay", NULL);
     if (!code)
         comm_channels_met(rt->comm);
     return code;
@@ -240,11 +239,11 @@ static int replay_make_tags(duite *rt)
 static int replay_by_plan(duite *rt, struct plan_record *record, const duite_object *flag,
                           uint64_t rounds)
 {
-    int code = plan_replay_plan(record, work_main(rt->pool), flag, rounds);
+    int code = plan_replay_plan(record, rt->worker, flag, rounds);
     if (code == COMM_NEEDS_TAGS) {
         code = replay_make_tags(rt);
         if (!code)
-            code = plan_replay_plan(record, work_main(rt->pool), flag, rounds);
+            code = plan_replay_plan(record, rt->worker, flag, rounds);
         if (code == COMM_NEEDS_TAGS)
             code = base_error(DUITE_E_MPI, "MPI has too few tags for the messages of all recorded "
                                            "graphs: free some, or fork their tasks");
@@ -267,21 +266,6 @@ static int replay_all_rounds(duite *rt, struct plan_record *record, uint64_t rou
     return code ? code : replay_fork_rounds(rt, record, rounds - after, after);
 }
 
-int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
-{
-    struct recorded_graph *found;
-    int code = graph_enter(rt, "duite_replay", graph, &found);
-    if (code)
-        return code;
-    task_mix(&rt->graph, graph.slot);
-    task_mix(&rt->graph, rounds);
-    task_mixed(&rt->graph, COMM_CALLED, COMM_CALLED_REPLAY);
-    code = graph_prepare(rt, found, rounds);
-    if (!code)
-        trace_replay(rt->trace, graph.slot - 1, found->record, NULL, rounds);
-    return api_remember(rt, code ? code : replay_all_rounds(rt, found->record, rounds));
-}
-
 /* Runs rounds of the dynamic path, and reads the flag after each. */
 static int replay_fork_while(duite *rt, struct plan_record *record, duite_object flag, uint64_t max)
 {
@@ -298,7 +282,7 @@ static int replay_fork_while(duite *rt, struct plan_record *record, duite_object
             holds = !api_get(rt, flag, TASK_ANYWHERE, values, &count, "duite_replay_while") &&
                     count && plan_flag_holds(type, values);
         if (!code && api_is_broken(rt))
-            code = rt->comm ? comm_broken(rt->comm) : rt->graph.broken;
+            code = rt->comm ? comm_error(rt->comm) : rt->graph.broken;
     }
     rt->graph.root.forks = forks + max * record->n_calls;
     base_free(values);
@@ -319,22 +303,36 @@ static int replay_rounds_while(duite *rt, struct plan_record *record, duite_obje
     return replay_by_plan(rt, record, &flag, max);
 }
 
-int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t max)
+/* flag: NULL, or after each round it tells whether to go on. */
+static int graph_replay(duite *rt, duite_graph graph, const duite_object *flag, uint64_t rounds)
 {
     struct recorded_graph *found;
-    int code = graph_enter(rt, "duite_replay_while", graph, &found);
+    int code = graph_enter(rt, flag ? "duite_replay_while" : "duite_replay", graph, &found);
     if (code)
         return code;
     task_mix(&rt->graph, graph.slot);
-    task_mix(&rt->graph, max);
-    task_mix(&rt->graph, task_name_bits(flag));
-    task_mixed(&rt->graph, COMM_CALLED, COMM_CALLED_REPLAY_WHILE);
-    code = graph_prepare(rt, found, max);
-    if (!code && !max)
+    task_mix(&rt->graph, rounds);
+    if (flag)
+        task_mix(&rt->graph, task_name_bits(*flag));
+    task_mixed(&rt->graph, COMM_CALLED, flag ? COMM_CALLED_REPLAY_WHILE : COMM_CALLED_REPLAY);
+    code = graph_prepare(rt, found, rounds);
+    if (!code && flag && !rounds)
         code = base_error(DUITE_E_ARGUMENT, "duite_replay_while: at most 0 rounds");
-    if (!code)
-        trace_replay(rt->trace, graph.slot - 1, found->record, &flag, max);
-    return api_remember(rt, code ? code : replay_rounds_while(rt, found->record, flag, max));
+    if (code)
+        return api_remember(rt, code);
+    trace_replay(rt->trace, graph.slot - 1, found->record, flag, rounds);
+    return api_remember(rt, flag ? replay_rounds_while(rt, found->record, *flag, rounds)
+                                 : replay_all_rounds(rt, found->record, rounds));
+}
+
+int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
+{
+    return graph_replay(rt, graph, NULL, rounds);
+}
+
+int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t max)
+{
+    return graph_replay(rt, graph, &flag, max);
 }
 
 static bool replay_is_over(void *context)
@@ -358,7 +356,7 @@ int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds)
     trace_wait(rt->trace, from);
     if (!plan_replay_over(found->record)) {
         api_give_up(rt);
-        return comm_broken(rt->comm);
+        return comm_error(rt->comm);
     }
     *rounds = plan_replay_rounds(found->record);
     return DUITE_OK;

@@ -93,15 +93,13 @@ int api_settle(duite *rt);
 /* Works while more tasks are unfinished than the window allows. Called after forks. */
 void api_throttle(duite *rt);
 /* Waits until all ranks made this call, found that they forked the same, and ended all tasks forked
- * before it. */
-int api_meet(duite *rt, const char *call);
-/* One reduction over all ranks: own, whose head is filled in here, gets the first failure's number.
- * There are several ranks. Errors: as comm_agree. */
-int api_agree(duite *rt, const struct work_why *why, struct comm_word *own);
-/* Gathers a word of each rank: own, whose head is filled in; *words, one a rank. All ranks have
- * agreed on the call around it. */
-int api_gather(duite *rt, const struct work_why *why, struct comm_word *own,
-               struct comm_word **words);
+ * before it. *first, if not NULL: the word of the first failure of all ranks, searched for only if
+ * there is one. */
+int api_meet(duite *rt, const char *call, struct comm_word *first);
+/* A collective call, with comm_words as its result. The fingerprint of own is filled in here. There
+ * are several ranks. Errors: those of communication. */
+int api_collective(duite *rt, const struct work_why *why, enum comm_collective kind,
+                   struct comm_word *own);
 
 /* ---- migrate.c ---- */
 
@@ -118,8 +116,6 @@ int api_wait(duite *rt, const char *call);
 int api_trace_end(duite *rt, const char *call);
 /* Begins to record. All ranks have started. */
 void api_trace_begin(duite *rt);
-/* Opens the trace that the options want. Local. */
-int api_trace_open(duite *rt, const duite_options *options);
 
 /* Copies the bytes to `values`, or the number of elements to `count`, if not NULL, on the ranks
  * that want it. */

@@ -26,6 +26,7 @@ struct migration {
     size_t *first;          /* n_ranks + 1: of each rank's blocks in `row` */
     uint32_t *row;          /* blocks by home */
     double *values;         /* this rank's report, then rank 0's answer */
+    size_t longest;         /* the most values of a rank */
     double *other;          /* n_ranks; rank 0 */
 };
 
@@ -78,7 +79,7 @@ static void migration_fill_own(struct migration *m)
     struct work_pool *pool = m->rt->pool;
     const size_t *first = m->first + m->rt->graph.rank;
     m->values[REPORT_WORKERS] = m->rt->share.workers;
-    m->values[REPORT_OTHER] = work_other_seconds(pool);
+    m->values[REPORT_OTHER] = work_block_seconds(pool, DUITE_NO_BLOCK);
     for (size_t i = first[0]; i < first[1]; i++) {
         const struct map_block *block = &m->moves.blocks.block[m->row[i]];
         double seconds = work_block_seconds(pool, block->number);
@@ -86,8 +87,34 @@ static void migration_fill_own(struct migration *m)
     }
 }
 
-static void migration_take(struct migration *m, int rank, size_t i, double value)
+static size_t migration_length(const struct migration *m, int rank)
 {
+    return REPORT_BLOCKS + m->first[rank + 1] - m->first[rank];
+}
+
+/* Each rank gives `own` of its values to all, a word at a time; `take` gets those below longest. */
+static int migration_share(struct migration *m, size_t own,
+                           void (*take)(struct migration *m, int rank, size_t i, double value))
+{
+    static const struct work_why why = {"duite_replay", "the other ranks to move blocks", NULL};
+    const struct comm_word *words = comm_words(m->rt->comm);
+    int code = DUITE_OK;
+    for (size_t at = 0; at < m->longest && !code; at += COMM_WORD_NUMBERS) {
+        struct comm_word word = {0};
+        for (size_t i = 0; i < COMM_WORD_NUMBERS && at + i < own; i++)
+            word.number[i] = m->values[at + i];
+        code = api_collective(m->rt, &why, COMM_GATHERS, &word);
+        for (int r = 0; r < m->rt->graph.n_ranks && !code; r++)
+            for (size_t i = 0; i < COMM_WORD_NUMBERS && at + i < m->longest; i++)
+                take(m, r, at + i, words[r].number[i]);
+    }
+    return code;
+}
+
+static void migration_take_report(struct migration *m, int rank, size_t i, double value)
+{
+    if (m->rt->graph.rank || i >= migration_length(m, rank))
+        return;
     if (i == REPORT_WORKERS)
         m->moves.workers[rank] = (unsigned)value;
     if (i == REPORT_OTHER)
@@ -99,40 +126,12 @@ static void migration_take(struct migration *m, int rank, size_t i, double value
     m->moves.seconds[block] = value < 0 ? -1 - value : value;
 }
 
-static size_t migration_length(const struct migration *m, int rank)
+static int migration_report(struct migration *m)
 {
-    return REPORT_BLOCKS + m->first[rank + 1] - m->first[rank];
-}
-
-static size_t migration_part_end(size_t all, size_t at)
-{
-    return all > at + COMM_WORD_NUMBERS ? at + COMM_WORD_NUMBERS : all;
-}
-
-static int migration_exchange(struct migration *m, struct comm_word *own, struct comm_word **words)
-{
-    static const struct work_why why = {"duite_replay", "the other ranks to move blocks", NULL};
-    return api_gather(m->rt, &why, own, words);
-}
-
-static int migration_gather(struct migration *m)
-{
-    const struct task_graph *graph = &m->rt->graph;
-    size_t longest = 0;
-    int code = DUITE_OK;
-    for (int r = 0; r < graph->n_ranks; r++)
-        longest = migration_length(m, r) > longest ? migration_length(m, r) : longest;
+    for (int r = 0; r < m->rt->graph.n_ranks; r++)
+        m->longest = migration_length(m, r) > m->longest ? migration_length(m, r) : m->longest;
     migration_fill_own(m);
-    for (size_t at = 0; at < longest && !code; at += COMM_WORD_NUMBERS) {
-        struct comm_word own = {0}, *words;
-        for (size_t i = at; i < migration_part_end(migration_length(m, graph->rank), at); i++)
-            own.number[i - at] = m->values[i];
-        code = migration_exchange(m, &own, &words);
-        for (int r = 0; r < graph->n_ranks && !graph->rank && !code; r++)
-            for (size_t i = at; i < migration_part_end(migration_length(m, r), at); i++)
-                migration_take(m, r, i, words[r].number[i - at]);
-    }
-    return code;
+    return migration_share(m, migration_length(m, m->rt->graph.rank), migration_take_report);
 }
 
 /* ---- Rank 0 decides ---- */
@@ -222,23 +221,20 @@ static int migration_decide(struct migration *m)
 
 /* ---- All move ---- */
 
+static void migration_take_answer(struct migration *m, int rank, size_t i, double value)
+{
+    if (rank)
+        return;
+    m->values[i] = value;
+    if (i == ANSWER_MOVES)
+        m->longest = ANSWER_BLOCKS + (size_t)value;
+}
+
 static int migration_announce(struct migration *m)
 {
-    size_t all = ANSWER_BLOCKS;
-    int code = DUITE_OK;
-    for (size_t at = 0; at < all && !code; at += COMM_WORD_NUMBERS) {
-        struct comm_word own = {0}, *words;
-        if (!m->rt->graph.rank)
-            all = ANSWER_BLOCKS + (size_t)m->values[ANSWER_MOVES];
-        for (size_t i = at; i < migration_part_end(all, at) && !m->rt->graph.rank; i++)
-            own.number[i - at] = m->values[i];
-        code = migration_exchange(m, &own, &words);
-        if (!code && !at)
-            all = ANSWER_BLOCKS + (size_t)words[0].number[ANSWER_MOVES];
-        for (size_t i = at; i < migration_part_end(all, at) && !code; i++)
-            m->values[i] = words[0].number[i - at];
-    }
-    return code;
+    m->longest = ANSWER_BLOCKS; /* at least */
+    const size_t own = m->rt->graph.rank ? 0 : ANSWER_BLOCKS + (size_t)m->values[ANSWER_MOVES];
+    return migration_share(m, own, migration_take_answer);
 }
 
 /* All ranks got the same answer, so they move the same blocks in the same order. */
@@ -262,7 +258,7 @@ static int migration_move(struct migration *m)
         if (block == MAP_NO_BLOCK || m->moves.home[block] == object->home)
             continue;
         object->block = m->moves.blocks.block[block].number;
-        code = task_move_object(graph, work_main(m->rt->pool), object, m->moves.home[block]);
+        code = task_move_object(graph, m->rt->worker, object, m->moves.home[block]);
         trace_moved(m->rt->trace, table, &slot, 1);
         m->rt->migration.objects++;
     }
@@ -300,11 +296,11 @@ static int migration_refused(const struct migration *m)
 static int migration_run(struct migration *m, uint64_t replay, uint64_t *map_at)
 {
     duite *rt = m->rt;
-    int code = api_meet(rt, "duite_replay");
+    int code = api_meet(rt, "duite_replay", NULL);
     if (!code)
         code = migration_begin(m);
     if (!code)
-        code = migration_gather(m);
+        code = migration_report(m);
     const double begun =
         base_seconds(); /* measured from here: before, this rank also waited for tasks */
     const uint64_t ticks = base_ticks(), moved = rt->migration.objects;

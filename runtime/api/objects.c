@@ -8,56 +8,47 @@
 
 #include <string.h>
 
-/* duite_new by the main program; a function apart, or each call of a body would save registers for
- * it. */
-__attribute__((noinline)) static int main_new(duite *rt, duite_type type, size_t count,
-                                              duite_object *object)
+/* A function apart, or each call of a body would save registers for it. */
+__attribute__((noinline)) static int main_new(duite *rt, duite_type type, size_t count, size_t max,
+                                              bool sized, duite_object *object)
 {
-    int code = api_enter(rt, "duite_new");
+    const char *call = sized ? "duite_new_sized" : "duite_new";
+    int code = api_enter(rt, call);
     if (code)
         return code;
     if (!object)
         return api_remember(rt,
-                            base_error(DUITE_E_ARGUMENT, "duite_new: nowhere to put the object"));
+                            base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the object", call));
     task_mix(&rt->graph, count);
+    if (sized)
+        task_mix(&rt->graph, max);
     task_mix(&rt->graph, (uint64_t)type);
-    task_mixed(&rt->graph, COMM_CALLED, COMM_CALLED_NEW);
-    code = data_object_new(&rt->graph.table, type, count, object);
+    task_mixed(&rt->graph, COMM_CALLED, sized ? COMM_CALLED_NEW_SIZED : COMM_CALLED_NEW);
+    code = sized ? data_object_new_sized(&rt->graph.table, type, count, max, object)
+                 : data_object_new(&rt->graph.table, type, count, object);
     if (!code)
         trace_object(rt->trace, &rt->graph.table, *object);
     return api_remember(rt, code);
+}
+
+static inline int object_new(duite *rt, duite_type type, size_t count, size_t max, bool sized,
+                             duite_object *object)
+{
+    struct duite_call_private *body = api_body(rt);
+    if (object)
+        *object = DUITE_NO_OBJECT;
+    return body ? api_body_new(body, type, count, max, sized, object)
+                : main_new(rt, type, count, max, sized, object);
 }
 
 int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
 {
-    struct duite_call_private *body = api_body(rt);
-    if (object)
-        *object = DUITE_NO_OBJECT;
-    return body ? api_body_new(body, type, count, count, false, object)
-                : main_new(rt, type, count, object);
+    return object_new(rt, type, count, count, false, object);
 }
 
 int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_object *object)
 {
-    struct duite_call_private *body = api_body(rt);
-    if (object)
-        *object = DUITE_NO_OBJECT;
-    if (body)
-        return api_body_new(body, type, count, max, true, object);
-    int code = api_enter(rt, "duite_new_sized");
-    if (code)
-        return code;
-    if (!object)
-        return api_remember(
-            rt, base_error(DUITE_E_ARGUMENT, "duite_new_sized: nowhere to put the object"));
-    task_mix(&rt->graph, count);
-    task_mix(&rt->graph, max);
-    task_mix(&rt->graph, (uint64_t)type);
-    task_mixed(&rt->graph, COMM_CALLED, COMM_CALLED_NEW_SIZED);
-    code = data_object_new_sized(&rt->graph.table, type, count, max, object);
-    if (!code)
-        trace_object(rt->trace, &rt->graph.table, *object);
-    return api_remember(rt, code);
+    return object_new(rt, type, count, max, true, object);
 }
 
 static void object_mix_name(duite *rt, duite_object object)
@@ -154,7 +145,7 @@ int duite_free(duite *rt, duite_object object)
     if (!code)
         code = api_remember(rt, api_settle(rt));
     if (!code)
-        code = api_remember(rt, task_free_object(&rt->graph.root, work_main(rt->pool), object));
+        code = api_remember(rt, task_free_object(&rt->graph.root, rt->worker, object));
     if (!code)
         trace_freed(rt->trace, object);
     return code;

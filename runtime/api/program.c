@@ -24,10 +24,10 @@ int api_enter_any(duite *rt, const char *call)
         return api_remember(
             rt,
             base_error(DUITE_E_STATE, "%s: not between duite_mpi_begin and duite_mpi_end", call));
-    if (!rt->comm || !comm_broken(rt->comm))
+    if (!comm_is_broken(rt->comm))
         return DUITE_OK;
     api_give_up(rt); /* before the program knows: then no body finds its context gone */
-    return comm_broken(rt->comm);
+    return comm_error(rt->comm);
 }
 
 int api_enter(duite *rt, const char *call)
@@ -63,7 +63,7 @@ int api_settle(duite *rt)
     if (!code)
         trace_settled(rt->trace, table);
     else if (rt->comm && code != DUITE_E_MEMORY)     /* api_remember handles that */
-        comm_broke(rt->comm, code, duite_message()); /* other ranks may have homes now */
+        comm_break(rt->comm, code, duite_message()); /* other ranks may have homes now */
     return code;
 }
 
@@ -74,8 +74,7 @@ int duite_mpi_begin(duite *rt)
     const int code = api_enter(rt, "duite_mpi_begin");
     if (code)
         return code;
-    if (rt->comm)
-        comm_hold(rt->comm);
+    comm_hold(rt->comm);
     rt->mpi_held = true;
     return DUITE_OK;
 }
@@ -89,8 +88,7 @@ int duite_mpi_end(duite *rt)
     if (!rt->mpi_held)
         return base_error(DUITE_E_STATE, "duite_mpi_end: duite_mpi_begin was not called");
     rt->mpi_held = false;
-    if (rt->comm)
-        comm_let_go(rt->comm);
+    comm_let_go(rt->comm);
     return DUITE_OK;
 }
 
@@ -116,7 +114,7 @@ static int fork_task(duite *rt, const struct task_options *options, const duite_
     }
     int code = rt->graph.table.n_unsettled ? api_settle(rt) : DUITE_OK;
     if (!code)
-        code = task_fork(&rt->graph.root, work_main(rt->pool), options, kernel, args, n, objects);
+        code = task_fork(&rt->graph.root, rt->worker, options, kernel, args, n, objects);
     if (!code && rt->trace)
         trace_fork(rt->trace, kernel, options, n, objects);
     if (rt->comm)
@@ -162,7 +160,7 @@ __attribute__((noinline)) static int fork_ranks(duite *rt, const duite_kernel *k
     if (rt->graph.tasks == tasks && rt->graph.root.forks % FORKS_A_TICK)
         return DUITE_OK;
     work_tick(rt->pool);
-    if (comm_broken(rt->comm))
+    if (comm_is_broken(rt->comm))
         return api_enter_any(rt, "duite_fork");
     api_throttle(rt);
     return DUITE_OK;
@@ -251,8 +249,8 @@ static int object_set(duite *rt, duite_object object, const void *values, const 
     if (!code)
         code = api_remember(rt, api_settle(rt));
     if (!code)
-        code = api_remember(
-            rt, task_set_object(&rt->graph.root, work_main(rt->pool), object, values, count));
+        code =
+            api_remember(rt, task_set_object(&rt->graph.root, rt->worker, object, values, count));
     if (!code)
         trace_set(rt->trace, object);
     return code;

@@ -34,7 +34,7 @@ static void mpi_finalise_at_exit(void)
 static int instance_start_mpi(void)
 {
     int running = 0, over = 0, level = 0;
-    if (MPI_Initialized(&running) || MPI_Finalized(&over))
+    if (MPI_Initialized(&running) || MPI_Finalized(&over)) /* MPI may not yet tell reasons */
         return base_error(DUITE_E_MPI, "MPI_Initialized failed");
     if (over)
         return base_error(DUITE_E_MPI, "MPI was finalised before duite_start");
@@ -59,16 +59,14 @@ static int instance_start_mpi(void)
 static int instance_dup(MPI_Comm comm, MPI_Comm *mpi)
 {
     int between;
-    if (MPI_Comm_test_inter(comm, &between))
-        return base_error(DUITE_E_MPI, "MPI_Comm_test_inter failed");
+    if (COMM_MPI(MPI_Comm_test_inter, comm, &between))
+        return DUITE_E_MPI;
     if (between)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: the communicator (comm) is between two groups; "
                           "MPI_Intercomm_merge makes one group of them");
-    if (MPI_Comm_dup(comm, mpi))
-        return base_error(DUITE_E_MPI, "MPI_Comm_dup failed");
-    MPI_Comm_set_errhandler(*mpi, MPI_ERRORS_RETURN);
-    return DUITE_OK;
+    const int code = COMM_MPI(MPI_Comm_dup, comm, mpi);
+    return code ? code : COMM_MPI(MPI_Comm_set_errhandler, *mpi, MPI_ERRORS_RETURN);
 }
 
 /* ---- Start ---- */
@@ -76,8 +74,8 @@ static int instance_dup(MPI_Comm comm, MPI_Comm *mpi)
 static int instance_start_graph(duite *rt, const duite_options *options)
 {
     int rank, n;
-    if (MPI_Comm_rank(rt->mpi, &rank) || MPI_Comm_size(rt->mpi, &n))
-        return base_error(DUITE_E_MPI, "MPI_Comm_rank failed");
+    if (COMM_MPI(MPI_Comm_rank, rt->mpi, &rank) || COMM_MPI(MPI_Comm_size, rt->mpi, &n))
+        return DUITE_E_MPI;
     rt->mapping.own = options->mapping;
     rt->balance = options->balance;
     rt->migration.due = 1;
@@ -99,7 +97,8 @@ static int instance_start_graph(duite *rt, const duite_options *options)
                                                .table = &rt->graph.table,
                                                .kernels = rt->graph.kernels,
                                                .n_kernels = rt->graph.n_kernels,
-                                               .monitor = &rt->monitor});
+                                               .monitor = &rt->monitor,
+                                               .report = options->trace ? &work_report : NULL});
     return code;
 }
 
@@ -145,7 +144,13 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
     if (!code)
         code = api_mark_policies(rt, options);
     if (!code && options->trace)
-        code = api_trace_open(rt, options);
+        code = trace_open(&rt->trace, &(struct trace_setup){.file = options->trace,
+                                                            .first = options->trace_first,
+                                                            .end = options->trace_end,
+                                                            .rank = rt->graph.rank,
+                                                            .n_ranks = rt->graph.n_ranks,
+                                                            .workers = rt->share.workers,
+                                                            .graph = &rt->graph});
     if (!code)
         code = work_start(
             &rt->pool,
@@ -166,7 +171,7 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
                                  .spin_seconds = rt->oversubscribed ? 0 : options->spin_seconds,
                                  .cores = bind ? cores.unit + host.before : NULL});
     work_cores_free(&cores);
-    rt->worker = code ? NULL : work_main(rt->pool);
+    rt->worker = rt->pool ? work_main(rt->pool) : NULL;
     rt->thread = task_thread_mark();
     return code ? code : instance_start_taker(rt, options);
 }
@@ -175,7 +180,7 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
 
 bool api_is_broken(const duite *rt)
 {
-    return rt->graph.broken || (rt->comm && comm_broken(rt->comm));
+    return rt->graph.broken || comm_is_broken(rt->comm);
 }
 
 struct instance_leftovers {
@@ -191,7 +196,7 @@ static bool instance_has_nothing_left(void *context)
     const duite *rt = leftovers->rt;
     if (!work_unfinished(rt->pool) && !offload_count(&rt->graph))
         return true;
-    return rt->comm && comm_is_cut(rt->comm) && work_stands_still(rt->pool, &leftovers->still);
+    return comm_is_lost(rt->comm) && work_stands_still(rt->pool, &leftovers->still);
 }
 
 void api_give_up(duite *rt)
@@ -199,12 +204,12 @@ void api_give_up(duite *rt)
     if (atomic_exchange(&rt->graph.given_up, 1))
         return;
     if (rt->comm && rt->graph.broken)
-        comm_broke(rt->comm, rt->graph.broken, duite_message());
+        comm_break(rt->comm, rt->graph.broken, duite_message());
     if (rt->comm)
-        comm_give_up(rt->comm, work_main(rt->pool));
+        comm_give_up(rt->comm, rt->worker);
     work_drain(rt->pool, instance_has_nothing_left, &(struct instance_leftovers){.rt = rt});
-    if (rt->comm && comm_is_cut(rt->comm))
-        comm_part(rt->comm, work_main(rt->pool));
+    if (comm_is_lost(rt->comm))
+        comm_part(rt->comm, rt->worker);
 }
 
 static void instance_end(duite *rt)
@@ -220,7 +225,7 @@ static void instance_end(duite *rt)
     trace_free(rt->trace, whole);
     if (whole)
         MPI_Comm_free(&rt->mpi);
-    if (whole || !comm_is_cut(rt->comm)) /* else MPI_Finalize would wait for the lost rank */
+    if (whole || !comm_is_lost(rt->comm)) /* else MPI_Finalize would wait for the lost rank */
         atomic_fetch_sub(&alive, 1);
     offload_stop(&rt->graph);
     task_graph_stop(&rt->graph);
@@ -318,7 +323,7 @@ int duite_abandon(duite **out)
     duite *rt = *out;
     if (!work_may_fork(rt->pool))
         return base_error(DUITE_E_STATE, "duite_abandon is for the main thread, outside of bodies");
-    if (!rt->comm || !comm_is_cut(rt->comm))
+    if (!comm_is_lost(rt->comm))
         return base_error(
             DUITE_E_STATE,
             "duite_abandon: no rank is lost and MPI did not fail; duite_stop ends it");

@@ -5,17 +5,6 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 
-int api_trace_open(duite *rt, const duite_options *options)
-{
-    return trace_open(&rt->trace, &(struct trace_setup){.file = options->trace,
-                                                        .first = options->trace_first,
-                                                        .end = options->trace_end,
-                                                        .rank = rt->graph.rank,
-                                                        .n_ranks = rt->graph.n_ranks,
-                                                        .workers = rt->share.workers,
-                                                        .graph = &rt->graph});
-}
-
 void api_trace_begin(duite *rt)
 {
     if (!rt->trace)
@@ -30,7 +19,7 @@ void api_trace_begin(duite *rt)
 static int step_meet(duite *rt, const char *call)
 {
     const uint64_t from = base_ticks();
-    const int code = api_meet(rt, call);
+    const int code = api_meet(rt, call, NULL);
     trace_wait(rt->trace, from);
     return code;
 }

@@ -7,6 +7,7 @@
 #include "runtime/base/error.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* Returns the remembered error, once. */
 static int wait_recall(duite *rt)
@@ -21,11 +22,6 @@ static bool copy_is_done(void *context)
     return atomic_load_explicit(&((struct task_copy *)context)->done, memory_order_acquire);
 }
 
-static void wait_work_once(void *context)
-{
-    work_once(context);
-}
-
 /* This rank's report to the others: the hash of its forks, and its first failure. */
 static struct comm_word wait_own_word(const struct task_graph *graph)
 {
@@ -38,43 +34,19 @@ static struct comm_word wait_own_word(const struct task_graph *graph)
     return own;
 }
 
-/* A collective call begins. The divergence check finds ranks that do not come to it. */
-static void collective_begin(duite *rt, const struct work_why *why, struct comm_word *own)
+int api_collective(duite *rt, const struct work_why *why, enum comm_collective kind,
+                   struct comm_word *own)
 {
     own->fingerprint = rt->graph.fingerprint;
     work_waits(rt->pool, why);
-    comm_waits(rt->comm, true);
-}
-
-/* Returns the code. */
-static int collective_end(duite *rt, int code)
-{
+    comm_waits(rt->comm, true); /* the divergence check finds ranks that do not come to it */
+    comm_enter(rt->comm, kind, own);
+    work_drain(rt->pool, comm_is_entered, rt->comm);
     comm_waits(rt->comm, false);
     work_waits(rt->pool, NULL);
-    work_idle_ends(rt->pool);
-    if (code)
+    if (comm_is_broken(rt->comm))
         api_give_up(rt);
-    return code;
-}
-
-int api_agree(duite *rt, const struct work_why *why, struct comm_word *own)
-{
-    collective_begin(rt, why, own);
-    return collective_end(rt, comm_agree(rt->comm, own, wait_work_once, rt->pool));
-}
-
-int api_gather(duite *rt, const struct work_why *why, struct comm_word *own,
-               struct comm_word **words)
-{
-    collective_begin(rt, why, own);
-    return collective_end(rt, comm_gather(rt->comm, own, words, wait_work_once, rt->pool));
-}
-
-/* Finds the word of the first failure of all ranks; some rank has one. */
-static int wait_find_first(duite *rt, const struct work_why *why, struct comm_word *own)
-{
-    collective_begin(rt, why, own);
-    return collective_end(rt, comm_first(rt->comm, own, wait_work_once, rt->pool));
+    return comm_error(rt->comm);
 }
 
 /* This rank makes a call that blocks, as all do; `kind` must be the same on all. */
@@ -87,17 +59,17 @@ static int wait_enter(duite *rt, const char *kind, const char *call)
         task_mix(&rt->graph, (unsigned char)*c);
     task_mixed(&rt->graph, COMM_CALLED, comm_function_find(call));
     const struct work_why why = {call, "the other ranks to come to it", NULL};
-    return comm_call(rt->comm, call, rt->graph.fingerprint) ? api_agree(rt, &why, &own) : DUITE_OK;
+    return comm_call(rt->comm, call, rt->graph.fingerprint)
+               ? api_collective(rt, &why, COMM_AGREES, &own)
+               : DUITE_OK;
 }
 
 /* Works until the copy is there. */
 static void wait_for_copy(duite *rt, const struct work_why *why, struct task_copy *copy)
 {
-    if (rt->comm)
-        comm_waits(rt->comm, true);
+    comm_waits(rt->comm, true);
     work_until(rt->pool, why, copy_is_done, copy);
-    if (rt->comm)
-        comm_waits(rt->comm, false);
+    comm_waits(rt->comm, false);
     if (!copy_is_done(copy))
         api_give_up(rt); /* afterwards the task that would have copied is over */
 }
@@ -110,7 +82,7 @@ int api_get(duite *rt, duite_object object, int rank, void *values, size_t *coun
     struct task_copy copy = {.values = values};
     int code = api_settle(rt);
     if (!code)
-        code = task_copy(&rt->graph, work_main(rt->pool), object, rank, &copy);
+        code = task_copy(&rt->graph, rt->worker, object, rank, &copy);
     work_tick(rt->pool);
     if (code == DUITE_E_MEMORY)
         return api_remember(rt, code);
@@ -120,8 +92,8 @@ int api_get(duite *rt, duite_object object, int rank, void *values, size_t *coun
         return code;
     const struct data_key key = task_version_of(&rt->graph, object);
     wait_for_copy(rt, &(struct work_why){call, NULL, &key}, &copy);
-    if (rt->comm && comm_broken(rt->comm))
-        return comm_broken(rt->comm);
+    if (comm_is_broken(rt->comm))
+        return comm_error(rt->comm);
     if (!values && !count) /* checked only now: the other ranks count on this one */
         return base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the answer", call);
     if (copy.failure)
@@ -168,11 +140,6 @@ int duite_get_at(duite *rt, duite_object object, int rank, void *values)
     return get_and_recall(rt, object, rank, values, NULL, "duite_get_at");
 }
 
-static bool wait_is_drained(void *context)
-{
-    return work_is_drained(context);
-}
-
 /* No task's number: after all of those. */
 #define POLICY_FAILED UINT64_MAX
 
@@ -199,39 +166,29 @@ static int wait_for_own_tasks(duite *rt, const char *call)
     int code = wait_enter(rt, "duite_wait", call);
     if (code)
         return code;
-    if (rt->comm)
-        comm_waits(rt->comm, true);
-    work_until(rt->pool, &(struct work_why){call, "all tasks of this rank", NULL}, wait_is_drained,
+    comm_waits(rt->comm, true);
+    work_until(rt->pool, &(struct work_why){call, "all tasks of this rank", NULL}, work_is_drained,
                rt->pool);
-    if (rt->comm)
-        comm_waits(rt->comm, false);
+    comm_waits(rt->comm, false);
     return DUITE_OK;
 }
 
-int api_meet(duite *rt, const char *call)
-{
-    struct comm_word own = {0};
-    const struct work_why why = {call, "the tasks of other ranks", NULL};
-    const int code = wait_for_own_tasks(rt, call);
-    return code || !rt->comm ? code : api_agree(rt, &why, &own);
-}
-
-/* Waits until all ranks have ended their tasks. *word: the first failure of all ranks, searched for
- * only if there is one. */
-static int wait_meet(duite *rt, const char *call, struct comm_word *word)
+int api_meet(duite *rt, const char *call, struct comm_word *first)
 {
     const struct work_why why = {call, "the tasks of other ranks", NULL};
     int code = wait_for_own_tasks(rt, call);
     if (code)
         return code;
-    *word = wait_last_word(rt);
-    if (!rt->comm)
-        return DUITE_OK;
-    struct comm_word first = *word;
-    code = api_agree(rt, &why, &first);
-    if (code || !first.failed)
-        return code;
-    return wait_find_first(rt, &why, word);
+    struct comm_word own = wait_last_word(rt);
+    if (rt->comm)
+        code = api_collective(rt, &why, COMM_AGREES, &own);
+    if (rt->comm && !code && first && comm_words(rt->comm)->failed) {
+        code = api_collective(rt, &why, COMM_FIRSTS, &own);
+        own = *comm_words(rt->comm);
+    }
+    if (first)
+        *first = own;
+    return code;
 }
 
 int api_wait(duite *rt, const char *call)
@@ -243,10 +200,9 @@ int api_wait(duite *rt, const char *call)
     if (code)
         return code;
     struct comm_word first;
-    code = wait_meet(rt, call, &first);
+    code = api_meet(rt, call, &first);
     if (code)
         return code;
-    work_idle_ends(rt->pool);
     code = wait_recall(rt);
     const struct data_failure *failure = &first.failure;
     if (code || !first.failed)
@@ -271,7 +227,43 @@ int duite_wait(duite *rt)
 
 /* ---- Counters ---- */
 
-enum { COUNTER_SUMS = 12 }; /* over all ranks */
+static void counters_add(duite_counters *sum, const duite_counters *own)
+{
+    sum->tasks += own->tasks;
+    sum->placed += own->placed;
+    sum->stolen += own->stolen;
+    sum->stolen_far += own->stolen_far;
+    sum->chained += own->chained;
+    sum->delegated += own->delegated;
+    sum->messages += own->messages;
+    sum->bytes += own->bytes;
+    sum->busy += own->busy;
+    sum->idle += own->idle;
+    sum->awaited += own->awaited;
+    sum->exposed += own->exposed;
+}
+
+/* The counters of this rank become the sums of those of all ranks. */
+static int counters_gather(duite *rt, duite_counters *counters)
+{
+    const struct work_why why = {"duite_count_all", "the other ranks", NULL};
+    struct comm_word own = {0};
+    duite_counters sum = {0}, of;
+    _Static_assert(sizeof of <= sizeof own.number, "a word has room for the counters of a rank");
+    int code = wait_enter(rt, why.call, why.call);
+    if (!rt->comm || code)
+        return code;
+    code = api_collective(rt, &why, COMM_AGREES, &own);
+    memcpy(own.number, counters, sizeof *counters);
+    if (!code)
+        code = api_collective(rt, &why, COMM_GATHERS, &own);
+    for (int r = 0; r < rt->graph.n_ranks && !code; r++) {
+        memcpy(&of, comm_words(rt->comm)[r].number, sizeof of);
+        counters_add(&sum, &of);
+    }
+    *counters = sum;
+    return code;
+}
 
 int duite_count_all(duite *rt, duite_counters *counters)
 {
@@ -279,40 +271,14 @@ int duite_count_all(duite *rt, duite_counters *counters)
     if (code || !counters)
         return code ? code
                     : base_error(DUITE_E_ARGUMENT, "duite_count_all: nowhere to put the counters");
-    duite_counters own = {0};
-    work_count(rt->pool, &own);
+    *counters = (duite_counters){0};
+    work_count(rt->pool, counters);
     if (rt->comm)
-        comm_count(rt->comm, &own.messages, &own.bytes);
-    double sums[COUNTER_SUMS] = {
-        (double)own.tasks,     (double)own.placed, (double)own.stolen, (double)own.chained,
-        (double)own.messages,  (double)own.bytes,  own.busy,           own.idle,
-        (double)own.delegated, own.awaited,        own.exposed,        (double)own.stolen_far};
-    code = wait_enter(rt, "duite_count_all", "duite_count_all");
-    struct comm_word agreed = {.fingerprint = rt->graph.fingerprint};
-    work_waits(rt->pool, &(struct work_why){"duite_count_all", "the other ranks", NULL});
-    if (rt->comm && !code)
-        code = comm_agree(rt->comm, &agreed, wait_work_once, rt->pool);
-    if (rt->comm && !code)
-        code = comm_sum(rt->comm, sums, COUNTER_SUMS, wait_work_once, rt->pool);
-    work_waits(rt->pool, NULL);
-    work_idle_ends(rt->pool);
-    if (code)
-        api_give_up(rt);
-    *counters = (duite_counters){.tasks = (uint64_t)sums[0],
-                                 .placed = (uint64_t)sums[1],
-                                 .stolen = (uint64_t)sums[2],
-                                 .chained = (uint64_t)sums[3],
-                                 .messages = (uint64_t)sums[4],
-                                 .bytes = (uint64_t)sums[5],
-                                 .busy = sums[6],
-                                 .idle = sums[7],
-                                 .delegated = (uint64_t)sums[8],
-                                 .awaited = sums[9],
-                                 .exposed = sums[10],
-                                 .stolen_far = (uint64_t)sums[11],
-                                 .graphs_recorded = rt->graphs_recorded,
-                                 .migrated = rt->migration.objects,
-                                 .recognised = rt->taker ? rt->taker->tasks : 0,
-                                 .recognised_rounds = rt->taker ? rt->taker->rounds : 0};
+        comm_count(rt->comm, &counters->messages, &counters->bytes);
+    code = counters_gather(rt, counters);
+    counters->graphs_recorded = rt->graphs_recorded;
+    counters->migrated = rt->migration.objects;
+    counters->recognised = rt->taker ? rt->taker->tasks : 0;
+    counters->recognised_rounds = rt->taker ? rt->taker->rounds : 0;
     return code;
 }

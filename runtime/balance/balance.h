@@ -4,8 +4,7 @@
 #include <duite_policy.h>
 #include <stdbool.h>
 
-/* The built-in balancers. A balancer is one file, which defines its table, and one row here; the
- * first is the default. */
+/* The built-in balancers. A balancer is a table and one row here; the first is the default. */
 #define BALANCE_ROWS(ROW)                                                                          \
     ROW(none)                                                                                      \
     ROW(delegate)                                                                                  \

@@ -16,19 +16,11 @@
 
 enum { LONGEST = 32, MAX_REPLAYS = 1 << 20 };
 
+/* All zero at first. */
 struct migrate_state {
     double slack, before; /* before: the measured excess at the last move, or 0 */
     uint64_t interval;
 };
-
-static void migrate_start(void *state, int rank, int n_ranks, unsigned worker, uint64_t seed)
-{
-    (void)rank;
-    (void)n_ranks;
-    (void)worker;
-    (void)seed;
-    *(struct migrate_state *)state = (struct migrate_state){.slack = LEAST_SLACK, .interval = 1};
-}
 
 /* The cost of the homes over the time to come. */
 static double bill_total(const struct balance_bill *bill, double periods)
@@ -88,6 +80,8 @@ static uint64_t migrate_blocks(void *state, const duite_blocks *blocks, int *hom
 {
     struct migrate_state *own = state;
     struct balance_bill now;
+    if (!own->interval)
+        *own = (struct migrate_state){.slack = LEAST_SLACK, .interval = 1};
     if (blocks->replays < 2) /* the first replay has cold caches */
         return 1;
     double periods = (double)blocks->replays / (double)blocks->since;
@@ -109,6 +103,5 @@ const duite_balancer balance_migrate = {
     .name = "migrate",
     .summary = "blocks of objects move from ranks whose tasks take longer",
     .state_size = sizeof(struct migrate_state),
-    .start = migrate_start,
     .migrate = migrate_blocks,
 };

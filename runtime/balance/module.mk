@@ -1,3 +1,2 @@
-libduite_la_SOURCES += runtime/balance/balance.h runtime/balance/balance.c runtime/balance/none.c runtime/balance/delegate.c \
-	runtime/balance/scatter.c \
-	runtime/balance/migrate.c runtime/balance/refine.c runtime/balance/refine.h runtime/balance/wander.c
+libduite_la_SOURCES += runtime/balance/balance.h runtime/balance/balance.c runtime/balance/migrate.c \
+	runtime/balance/refine.c runtime/balance/refine.h

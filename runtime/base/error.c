@@ -2,10 +2,19 @@
  * duite_message(). */
 #include "runtime/base/error.h"
 
+#include "runtime/base/clock.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 static _Thread_local char message[1024];
 
@@ -44,48 +53,76 @@ const char *duite_message(void)
     return message;
 }
 
+static const char *const TEXTS[] = {
+    [DUITE_OK] = "success",
+    [-DUITE_E_ARGUMENT] = "bad argument",
+    [-DUITE_E_MEMORY] = "out of memory",
+    [-DUITE_E_OBJECT] = "no such object",
+    [-DUITE_E_KERNEL] = "bad kernel",
+    [-DUITE_E_ACCESS] = "accesses do not fit the kernel",
+    [-DUITE_E_MPI] = "MPI failed",
+    [-DUITE_E_DIFFERENT] = "ranks run different programs",
+    [-DUITE_E_STATE] = "call not allowed here",
+    [-DUITE_E_NOT_FREED] = "objects or graphs were not freed",
+    [-DUITE_E_CHECK] = "a body does not keep to what its kernel declares",
+    [-DUITE_E_SYSTEM] = "the operating system refused",
+    [-DUITE_E_RIGHT] = "a right the task does not hold",
+    [-DUITE_E_LAW] = "law does not fit",
+    [-DUITE_E_SIZE] = "size out of bounds",
+    [-DUITE_E_LOST] = "a rank is lost",
+    [-DUITE_E_DEPTH] = "bodies that wait are nested too deeply for the stack",
+    [-DUITE_E_BINDING] = "an object does not fit the one it is bound to",
+};
+
 const char *duite_code_text(int code)
 {
     if (code > 0)
         return "error of the program";
-    switch (code) {
-    case DUITE_OK:
-        return "success";
-    case DUITE_E_ARGUMENT:
-        return "bad argument";
-    case DUITE_E_MEMORY:
-        return "out of memory";
-    case DUITE_E_OBJECT:
-        return "no such object";
-    case DUITE_E_KERNEL:
-        return "bad kernel";
-    case DUITE_E_ACCESS:
-        return "accesses do not fit the kernel";
-    case DUITE_E_MPI:
-        return "MPI failed";
-    case DUITE_E_DIFFERENT:
-        return "ranks run different programs";
-    case DUITE_E_STATE:
-        return "call not allowed here";
-    case DUITE_E_NOT_FREED:
-        return "objects or graphs were not freed";
-    case DUITE_E_CHECK:
-        return "a body does not keep to what its kernel declares";
-    case DUITE_E_SYSTEM:
-        return "the operating system refused";
-    case DUITE_E_RIGHT:
-        return "a right the task does not hold";
-    case DUITE_E_LAW:
-        return "law does not fit";
-    case DUITE_E_SIZE:
-        return "size out of bounds";
-    case DUITE_E_LOST:
-        return "a rank is lost";
-    case DUITE_E_DEPTH:
-        return "bodies that wait are nested too deeply for the stack";
-    case DUITE_E_BINDING:
-        return "an object does not fit the one it is bound to";
-    default:
-        return "unknown code";
+    const size_t i = -(size_t)code;
+    return i < sizeof TEXTS / sizeof *TEXTS && TEXTS[i] ? TEXTS[i] : "unknown code";
+}
+
+/* ---- Reports ---- */
+
+/* Standard error may be a pipe that nobody reads: a write to it would block, and with it the
+ * monitor and its heartbeats. So a pipe or terminal is opened once more, non-blocking; the flag
+ * holds for this opening alone, not for other programs that write there. */
+#define REPORT_SECONDS 0.05 /* the longest wait of a report for room */
+
+/* A descriptor of standard error that does not block; -1: there is none. */
+static int report_open(const struct stat *file)
+{
+    if (!S_ISFIFO(file->st_mode) && !S_ISCHR(file->st_mode))
+        return -1;
+    return open("/proc/self/fd/2", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+}
+
+/* As write. Files do not block; without a descriptor of its own it may block. */
+static ssize_t report_write(int own, bool socket, const char *text, size_t length)
+{
+    if (socket)
+        return send(STDERR_FILENO, text, length, MSG_DONTWAIT | MSG_NOSIGNAL);
+    return write(own < 0 ? STDERR_FILENO : own, text, length);
+}
+
+void base_report(const char *text)
+{
+    struct stat file;
+    if (fstat(STDERR_FILENO, &file))
+        return;
+    const int own = report_open(&file);
+    const double until = base_seconds() + REPORT_SECONDS;
+    for (size_t left = strlen(text); left;) {
+        const ssize_t n = report_write(own, S_ISSOCK(file.st_mode), text, left);
+        if (n > 0) {
+            text += n;
+            left -= (size_t)n;
+        } else if (n < 0 && errno == EAGAIN && base_seconds() < until) {
+            poll(&(struct pollfd){.fd = STDERR_FILENO, .events = POLLOUT}, 1, 10);
+        } else if (n == 0 || errno != EINTR) {
+            break;
+        }
     }
+    if (own >= 0)
+        close(own);
 }

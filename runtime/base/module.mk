@@ -1,3 +1,3 @@
 libduite_la_SOURCES += runtime/base/clock.c runtime/base/clock.h runtime/base/error.c runtime/base/error.h runtime/base/heap.h \
 	runtime/base/memory.c runtime/base/memory.h runtime/base/monitor.c runtime/base/monitor.h runtime/base/policy.c runtime/base/policy.h \
-	runtime/base/rank_set.h runtime/base/report.c runtime/base/report.h runtime/base/stack.h runtime/base/thread.c runtime/base/thread.h
+	runtime/base/rank_set.h runtime/base/stack.h runtime/base/thread.c runtime/base/thread.h

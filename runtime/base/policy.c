@@ -97,24 +97,11 @@ struct base_marks {
 static const char *const kinds[] = {
     [BASE_SCHEDULER] = "scheduler", [BASE_MAPPING] = "mapping", [BASE_BALANCER] = "balancer"};
 
+#define MARK_FUNCTION(kind, call, name) [BASE_##kind##_##call] = {BASE_##kind, name},
 static const struct {
     enum base_policy_kind kind;
     const char *name;
-} functions[BASE_POLICY_CALLS] = {
-    [BASE_SCHEDULER_START] = {BASE_SCHEDULER, "start"},
-    [BASE_SCHEDULER_PLACE] = {BASE_SCHEDULER, "place"},
-    [BASE_SCHEDULER_SERVE] = {BASE_SCHEDULER, "serve"},
-    [BASE_SCHEDULER_VICTIM] = {BASE_SCHEDULER, "victim"},
-    [BASE_SCHEDULER_CHAIN] = {BASE_SCHEDULER, "chain"},
-    [BASE_SCHEDULER_LOCATE] = {BASE_SCHEDULER, "locate"},
-    [BASE_MAPPING_MAP] = {BASE_MAPPING, "map"},
-    [BASE_MAPPING_MAP_TASKS] = {BASE_MAPPING, "map_tasks"},
-    [BASE_BALANCER_START] = {BASE_BALANCER, "start"},
-    [BASE_BALANCER_VICTIM] = {BASE_BALANCER, "victim"},
-    [BASE_BALANCER_GRANT] = {BASE_BALANCER, "grant"},
-    [BASE_BALANCER_PLACE] = {BASE_BALANCER, "place"},
-    [BASE_BALANCER_MIGRATE] = {BASE_BALANCER, "migrate"},
-};
+} functions[BASE_POLICY_CALLS] = {BASE_POLICY_FUNCTIONS(MARK_FUNCTION)};
 
 /* The mark of the function that this thread is in, for the end of the process. */
 static _Thread_local const struct base_mark *entered;

@@ -50,23 +50,23 @@ bool base_policy_is_ours(const struct base_policies *policies, const void *table
 
 enum base_policy_kind { BASE_SCHEDULER, BASE_MAPPING, BASE_BALANCER, BASE_POLICY_KINDS };
 
-enum base_policy_call {
-    BASE_NO_CALL,
-    BASE_SCHEDULER_START,
-    BASE_SCHEDULER_PLACE,
-    BASE_SCHEDULER_SERVE,
-    BASE_SCHEDULER_VICTIM,
-    BASE_SCHEDULER_CHAIN,
-    BASE_SCHEDULER_LOCATE,
-    BASE_MAPPING_MAP,
-    BASE_MAPPING_MAP_TASKS,
-    BASE_BALANCER_START,
-    BASE_BALANCER_VICTIM,
-    BASE_BALANCER_GRANT,
-    BASE_BALANCER_PLACE,
-    BASE_BALANCER_MIGRATE,
-    BASE_POLICY_CALLS /* at most 256 */
-};
+/* The functions: ROW(kind, value, name). At most 255. */
+#define BASE_POLICY_FUNCTIONS(ROW)                                                                 \
+    ROW(SCHEDULER, START, "start")                                                                 \
+    ROW(SCHEDULER, PLACE, "place")                                                                 \
+    ROW(SCHEDULER, SERVE, "serve")                                                                 \
+    ROW(SCHEDULER, VICTIM, "victim")                                                               \
+    ROW(SCHEDULER, CHAIN, "chain")                                                                 \
+    ROW(SCHEDULER, LOCATE, "locate")                                                               \
+    ROW(MAPPING, MAP, "map")                                                                       \
+    ROW(MAPPING, MAP_TASKS, "map_tasks")                                                           \
+    ROW(BALANCER, START, "start")                                                                  \
+    ROW(BALANCER, VICTIM, "victim")                                                                \
+    ROW(BALANCER, GRANT, "grant")                                                                  \
+    ROW(BALANCER, PLACE, "place")                                                                  \
+    ROW(BALANCER, MIGRATE, "migrate")
+#define BASE_POLICY_CALL(kind, call, name) BASE_##kind##_##call,
+enum base_policy_call { BASE_NO_CALL, BASE_POLICY_FUNCTIONS(BASE_POLICY_CALL) BASE_POLICY_CALLS };
 
 struct base_marks;
 

@@ -15,6 +15,8 @@
 #include <signal.h>
 #include <string.h>
 
+#define VIOLATION(call, ...) duite_fail(call, DUITE_E_CHECK, __VA_ARGS__)
+
 /* ---- Frames ---- */
 
 enum { RETIRED = 4096 }; /* regions whose address space stays taken */
@@ -137,20 +139,18 @@ static int fault_report(const struct frame *frame)
     for (size_t i = 0; i <= call->n_params; i++)
         own = own || check_region_has(&frame->region[i], frame->at);
     if (!own)
-        return duite_fail(call, DUITE_E_CHECK,
-                          "uses what was parameter %zu of task %llu (kernel %s), which is over",
-                          hit->param, (unsigned long long)hit->number, hit->kernel);
+        return VIOLATION(call,
+                         "uses what was parameter %zu of task %llu (kernel %s), which is over",
+                         hit->param, (unsigned long long)hit->number, hit->kernel);
     long long offset = (long long)(frame->at - hit->data);
     if (hit->param == CHECK_ARGS)
-        return duite_fail(call, DUITE_E_CHECK,
-                          "writes to its arguments or beyond (byte %lld of %zu)", offset,
-                          hit->bytes);
+        return VIOLATION(call, "writes to its arguments or beyond (byte %lld of %zu)", offset,
+                         hit->bytes);
     if (offset < 0 || offset >= (long long)hit->bytes)
-        return duite_fail(call, DUITE_E_CHECK, "goes beyond parameter %zu: to byte %lld of %zu",
-                          hit->param, offset, hit->bytes);
-    return duite_fail(call, DUITE_E_CHECK,
-                      "writes to parameter %zu, which it only reads: byte %lld", hit->param,
-                      offset);
+        return VIOLATION(call, "goes beyond parameter %zu: to byte %lld of %zu", hit->param, offset,
+                         hit->bytes);
+    return VIOLATION(call, "writes to parameter %zu, which it only reads: byte %lld", hit->param,
+                     offset);
 }
 
 /* ---- Copies ---- */
@@ -239,9 +239,8 @@ static int frame_run(struct frame *frame)
     current = frame->outer;
     for (size_t i = 0; i < n && !code; i++)
         if (frame->region[i].base && !check_region_whole(&frame->region[i]))
-            code = duite_fail(original, DUITE_E_CHECK,
-                              "writes beyond an end of parameter %zu (%zu bytes)", i,
-                              frame->region[i].bytes);
+            code = VIOLATION(original, "writes beyond an end of parameter %zu (%zu bytes)", i,
+                             frame->region[i].bytes);
     return code;
 }
 
@@ -265,20 +264,17 @@ static int frames_compare(const struct frame *first, const struct frame *second)
         if (!mode_writes(mode))
             continue;
         if (first->param[i].count != second->param[i].count)
-            return duite_fail(call, DUITE_E_CHECK,
-                              "is not deterministic: two runs differ in the size of parameter %zu",
-                              i);
+            return VIOLATION(
+                call, "is not deterministic: two runs differ in the size of parameter %zu", i);
         const unsigned char *a = first->param[i].data, *b = second->param[i].data;
         for (size_t k = 0; k < frame_param_bytes(&first->param[i]); k++) {
             if (a[k] == b[k])
                 continue;
             if (mode == DUITE_W && a[k] == FILL[0] && b[k] == FILL[1])
-                return duite_fail(
-                    call, DUITE_E_CHECK,
-                    "leaves parameter %zu, which it overwrites, unwritten at byte %zu", i, k);
-            return duite_fail(call, DUITE_E_CHECK,
-                              "is not deterministic: two runs differ in parameter %zu at byte %zu",
-                              i, k);
+                return VIOLATION(
+                    call, "leaves parameter %zu, which it overwrites, unwritten at byte %zu", i, k);
+            return VIOLATION(
+                call, "is not deterministic: two runs differ in parameter %zu at byte %zu", i, k);
         }
     }
     return DUITE_OK;
@@ -288,8 +284,7 @@ static int frames_compare(const struct frame *first, const struct frame *second)
 static int frames_differ(const struct frame *first, const struct frame *second, int again)
 {
     if (again > 0)
-        return duite_fail(first->call, DUITE_E_CHECK,
-                          "is not deterministic: it returns 0 and then %d", again);
+        return VIOLATION(first->call, "is not deterministic: it returns 0 and then %d", again);
     return again ? again : frames_compare(first, second);
 }
 
@@ -317,12 +312,10 @@ static int fault_reads(const struct frame *frame, size_t region)
 {
     const duite_call *call = frame->call;
     if (region < call->n_params)
-        return duite_fail(call, DUITE_E_CHECK,
-                          "goes beyond parameter %zu: it reads before or behind its %zu bytes",
-                          region, frame_param_bytes(&call->param[region]));
-    return duite_fail(call, DUITE_E_CHECK,
-                      "goes beyond its arguments: it reads before or behind their %zu bytes",
-                      frame->task->kernel->args_size);
+        return VIOLATION(call, "goes beyond parameter %zu: it reads before or behind its %zu bytes",
+                         region, frame_param_bytes(&call->param[region]));
+    return VIOLATION(call, "goes beyond its arguments: it reads before or behind their %zu bytes",
+                     frame->task->kernel->args_size);
 }
 
 /* Runs the body a second time, in memory for that and for a third run. */

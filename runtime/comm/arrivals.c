@@ -1,10 +1,8 @@
 /* An entry lives while its target waits for packets or its packets wait for a target, never both.
  */
-#include "runtime/comm/arrivals.h"
-
+#include "runtime/base/clock.h"
 #include "runtime/base/memory.h"
-
-#include <stdlib.h>
+#include "runtime/comm/internal.h"
 
 #define HASH_NONFATAL_OOM          1
 #define uthash_nonfatal_oom(entry) ((entry)->lost = true)
@@ -18,6 +16,29 @@ struct comm_arrival {
     struct data_packet *packets; /* came early */
     UT_hash_handle hh;
 };
+
+/* ---- The gauge ---- */
+
+uint64_t comm_awaited_ticks(const struct comm *comm)
+{
+    uint64_t clock = atomic_load_explicit(&comm->arrivals.gauge.clock, memory_order_relaxed);
+    return clock & 1 ? clock - 1 + base_ticks() : clock;
+}
+
+/* Adds `messages`, which may be negative, to those awaited. Under the lock. */
+static void gauge_add(struct comm_gauge *gauge, int64_t messages)
+{
+    uint64_t before = gauge->awaited;
+    gauge->awaited += (uint64_t)messages;
+    if (!before == !gauge->awaited)
+        return;
+    uint64_t clock = atomic_load_explicit(&gauge->clock, memory_order_relaxed);
+    clock = before ? clock - 1 + base_ticks() : clock - base_ticks();
+    clock = (clock & ~UINT64_C(1)) | (gauge->awaited > 0);
+    atomic_store_explicit(&gauge->clock, clock, memory_order_relaxed);
+}
+
+/* ---- The table ---- */
 
 void comm_arrivals_start(struct comm_arrivals *arrivals)
 {
@@ -96,7 +117,7 @@ bool comm_arrivals_expect(struct comm_arrivals *arrivals, struct data_key key,
     if (kept && packets) {
         arrival->target = target;
         arrival->wanted = packets;
-        comm_gauge_add(&arrivals->gauge, packets);
+        gauge_add(&arrivals->gauge, packets);
     }
     pthread_mutex_unlock(&arrivals->lock);
     return kept;
@@ -113,7 +134,7 @@ enum comm_take comm_arrivals_take(struct comm_arrivals *arrivals, struct data_pa
     if (arrival && arrival->wanted) {
         take = COMM_WANTED;
         *target = arrival->target;
-        comm_gauge_add(&arrivals->gauge, -1);
+        gauge_add(&arrivals->gauge, -1);
         if (--arrival->wanted == 0)
             arrival_drop(arrivals, arrival);
     } else if (arrival) {
@@ -130,7 +151,7 @@ void comm_arrivals_also(struct comm_arrivals *arrivals, int messages)
     if (!messages)
         return;
     pthread_mutex_lock(&arrivals->lock);
-    comm_gauge_add(&arrivals->gauge, messages);
+    gauge_add(&arrivals->gauge, messages);
     pthread_mutex_unlock(&arrivals->lock);
 }
 
@@ -158,7 +179,7 @@ bool comm_arrivals_close(struct comm_arrivals *arrivals, struct comm_target *tar
         if (found) {
             *target = arrival->target;
             arrival->wanted--;
-            comm_gauge_add(&arrivals->gauge, -1);
+            gauge_add(&arrivals->gauge, -1);
         }
         if (!arrival->wanted) {
             arrival_free_packets(arrival->packets);

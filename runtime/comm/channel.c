@@ -15,11 +15,11 @@ enum { CHECKED_TURN = 16 };
 
 struct channel_side {
     struct comm_channel *channel;
-    struct comm_group *group;
-    unsigned char *buffer[2];
+    char *buffer[2];
     MPI_Request request[2];
     uint64_t turn;
-    size_t at; /* of a large message: bytes that were written, or 0; or that came */
+    size_t written; /* bytes of a large message that is to be sent; or 0 */
+    bool copies;    /* a large message is to be written or read next, without the lock */
 };
 
 struct comm_group {
@@ -32,40 +32,38 @@ struct comm_group {
 
 /* ---- Start and stop ---- */
 
-bool comm_channels_start(struct comm *comm)
+int comm_channels_start(struct comm *comm)
 {
     int *max = NULL, known = 0;
-    if (MPI_Comm_get_attr(comm->mpi, MPI_TAG_UB, &max, &known))
-        return false;
-    comm_tags_start(&comm->channels.tags, known ? *max : 32767); /* guaranteed by MPI */
-    return true;
+    const int code = COMM_MPI(MPI_Comm_get_attr, comm->mpi, MPI_TAG_UB, &max, &known);
+    comm->channels.tags.next = COMM_CHANNELS;
+    comm->channels.tags.last = known ? *max : 32767; /* guaranteed by MPI */
+    return code;
 }
 
 /* Without the lock: freeing large buffers takes long. */
-static void group_free(struct comm_group *group)
-{
-    for (size_t i = 0; i < group->n; i++) {
-        base_free(group->side[i].buffer[0]);
-        base_free(group->side[i].buffer[1]);
-    }
-    base_free(group);
-}
-
 static void groups_free(struct comm_group *group)
 {
     while (group) {
         struct comm_group *next = group->next;
-        group_free(group);
+        for (size_t i = 0; i < group->n; i++) {
+            base_free(group->side[i].buffer[0]);
+            base_free(group->side[i].buffer[1]);
+        }
+        base_free(group);
         group = next;
     }
 }
 
-/* True if MPI is done with the group's memory. */
+/* True if MPI is done with the group's memory. A message that no longer matters may have been too
+ * long. */
 static bool group_is_quiet(struct comm_group *group)
 {
-    for (size_t i = 0; i < group->n; i++) {
-        int done = 0;
-        if (MPI_Testall(2, group->side[i].request, &done, MPI_STATUSES_IGNORE) || !done)
+    for (size_t i = 0; i < 2 * group->n; i++) {
+        MPI_Request *request = &group->side[i / 2].request[i % 2];
+        int done;
+        comm_mpi_cut(group->comm, MPI_Test(request, &done, MPI_STATUS_IGNORE), "MPI_Test");
+        if (*request != MPI_REQUEST_NULL)
             return false;
     }
     return true;
@@ -88,6 +86,14 @@ static struct comm_group *channels_sweep(struct comm *comm)
     return quiet;
 }
 
+/* Lets go of the lock, and frees what MPI is done with. */
+static void channels_let_go(struct comm *comm)
+{
+    struct comm_group *quiet = comm_is_lost(comm) ? NULL : channels_sweep(comm);
+    comm_let_go(comm);
+    groups_free(quiet);
+}
+
 bool comm_channels_stop(struct comm *comm)
 {
     groups_free(channels_sweep(comm));
@@ -95,8 +101,7 @@ bool comm_channels_stop(struct comm *comm)
         sched_yield();
         groups_free(channels_sweep(comm));
     }
-    comm_requests_free(&comm->channels.awaited);
-    comm_tags_stop(&comm->channels.tags);
+    base_free(comm->channels.tags.range);
     return !comm->channels.closed;
 }
 
@@ -110,9 +115,8 @@ static bool side_is_large(const struct channel_side *side)
 static bool channel_post_receive(struct comm *comm, struct channel_side *side, size_t turn)
 {
     const struct comm_channel *channel = side->channel;
-    int mpi = comm_piece_receive(comm, side->buffer[turn % 2], channel->bytes, side->at,
-                                 channel->peer, channel->tag, &side->request[turn % 2]);
-    return comm_mpi_ok(comm, mpi, "MPI_Irecv");
+    return COMM_OK(comm, MPI_Irecv, side->buffer[turn % 2], (int)channel->bytes, MPI_BYTE,
+                   channel->peer, channel->tag, comm->mpi, &side->request[turn % 2]);
 }
 
 static struct comm_group *group_new(struct comm *comm, struct comm_channel_set *set)
@@ -126,7 +130,6 @@ static struct comm_group *group_new(struct comm *comm, struct comm_channel_set *
     for (size_t i = 0; i < set->n; i++) {
         struct channel_side *side = &group->side[i];
         side->channel = &set->channel[i];
-        side->group = group;
         for (int k = 0; k < 2; k++) {
             side->request[k] = MPI_REQUEST_NULL;
             side->buffer[k] = base_alloc(side->channel->bytes);
@@ -136,31 +139,28 @@ static struct comm_group *group_new(struct comm *comm, struct comm_channel_set *
     }
     if (fine)
         return group;
-    group_free(group);
+    groups_free(group);
     return NULL;
 }
 
 /* A plan is freed: no message comes for the receives that were posted for another round. */
 static void group_close(struct comm_channel_set *set)
 {
-    struct comm_group *group = set->own, **link, *quiet = NULL;
+    struct comm_group *group = set->own, **link;
     struct comm *comm = group->comm;
     comm_hold(comm);
     for (link = &comm->channels.open; *link != group; link = &(*link)->next)
         ;
     *link = group->next;
-    for (size_t i = 0; i < group->n && !comm_is_lost(comm); i++)
-        for (int k = 0; k < 2 && !group->side[i].channel->sends; k++) {
-            comm->channels.room--;
+    for (size_t i = 0; i < group->n && !comm_is_lost(comm); i++) {
+        comm->requests.reserved -= !group->side[i].channel->sends;
+        for (int k = 0; k < 2 && !group->side[i].channel->sends; k++)
             if (group->side[i].request[k] != MPI_REQUEST_NULL)
-                MPI_Cancel(&group->side[i].request[k]);
-        }
+                COMM_OK(comm, MPI_Cancel, &group->side[i].request[k]);
+    }
     group->next = comm->channels.closed;
     comm->channels.closed = group;
-    if (!comm_is_lost(comm))
-        quiet = channels_sweep(comm);
-    comm_unlock(comm);
-    groups_free(quiet);
+    channels_let_go(comm);
 }
 
 static void group_drop(struct comm_channel_set *set)
@@ -184,16 +184,14 @@ static int group_open(struct comm *comm, struct comm_group *group, struct comm_c
         set->channel[i].tag += group->first_tag;
         if (set->channel[i].sends)
             continue;
-        comm->channels.room += 2;
+        comm->requests.reserved++;
         if (side_is_large(&group->side[i]))
             continue;
         if (!channel_post_receive(comm, &group->side[i], 0) ||
             !channel_post_receive(comm, &group->side[i], 1))
             return DUITE_E_MPI;
     }
-    return comm_requests_room(&comm->channels.awaited, comm->channels.room + 1)
-               ? DUITE_OK
-               : base_no_memory("messages to come");
+    return comm_requests_room(comm, 0) ? DUITE_OK : base_no_memory("messages to come");
 }
 
 int comm_channels_open(struct comm *comm, struct comm_channel_set *set)
@@ -202,12 +200,10 @@ int comm_channels_open(struct comm *comm, struct comm_channel_set *set)
     if (!group)
         return base_no_memory("the messages of a recorded graph");
     comm_hold(comm);
-    struct comm_group *quiet = channels_sweep(comm);
     int code = group_open(comm, group, set);
-    comm_unlock(comm);
-    groups_free(quiet);
+    channels_let_go(comm);
     if (!set->close)
-        group_free(group);
+        groups_free(group);
     return code;
 }
 
@@ -226,33 +222,14 @@ int comm_channels_settle(struct comm *comm)
     bool lingers = true;
     while (lingers && !comm_is_broken(comm)) {
         comm_hold(comm);
-        struct comm_group *quiet = channels_sweep(comm);
         lingers = channels_linger(comm);
-        comm_unlock(comm);
-        groups_free(quiet);
+        channels_let_go(comm);
         sched_yield();
     }
-    return comm_broken(comm);
-}
-
-void comm_channels_met(struct comm *comm)
-{
-    comm_tags_met(&comm->channels.tags);
+    return comm_error(comm);
 }
 
 /* ---- Messages ---- */
-
-void comm_channel_post(struct comm *comm, struct comm_channel *channel)
-{
-    BASE_STACK_PUSH(&comm->channels.ready, channel, memory_order_release);
-    atomic_thread_fence(memory_order_seq_cst); /* as in comm_send */
-}
-
-static void channel_push(struct comm_channel **list, struct comm_channel *channel)
-{
-    channel->next = *list;
-    *list = channel;
-}
 
 /* Sends the message; a large one is already written. Returns its bytes. */
 static size_t channel_isend(struct comm *comm, struct channel_side *side)
@@ -261,10 +238,10 @@ static size_t channel_isend(struct comm *comm, struct channel_side *side)
     MPI_Request *request = &side->request[side->turn % 2];
     void *buffer = side->buffer[side->turn % 2];
     const bool checked = side->turn++ % CHECKED_TURN == CHECKED_TURN - 1;
-    const bool large = side->at;
-    const size_t bytes = large ? side->at : comm->setup.owner->pack(side->channel, buffer);
+    const bool large = side->written;
+    const size_t bytes = large ? side->written : comm->setup.owner->pack(side->channel, buffer);
     int mpi;
-    side->at = 0;
+    side->written = 0;
     comm_note(comm, true, channel->peer, bytes);
     if (large)
         mpi = comm_pieces_send(comm, buffer, channel->bytes, channel->peer, channel->tag, request);
@@ -274,166 +251,114 @@ static size_t channel_isend(struct comm *comm, struct channel_side *side)
     return comm_mpi_ok(comm, mpi, "MPI_Isend") ? bytes : 0;
 }
 
-/* Once communication is broken, a message ends as if it had been sent. */
-static void channel_send(struct comm *comm, struct channel_side *side, struct comm_found *found)
+/* No message is sent or comes, since communication is broken. */
+static void channel_lose(struct comm *comm, struct comm_found *found, struct comm_channel *channel)
 {
+    const struct channel_side *side = channel->own;
+    if (!side->written)
+        comm->setup.owner->lose(channel);
+    comm_found_over(found, &channel->post);
+}
+
+/* False: the buffer is still sent. */
+static bool channel_send(struct comm *comm, struct comm_found *found, struct comm_channel *channel)
+{
+    struct channel_side *side = channel->own;
     MPI_Request *request = &side->request[side->turn % 2];
     int free = 1;
-    if (!comm_is_broken(comm) && *request != MPI_REQUEST_NULL &&
-        !comm_mpi_ok(comm, MPI_Test(request, &free, MPI_STATUS_IGNORE), "MPI_Test"))
-        free = 1;
-    if (!free) {
-        channel_push(&comm->channels.stalled, side->channel);
-        return;
-    }
+    if (*request != MPI_REQUEST_NULL && !comm_is_broken(comm))
+        COMM_OK(comm, MPI_Test, request, &free, MPI_STATUS_IGNORE);
     if (comm_is_broken(comm)) {
-        if (!side->at)
-            comm->setup.owner->lose(side->channel);
-        channel_push(&found->through, side->channel);
-        return;
+        channel_lose(comm, found, channel);
+        return true;
     }
-    if (side_is_large(side) && !side->at) {
-        channel_push(&found->copies, side->channel);
-        return;
-    }
-    const size_t bytes = channel_isend(comm, side);
+    if (!free)
+        return false;
+    side->copies = side_is_large(side) && !side->written;
+    const size_t bytes = side->copies ? 0 : channel_isend(comm, side);
     if (bytes) {
         atomic_fetch_add_explicit(&comm->messages, 1, memory_order_relaxed);
         atomic_fetch_add_explicit(&comm->bytes, bytes, memory_order_relaxed);
     }
-    channel_push(&found->through, side->channel);
+    comm_found_over(found, &channel->post);
+    return true;
 }
 
-/* Moves the posted receive to the requests that are tested. */
-static void channel_listen(struct comm *comm, struct channel_side *side)
+/* A receive that was posted becomes a request; that of a large message is posted now. */
+static void channel_await(struct comm *comm, struct comm_found *found, struct comm_channel *channel)
 {
-    MPI_Request *request = &side->request[side->turn % 2];
-    *comm_requests_place(&comm->channels.awaited) = *request;
-    comm_requests_started(&comm->channels.awaited, side);
-    *request = MPI_REQUEST_NULL;
-}
-
-static void channel_await(struct comm *comm, struct channel_side *side, struct comm_found *found)
-{
-    if (comm->channels.lost) {
-        comm->setup.owner->lose(side->channel);
-        channel_push(&found->through, side->channel);
+    struct channel_side *side = channel->own;
+    MPI_Request *posted = &side->request[side->turn % 2];
+    if (comm_is_broken(comm) ||
+        (side_is_large(side) &&
+         !comm_pieces_receive(comm, (struct comm_request){.over = comm_channel_came,
+                                                          .what = channel,
+                                                          .into = side->buffer[side->turn % 2],
+                                                          .left = channel->bytes,
+                                                          .from = channel->peer,
+                                                          .tag = channel->tag}))) {
+        channel_lose(comm, found, channel);
         return;
     }
+    comm->channels.awaited++;
     if (side_is_large(side))
-        channel_post_receive(comm, side, side->turn);
-    channel_listen(comm, side);
-}
-
-static void channels_begin(struct comm *comm, struct comm_channel *ready, struct comm_found *found)
-{
-    while (ready) {
-        struct comm_channel *channel = ready;
-        ready = channel->next;
-        if (channel->sends)
-            channel_send(comm, channel->own, found);
-        else
-            channel_await(comm, channel->own, found);
-    }
-}
-
-/* A message that is too long for its buffer comes from another graph. */
-static bool channel_fits(struct comm *comm, int mpi)
-{
-    if (mpi == MPI_SUCCESS)
-        return true;
-    comm_broke(comm, DUITE_E_DIFFERENT,
-               "a message of a recorded graph does not fit: the ranks recorded different graphs, "
-               "or MPI failed");
-    return false;
-}
-
-/* A piece of a large message came. True if it was the last one. */
-static bool channel_is_through(struct comm *comm, struct comm_found *found,
-                               struct channel_side *side)
-{
-    if (comm_is_last_piece(side->channel->bytes, side->at))
-        return true;
-    found->more = true;
-    side->at += comm_piece_bytes;
-    channel_post_receive(comm, side, side->turn);
-    channel_listen(comm, side);
-    return false;
-}
-
-static void channels_receive(struct comm *comm, struct comm_found *found)
-{
-    struct comm_requests *awaited = &comm->channels.awaited;
-    int done;
-    if (!channel_fits(comm, comm_requests_test(awaited, &done)))
         return;
-    for (int i = 0, n = awaited->n; i < done; i++) { /* next pieces take the places before i */
-        struct channel_side *side = awaited->what[n + i];
-        atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
-        if (side_is_large(side) && !channel_is_through(comm, found, side))
-            continue;
-        comm_note(comm, false, side->channel->peer, side->channel->bytes);
-        if (side_is_large(side)) {
-            channel_push(&found->copies, side->channel);
-            continue;
-        }
-        comm->setup.owner->unpack(side->channel, side->buffer[side->turn % 2]);
-        channel_post_receive(comm, side, side->turn++);
-        channel_push(&found->through, side->channel);
-    }
+    *comm_request_next(comm) = *posted;
+    comm_request_add(comm, comm_channel_came, channel);
+    *posted = MPI_REQUEST_NULL;
 }
 
-void comm_channels_pass(struct comm *comm, struct comm_found *found)
+bool comm_channel_begin(struct comm *comm, struct comm_found *found, struct comm_channel *channel)
 {
-    struct comm_channels *channels = &comm->channels;
-    int before = channels->awaited.n;
-    if (!BASE_STACK_IS_EMPTY(&channels->ready))
-        channels_begin(comm, BASE_STACK_TAKE(&channels->ready), found);
-    if (channels->stalled) {
-        struct comm_channel *stalled = channels->stalled;
-        channels->stalled = NULL;
-        channels_begin(comm, stalled, found);
+    if (channel->sends)
+        return channel_send(comm, found, channel);
+    channel_await(comm, found, channel);
+    return true;
+}
+
+void comm_channel_came(struct comm *comm, struct comm_found *found, void *what)
+{
+    struct comm_channel *channel = what;
+    struct channel_side *side = channel->own;
+    comm->channels.awaited--;
+    atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
+    comm_note(comm, false, channel->peer, channel->bytes);
+    side->copies = side_is_large(side);
+    if (!side->copies) {
+        comm->setup.owner->unpack(channel, side->buffer[side->turn % 2]);
+        channel_post_receive(comm, side, side->turn++);
     }
-    if (channels->awaited.n)
-        channels_receive(comm, found);
-    comm_arrivals_also(&comm->arrivals, channels->awaited.n - before);
-    atomic_store_explicit(&channels->awaits, channels->awaited.n > 0, memory_order_relaxed);
+    comm_found_over(found, &channel->post);
 }
 
 bool comm_channel_copy(struct comm *comm, struct comm_channel *channel)
 {
     struct channel_side *side = channel->own;
     void *buffer = side->buffer[side->turn % 2];
-    if (side->channel->sends) {
-        side->at = comm->setup.owner->pack(side->channel, buffer);
-        comm_channel_post(comm, channel);
+    if (!side->copies)
+        return true;
+    side->copies = false;
+    if (channel->sends) {
+        side->written = comm->setup.owner->pack(channel, buffer);
+        comm_post(comm, &channel->post);
         return false;
     }
-    comm->setup.owner->unpack(side->channel, buffer);
-    side->at = 0;
+    comm->setup.owner->unpack(channel, buffer);
     side->turn++;
     return true;
 }
 
-void comm_channels_look(struct comm *comm, const struct comm_looker *looker)
-{
-    const struct comm_requests *awaited = &comm->channels.awaited;
-    for (int i = 0; i < awaited->n; i++) {
-        const struct channel_side *side = awaited->what[i];
-        looker->channel(looker->context, side->channel);
-    }
-    for (const struct comm_channel *one = comm->channels.stalled; one; one = one->next)
-        looker->channel(looker->context, one);
-}
-
 void comm_channels_give_up(struct comm *comm)
 {
-    struct comm_requests *awaited = &comm->channels.awaited;
-    comm->channels.lost = true;
-    comm_arrivals_also(&comm->arrivals, -awaited->n);
-    while (awaited->n) {
-        struct channel_side *side = awaited->what[--awaited->n];
-        side->request[side->turn % 2] = awaited->request[awaited->n];
-        comm_channel_post(comm, side->channel);
+    comm_arrivals_also(&comm->arrivals, -comm->channels.awaited);
+    comm->channels.awaited = 0;
+    for (int i = comm->requests.n - 1; i >= 0; i--) {
+        if (comm->requests.of[i].over != comm_channel_came)
+            continue;
+        MPI_Request posted = comm->requests.request[i];
+        struct comm_channel *channel = comm_request_take(comm, i).what;
+        struct channel_side *side = channel->own;
+        side->request[side->turn % 2] = posted;
+        comm_post(comm, &channel->post);
     }
 }

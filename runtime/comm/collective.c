@@ -1,6 +1,6 @@
-/* Collective calls of the main thread. There are four kinds: a small reduction, which finds whether
- * all ranks forked the same; a gathering of words; a sum; a search for the first failure's word.
- * The last three only follow a reduction that let all ranks go on. So even ranks that run different
+/* Collective calls of the main thread. There are three kinds: a small reduction, which finds
+ * whether all ranks forked the same; a gathering of words; a search for the first failure's word.
+ * The last two only follow a reduction that let all ranks go on. So even ranks that run different
  * programs are in the same kind of call.
  *
  * A rank leaves an unfinished call when communication breaks. MPI goes on using the buffers, so
@@ -27,10 +27,10 @@ static void word_first(void *from, void *to, int *n, MPI_Datatype *type)
     }
 }
 
-bool comm_collective_start(struct comm *comm)
+int comm_collective_start(struct comm *comm)
 {
-    return !MPI_Type_contiguous(sizeof(struct comm_word), MPI_BYTE, &comm->word) &&
-           !MPI_Type_commit(&comm->word) && !MPI_Op_create(word_first, 1, &comm->first);
+    const int code = comm_bytes_type(sizeof(struct comm_word), &comm->word);
+    return code ? code : COMM_MPI(MPI_Op_create, word_first, 1, &comm->first);
 }
 
 void comm_collective_stop(struct comm *comm)
@@ -47,145 +47,90 @@ void comm_collective_stop(struct comm *comm)
 static bool collective_enter(struct comm *comm, enum comm_collective kind)
 {
     struct comm_word *own = &comm->words[comm->n_ranks];
+    int mpi;
     comm->entered++;
     comm->kind = kind;
     if (kind == COMM_GATHERS)
-        return comm_mpi_ok(comm,
-                           MPI_Iallgather(own, sizeof *own, MPI_BYTE, comm->words, sizeof *own,
-                                          MPI_BYTE, comm->mpi, &comm->request),
-                           "MPI_Iallgather");
-    if (kind == COMM_FIRSTS)
-        return comm_mpi_ok(
-            comm,
-            MPI_Iallreduce(own, comm->words, 1, comm->word, comm->first, comm->mpi, &comm->request),
-            "MPI_Iallreduce");
-    if (kind == COMM_SUMS)
-        return comm_mpi_ok(comm,
-                           MPI_Iallreduce(comm->addend, comm->sums, COMM_SUMMED, MPI_DOUBLE,
-                                          MPI_SUM, comm->mpi, &comm->request),
-                           "MPI_Iallreduce");
-    return comm_mpi_ok(comm,
-                       MPI_Iallreduce(&comm->own, &comm->max, COMM_REDUCED, MPI_UINT64_T, MPI_MAX,
-                                      comm->mpi, &comm->request),
-                       "MPI_Iallreduce");
+        mpi = MPI_Iallgather(own, 1, comm->word, comm->words, 1, comm->word, comm->mpi,
+                             &comm->request);
+    else if (kind == COMM_FIRSTS)
+        mpi =
+            MPI_Iallreduce(own, comm->words, 1, comm->word, comm->first, comm->mpi, &comm->request);
+    else
+        mpi = MPI_Iallreduce(&comm->own, &comm->max, COMM_REDUCED, MPI_UINT64_T, MPI_MAX, comm->mpi,
+                             &comm->request);
+    return comm_mpi_ok(comm, mpi, kind == COMM_GATHERS ? "MPI_Iallgather" : "MPI_Iallreduce");
 }
 
-/* Takes the lock, or false if communication broke meanwhile. */
-static bool collective_lock(struct comm *comm, void (*between)(void *), void *context)
-{
-    while (!comm_try_lock(comm))
-        between(context);
-    if (!comm_is_broken(comm))
-        return true;
-    comm_unlock(comm);
-    return false;
-}
-
-/* Enters, and runs `between` until the call is over; then `settle`, unless it is NULL. The lock is
- * held, and let go. */
-static int collective_run(struct comm *comm, enum comm_collective kind,
-                          void (*settle)(struct comm *), void (*between)(void *), void *context)
-{
-    int done = 0;
-    bool fine = collective_enter(comm, kind);
-    comm_unlock(comm);
-    while (fine && !done && !comm_is_broken(comm)) {
-        if (comm_try_lock(comm)) {
-            fine =
-                comm_mpi_ok(comm, MPI_Test(&comm->request, &done, MPI_STATUS_IGNORE), "MPI_Test");
-            if (fine && done && settle)
-                settle(comm);
-            comm_unlock(comm);
-        }
-        if (!done || comm_left_to_us(comm))
-            between(context);
-    }
-    return comm_broken(comm);
-}
-
-/* ---- Words and sums ---- */
-
-int comm_gather(struct comm *comm, const struct comm_word *own, struct comm_word **all,
-                void (*between)(void *context), void *context)
-{
-    *all = comm->words;
-    if (!collective_lock(comm, between, context))
-        return comm_broken(comm);
-    comm->words[comm->n_ranks] = *own;
-    return collective_run(comm, COMM_GATHERS, NULL, between, context);
-}
-
-int comm_first(struct comm *comm, struct comm_word *own, void (*between)(void *context),
-               void *context)
-{
-    if (!collective_lock(comm, between, context))
-        return comm_broken(comm);
-    comm->words[comm->n_ranks] = *own;
-    const int code = collective_run(comm, COMM_FIRSTS, NULL, between, context);
-    if (!code)
-        *own = comm->words[0];
-    return code;
-}
-
-int comm_sum(struct comm *comm, double *numbers, int n, void (*between)(void *context),
-             void *context)
-{
-    if (!collective_lock(comm, between, context))
-        return comm_broken(comm);
-    memcpy(comm->addend, numbers, (size_t)n * sizeof *numbers);
-    int code = collective_run(comm, COMM_SUMS, NULL, between, context);
-    if (!code)
-        memcpy(numbers, comm->sums, (size_t)n * sizeof *numbers);
-    return code;
-}
-
-/* ---- Agreeing ---- */
-
-/* True if all ranks have the same: the largest is the smallest. */
-static bool reduced_are_same(const struct comm *comm)
+/* Under the lock: all ranks came to the agreement. True if they have the same: the largest is the
+ * smallest. Else rank 0 asks for the difference, and breaks. */
+static bool collective_agrees(struct comm *comm)
 {
     const struct comm_reduced *max = &comm->max;
-    return max->fingerprint == ~max->not_fingerprint && max->homes == ~max->not_homes;
-}
-
-/* Under the lock. */
-static void reduced_settle(struct comm *comm)
-{
-    if (reduced_are_same(comm))
-        comm_calls_agreed(comm);
+    const bool same = max->fingerprint == ~max->not_fingerprint && max->homes == ~max->not_homes;
+    comm->words[0].failed = max->failed;
+    if (same)
+        atomic_store(&comm->calls.agreed, atomic_load(&comm->calls.made));
     else if (!comm->rank)
-        comm_difference_found(comm, atomic_load_explicit(&comm->calls.made, memory_order_relaxed),
+        comm_difference_found(comm, atomic_load(&comm->calls.made),
                               "ranks forked different tasks, made different objects or other "
                               "calls, or have different homes");
+    return same;
 }
 
-int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *context),
-               void *context)
+void comm_enter(struct comm *comm, enum comm_collective kind, const struct comm_word *own)
 {
-    const uint64_t homes = comm->setup.table->homes;
-    if (!collective_lock(comm, between, context))
-        return comm_broken(comm);
+    if (comm_is_broken(comm)) /* MPI may still read these */
+        return;
+    comm->next = kind;
+    comm->enters = true;
+    comm->words[comm->n_ranks] = *own;
+    const uint64_t homes = kind == COMM_AGREES ? comm->setup.table->homes : 0;
     comm->own = (struct comm_reduced){.fingerprint = own->fingerprint,
                                       .not_fingerprint = ~own->fingerprint,
                                       .homes = homes,
                                       .not_homes = ~homes,
                                       .failed = own->failed != 0};
-    int code = collective_run(comm, COMM_AGREES, reduced_settle, between, context);
-    if (code)
-        return code;
-    if (!reduced_are_same(comm)) { /* rank 0 asks, and breaks */
-        while (!comm_is_broken(comm))
-            between(context);
-        return comm_broken(comm);
-    }
-    own->failed = comm->max.failed;
-    return DUITE_OK;
+}
+
+/* Under the lock. */
+static bool collective_test(struct comm *comm)
+{
+    int done = 0;
+    if (comm_is_broken(comm))
+        return true;
+    if (comm->enters && !collective_enter(comm, comm->next))
+        return true;
+    comm->enters = false;
+    if (!COMM_OK(comm, MPI_Test, &comm->request, &done, MPI_STATUS_IGNORE))
+        return true;
+    return done && (comm->kind != COMM_AGREES || collective_agrees(comm));
+}
+
+bool comm_is_entered(void *context)
+{
+    struct comm *comm = context;
+    if (!comm_try_lock(comm))
+        return comm_is_broken(comm);
+    const bool done = collective_test(comm);
+    comm_let_go(comm);
+    return done && !comm_left_to_us(comm);
+}
+
+const struct comm_word *comm_words(const struct comm *comm)
+{
+    return comm->words;
+}
+
+static bool collective_wait(struct comm *comm)
+{
+    return COMM_OK(comm, MPI_Wait, &comm->request, MPI_STATUS_IGNORE);
 }
 
 void comm_catch_up(struct comm *comm)
 {
-    MPI_Wait(&comm->request, MPI_STATUS_IGNORE);
-    while (comm->entered < comm->control.entered &&
-           collective_enter(comm, (enum comm_collective)comm->control.kind))
-        MPI_Wait(&comm->request, MPI_STATUS_IGNORE);
+    bool fine = collective_wait(comm);
+    while (fine && comm->entered < comm->control.entered)
+        fine = collective_enter(comm, (enum comm_collective)comm->control.kind) &&
+               collective_wait(comm);
 }

@@ -1,6 +1,6 @@
-/* Start, stop and progress. Letters wait in a lock-free stack, linked by themselves, until a thread
- * polls. The holder of the lock calls MPI; a poll delivers its findings after it has let go of the
- * lock. */
+/* Start, stop and progress. Letters and channels wait in a lock-free stack, linked by themselves,
+ * until a thread polls. The holder of the lock calls MPI; a poll delivers its findings after it has
+ * let go of the lock. */
 #include "runtime/comm/comm.h"
 
 #include "runtime/base/clock.h"
@@ -14,19 +14,23 @@
 
 /* ---- Start and stop ---- */
 
+int comm_bytes_type(size_t bytes, MPI_Datatype *type)
+{
+    const int code = COMM_MPI(MPI_Type_contiguous, (int)bytes, MPI_BYTE, type);
+    return code ? code : COMM_MPI(MPI_Type_commit, type);
+}
+
 static int comm_prepare(struct comm *comm)
 {
-    if (MPI_Comm_rank(comm->mpi, &comm->rank) || MPI_Comm_size(comm->mpi, &comm->n_ranks))
-        return base_error(DUITE_E_MPI, "MPI_Comm_rank or MPI_Comm_size failed");
+    if (COMM_MPI(MPI_Comm_rank, comm->mpi, &comm->rank) ||
+        COMM_MPI(MPI_Comm_size, comm->mpi, &comm->n_ranks))
+        return DUITE_E_MPI;
     comm->words = base_alloc((size_t)(comm->n_ranks + 1) * sizeof *comm->words);
-    if (!comm_control_start(&comm->control, comm->n_ranks) || !comm_calls_start(&comm->calls) ||
-        !comm->words)
+    if (!comm_control_start(comm) || !comm_calls_start(&comm->calls) || !comm->words)
         return base_no_memory("communication");
-    if (MPI_Type_contiguous(sizeof(struct data_packet), MPI_BYTE, &comm->line) ||
-        MPI_Type_commit(&comm->line))
-        return base_error(DUITE_E_MPI, "MPI_Type_contiguous failed");
-    if (!comm_channels_start(comm) || !comm_collective_start(comm))
-        return base_error(DUITE_E_MPI, "MPI_Comm_get_attr or MPI_Op_create failed");
+    if (comm_bytes_type(sizeof(struct data_packet), &comm->line) || comm_channels_start(comm) ||
+        comm_collective_start(comm))
+        return DUITE_E_MPI;
     return comm_heartbeat_start(comm, comm->setup.monitor);
 }
 
@@ -46,32 +50,13 @@ int comm_start(struct comm **out, MPI_Comm mpi, const struct comm_setup *setup)
     return comm_prepare(comm);
 }
 
-void comm_ring(struct comm *comm, double seconds, const char *host)
-{
-    if (comm)
-        comm_heartbeat_open(comm, seconds, host);
-}
-
-void comm_set_report(struct comm *comm, const struct comm_report *report)
-{
-    comm->report = report;
-}
-
 void comm_open(struct comm *comm, bool requests)
 {
     if (!comm)
         return;
     comm->open = true;
     comm->may_request = requests;
-    comm_unlock(comm);
-}
-
-/* True once no message is on its way, at a good stop or after communication broke. */
-static bool comm_is_over(struct comm *comm)
-{
-    if (comm_is_broken(comm))
-        return comm_is_lost(comm) || comm_is_quiet(comm);
-    return !comm->open || comm_control_over(comm);
+    comm_let_go(comm);
 }
 
 bool comm_stop(struct comm *comm)
@@ -80,7 +65,7 @@ bool comm_stop(struct comm *comm)
         return true;
     if (comm->open)
         comm_control_end(comm);
-    while (!comm_is_over(comm)) {
+    while (!comm_control_over(comm)) {
         comm_poll(comm, NULL);
         sched_yield();
     }
@@ -93,11 +78,14 @@ bool comm_stop(struct comm *comm)
     if (comm->line != MPI_DATATYPE_NULL)
         MPI_Type_free(&comm->line);
     comm_collective_stop(comm);
-    comm_requests_free(&comm->sends);
-    comm_requests_free(&comm->receives);
+    base_free(comm->requests.request);
+    base_free(comm->requests.of);
+    base_free(comm->requests.index);
+    base_free(comm->requests.status);
     comm_control_stop(&comm->control);
-    comm_calls_stop(&comm->calls);
-    comm_difference_stop(&comm->difference);
+    base_free(comm->calls.log);
+    base_free(comm->calls.seen);
+    base_free(comm->difference.inquiry);
     comm_arrivals_stop(&comm->arrivals);
     base_free(comm->words);
     base_free(comm);
@@ -106,28 +94,35 @@ bool comm_stop(struct comm *comm)
 
 /* ---- Posts and the lock ---- */
 
-void comm_send(struct comm *comm, struct comm_letter *letter)
+void comm_post(struct comm *comm, struct comm_post *post)
 {
-    BASE_STACK_PUSH(&comm->posts, letter, memory_order_release);
+    BASE_STACK_PUSH(&comm->posts, post, memory_order_release);
     /* Pairs with comm_left_to_us: either the next try for the lock succeeds, or its holder sees
-     * this letter. */
+     * this post. */
     atomic_thread_fence(memory_order_seq_cst);
 }
 
-bool comm_posted(struct comm *comm)
+void comm_send(struct comm *comm, struct comm_letter *letter)
 {
-    return comm_has_posts(comm);
+    letter->post.is_channel = false;
+    comm_post(comm, &letter->post);
+}
+
+bool comm_has_posts(struct comm *comm)
+{
+    return !BASE_STACK_IS_EMPTY(&comm->posts);
 }
 
 void comm_hold(struct comm *comm)
 {
-    while (!comm_try_lock(comm))
+    while (comm && !comm_try_lock(comm))
         sched_yield();
 }
 
 void comm_let_go(struct comm *comm)
 {
-    comm_unlock(comm); /* the next poll sends the posts made meanwhile */
+    if (comm)
+        atomic_flag_clear_explicit(&comm->lock, memory_order_release);
 }
 
 void comm_workers_end(struct comm *comm)
@@ -141,24 +136,36 @@ void comm_workers_end(struct comm *comm)
 
 /* ---- Progress ---- */
 
-/* What is through makes other channels ready; the pass that found it takes those. */
+/* A channel that is through makes others ready; the pass that found it takes those. */
 static _Thread_local bool passing __attribute__((tls_model("initial-exec")));
 
 /* Other messages are looked for less often while a recorded graph waits for its own. */
 enum { SELDOM = 8 };
 
-static void comm_receive_seldom(struct comm *comm, struct comm_found *found)
+/* One round under the lock. Control messages come last: an abort message goes out in the round that
+ * broke communication, since the main thread may not poll again. */
+static inline void comm_pass_locked(struct comm *comm, struct comm_found *found, bool looks)
 {
-    if (comm->channels.awaited.n && ++comm->channels.looks % SELDOM)
-        return;
-    comm_transport_receive(comm, found);
-    if (comm_control_is_due(comm))
+    const int before = comm->channels.awaited;
+    if (comm->stalled || !BASE_STACK_IS_EMPTY(&comm->posts))
+        comm_transport_begin(comm, found);
+    if (looks && !(comm->channels.awaited && ++comm->channels.looks % SELDOM))
+        comm_transport_receive(comm, found);
+    if (comm->requests.n)
+        comm_requests_pass(comm, found);
+    if (comm->channels.awaited != before) {
+        comm_arrivals_also(&comm->arrivals, comm->channels.awaited - before);
+        atomic_store_explicit(&comm->channels.awaits, comm->channels.awaited > 0,
+                              memory_order_relaxed);
+    }
+    if (looks && comm_control_is_due(comm))
         comm_control_pass(comm);
+    comm_heartbeat_pass(comm);
 }
 
 static inline bool comm_pass(struct comm *comm, struct worker *worker, bool looks)
 {
-    const bool outer = passing, noted = comm->report && comm->report->begins(worker);
+    const bool outer = passing, noted = comm->setup.report && comm->setup.report->begins(worker);
     bool any = false, more;
     passing = true;
     do {
@@ -166,23 +173,18 @@ static inline bool comm_pass(struct comm *comm, struct worker *worker, bool look
         if (!comm_try_lock(comm))
             break;
         comm->worker = worker;
-        if (comm->sends.n || comm->stalled || !BASE_STACK_IS_EMPTY(&comm->posts))
-            comm_transport_send(comm, &found);
-        comm_channels_pass(comm, &found);
-        if (looks)
-            comm_receive_seldom(comm, &found);
-        comm_heartbeat_pass(comm);
-        comm_unlock(comm);
+        comm_pass_locked(comm, &found, looks);
+        comm_let_go(comm);
         any |= found.any;
         more = found.more;
-        if (found.packets || found.sent || found.through || found.copies) {
+        if (found.packets || found.over) {
             any = true;
             comm_transport_deliver(comm, worker, &found);
         }
     } while (more || comm_left_to_us(comm));
     passing = outer;
     if (noted)
-        comm->report->ends(worker, noted);
+        comm->setup.report->ends(worker);
     return any;
 }
 
@@ -198,7 +200,8 @@ bool comm_awaits(struct comm *comm)
 
 void comm_channel_ready(struct comm *comm, struct worker *worker, struct comm_channel *channel)
 {
-    comm_channel_post(comm, channel);
+    channel->post.is_channel = true;
+    comm_post(comm, &channel->post);
     if (!passing)
         comm_pass(comm, worker, false);
 }
@@ -210,25 +213,18 @@ void comm_part(struct comm *comm, struct worker *worker)
         comm_poll(comm, worker);
 }
 
-uint64_t comm_awaited_ticks(const struct comm *comm)
-{
-    return comm_gauge_ticks(&comm->arrivals.gauge);
-}
-
 void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)
 {
-    uint64_t requested = atomic_load_explicit(&comm->control.requested, memory_order_relaxed);
-    *messages = atomic_load_explicit(&comm->messages, memory_order_relaxed) + requested;
-    *bytes = atomic_load_explicit(&comm->bytes, memory_order_relaxed) +
-             requested * sizeof(struct data_packet);
+    uint64_t requested = atomic_load(&comm->control.requested);
+    *messages = atomic_load(&comm->messages) + requested;
+    *bytes = atomic_load(&comm->bytes) + requested * sizeof(struct data_packet);
 }
 
 /* ---- Looks from outside: nothing is sent, received or changed ---- */
 
 uint64_t comm_movement(struct comm *comm)
 {
-    return atomic_load_explicit(&comm->messages, memory_order_relaxed) +
-           atomic_load_explicit(&comm->came, memory_order_relaxed);
+    return atomic_load(&comm->messages) + atomic_load(&comm->came);
 }
 
 /* A poll holds the lock for microseconds, or as long as its thread has no core. A thread that
@@ -250,11 +246,16 @@ bool comm_look(struct comm *comm, const struct comm_looker *looker)
     comm_arrivals_look(&comm->arrivals, looker->awaited, looker->context);
     if (!comm_lock_soon(comm))
         return false;
-    for (int i = 0; i < comm->sends.n; i++) {
-        const struct comm_letter *letter = comm->sends.what[i];
-        looker->sending(looker->context, letter);
+    for (int i = 0; i < comm->requests.n; i++) {
+        const struct comm_request *of = &comm->requests.of[i];
+        if (of->over == comm_letter_sent)
+            looker->sending(looker->context, of->what);
+        else if (of->over == comm_channel_came)
+            looker->channel(looker->context, of->what);
     }
-    comm_channels_look(comm, looker);
+    for (const struct comm_post *post = comm->stalled; post; post = post->next)
+        if (post->is_channel)
+            looker->channel(looker->context, (const struct comm_channel *)post);
     comm_let_go(comm);
     return true;
 }

@@ -34,6 +34,15 @@ struct comm_owner {
     void (*through)(void *context, struct worker *worker, struct comm_channel *channel);
 };
 
+/* A trace. `message` is called for each message that is sent or received, with its bytes; `begins`
+ * and, if that returned true, `ends` around the work on messages, in which tasks may run that a
+ * message made ready. */
+struct comm_report {
+    void (*message)(struct worker *worker, bool sends, int peer, size_t bytes);
+    bool (*begins)(struct worker *worker);
+    void (*ends)(struct worker *worker);
+};
+
 /* What a comm knows of its program. The ranks compare history and homes; a sentence about a
  * difference names kernels. */
 struct comm_setup {
@@ -43,8 +52,14 @@ struct comm_setup {
     const struct data_table *table;
     const duite_kernel *const *kernels;
     uint32_t n_kernels;
-    struct base_monitor *monitor; /* gives heartbeats */
+    struct base_monitor *monitor;     /* gives heartbeats */
+    const struct comm_report *report; /* NULL: there is no trace */
 };
+
+/* Calls MPI: COMM_MPI(MPI_Comm_rank, comm, &rank). DUITE_OK; or DUITE_E_MPI, with the call and
+ * MPI's reason as the message. */
+#define COMM_MPI(call, ...) comm_mpi(call(__VA_ARGS__), #call)
+int comm_mpi(int mpi, const char *call);
 
 /* Starts on mpi, which stays the caller's and is for these messages only. Local. Errors:
  * DUITE_E_MPI, memory; comm_stop is due even then. */
@@ -54,24 +69,14 @@ int comm_start(struct comm **comm, MPI_Comm mpi, const struct comm_setup *setup)
  * (0: never). `host`: of the rank before this one in the ring. NULL is fine. */
 void comm_ring(struct comm *comm, double seconds, const char *host);
 
-/* Before comm_open: a trace. `message` is called for each message that is sent or received, with
- * its bytes; `begins` and `ends` around the work on messages, in which tasks may run that a message
- * made ready. `ends` gets what `begins` returned. */
-struct comm_report {
-    void (*message)(struct worker *worker, bool sends, int peer, size_t bytes);
-    bool (*begins)(struct worker *worker);
-    void (*ends)(struct worker *worker, bool begun);
-};
-void comm_set_report(struct comm *comm, const struct comm_report *report);
-
 /* Messages are sent and received from now on. `requests`, the same on all ranks: ranks may request
  * tasks of others. Until then the lock keeps workers out of MPI, so that the main thread may call
  * it while it starts. All ranks call this or none. NULL is fine. */
 void comm_open(struct comm *comm, bool requests);
 
 /* Frees everything; no other thread and no task is left. Collective: all ranks have agreed
- * (comm_agree) that nothing is on its way; or communication is broken, and this waits until that is
- * so. False if MPI may still use its communicator, which then must not be freed. */
+ * (COMM_AGREES) that nothing is on its way; or communication is broken, and this waits until that
+ * is so. False if MPI may still use its communicator, which then must not be freed. */
 bool comm_stop(struct comm *comm);
 
 /* After COMM_NEEDS_TAGS: settling waits until the channels that the program dropped on this rank
@@ -127,8 +132,9 @@ double comm_transfer(const struct comm *comm, size_t bytes);
 
 /* ---- Idle ranks ---- */
 
-/* Requests tasks of a rank, for so many idle workers; the request stands for so many seconds.
- * False: not now. */
+/* Requests tasks of a rank, for so many idle workers. The request stands there for so many seconds,
+ * or until a task is granted or the next one comes. No rank waits for a grant, and requests do not
+ * count as movement of the program. False: not now. */
 bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned idle,
                   double seconds);
 
@@ -136,7 +142,7 @@ bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned i
 struct comm_requester {
     int rank;
     unsigned idle;
-    double until;
+    double until; /* 0: none */
 };
 
 /* True if there may be a request; takes one (false: none now); puts back one that got no grant. */
@@ -150,11 +156,11 @@ void comm_return_request(struct comm *comm, const struct comm_requester *request
  * full: all ranks must agree now. Main thread. */
 bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint);
 
-/* This rank waits for data in the call, or no longer waits. If a difference between ranks is found
- * while it waits, communication breaks. Main thread. */
+/* This rank waits for data in the call, or no longer waits; NULL is fine. If a difference between
+ * ranks is found while it waits, communication breaks. Main thread. */
 void comm_waits(struct comm *comm, bool waits);
 
-enum { COMM_SUMMED = 16, COMM_WORD_NUMBERS = sizeof(struct data_failure) / sizeof(double) };
+enum { COMM_WORD_NUMBERS = sizeof(struct data_failure) / sizeof(double) };
 
 /* A rank's contribution to a collective call. */
 struct comm_word {
@@ -166,26 +172,25 @@ struct comm_word {
     };
 };
 
-/* One small reduction, which compares own->fingerprint (the forks) and the homes of all ranks.
- * own->failed becomes 1 if a task failed on any rank, else 0. Calls between(context) while it
- * waits, so that others get on; it must poll. DUITE_E_DIFFERENT if ranks differ: then
- * communication is broken, and the message names the first difference. Collective, main thread. */
-int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *context),
-               void *context);
+/* The kinds of collective calls. */
+enum comm_collective {
+    /* Compares own->fingerprint (the forks) and the homes of all ranks; words[0].failed becomes 1
+     * if a task failed on any rank, else 0. One small reduction. If ranks differ communication
+     * breaks, with DUITE_E_DIFFERENT and a message that names the first difference. */
+    COMM_AGREES,
+    /* Gathers the words of all ranks. All ranks agreed on this call before, as on the next. */
+    COMM_GATHERS,
+    /* words[0] becomes the word whose failed task is first in fork order. Some rank has one. One
+     * reduction. */
+    COMM_FIRSTS
+};
 
-/* Gathers words; *all, one a rank, is the comm's and good until the next call. All ranks agreed on
- * this call before (comm_agree). As comm_agree. */
-int comm_gather(struct comm *comm, const struct comm_word *own, struct comm_word **all,
-                void (*between)(void *context), void *context);
-
-/* *own becomes, on all ranks alike, the word whose failed task is first in fork order. Some rank
- * has one: comm_agree said so. As comm_gather, by one reduction. */
-int comm_first(struct comm *comm, struct comm_word *own, void (*between)(void *context),
-               void *context);
-
-/* Sums n <= COMM_SUMMED numbers over all ranks, in place: one reduction. As comm_gather. */
-int comm_sum(struct comm *comm, double *numbers, int n, void (*between)(void *context),
-             void *context);
+/* A collective call: enters it, then asks again and again, and works meanwhile. comm_is_entered:
+ * true once the call is over, or communication broke. The words are the comm's, and good until the
+ * next call. Main thread. */
+void comm_enter(struct comm *comm, enum comm_collective kind, const struct comm_word *own);
+bool comm_is_entered(void *comm);
+const struct comm_word *comm_words(const struct comm *comm);
 
 /* ---- When it breaks ----
  *
@@ -193,17 +198,20 @@ int comm_sum(struct comm *comm, double *numbers, int n, void (*between)(void *co
  * only an abort message with the reason to all others, which break in turn. Blocking calls return
  * the code; the main thread gives up everything still expected; only stop is left. */
 
-/* The code with the message set once communication is broken, else 0. */
-int comm_broken(struct comm *comm);
+/* True once communication is broken; NULL is fine. comm_error: its code, with the message set; else
+ * 0. */
+bool comm_is_broken(struct comm *comm);
+int comm_error(struct comm *comm);
 
-/* True if it broke because MPI failed or a rank was lost: then MPI must not be relied on, nor
- * finalised. */
-bool comm_is_cut(struct comm *comm);
+/* True if MPI failed or a rank is lost, even if it broke for another reason: messages may stay on
+ * their way for ever, and MPI must not be relied on, nor finalised. */
+bool comm_is_lost(struct comm *comm);
 
-/* After comm_is_cut: polls for a moment, so that the abort messages go out. Main thread. */
+/* After comm_is_lost: polls for a moment, so that the abort messages go out. Main thread. */
 void comm_part(struct comm *comm, struct worker *worker);
 
-/* Between hold and let_go the caller alone calls MPI: nothing is sent or received. Main thread. */
+/* Between hold and let_go the caller alone calls MPI: nothing is sent or received. NULL is fine.
+ * Main thread. */
 void comm_hold(struct comm *comm);
 void comm_let_go(struct comm *comm);
 

@@ -1,6 +1,6 @@
 /* A control message is sent once and freed when MPI has sent it. Abort messages and last messages
- * are made at the start and sent at most once to each rank; the set of requests always has room for
- * them. */
+ * are made at the start and sent at most once to each rank; there is always room for their
+ * requests. */
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -11,27 +11,23 @@
 
 /* ---- Start and stop ---- */
 
-/* Requests for the messages that must go without further memory (abort, loss and last message to
- * each rank), and for one message more. */
-static size_t control_reserve(int n_ranks)
+bool comm_control_start(struct comm *comm)
 {
-    return 3 * (size_t)n_ranks + 1;
-}
-
-bool comm_control_start(struct comm_control *control, int n_ranks)
-{
+    struct comm_control *control = &comm->control;
+    const size_t n_ranks = (size_t)comm->n_ranks;
+    /* The messages that must go without further memory: abort, loss and last message to each. */
+    comm->requests.reserved = 3 * n_ranks;
     control->abort = data_packet_new(sizeof(struct comm_abort), true);
     control->loss = data_packet_new(sizeof(struct comm_abort), true);
     control->last = data_packet_new(0, true);
     control->spare = data_packet_new(sizeof(struct comm_abort), true);
-    control->standing = base_alloc_zero((size_t)n_ranks * sizeof *control->standing);
+    control->standing = base_alloc_zero(n_ranks * sizeof *control->standing);
     return control->abort && control->loss && control->last && control->spare &&
-           control->standing && comm_requests_room(&control->sends, control_reserve(n_ranks));
+           control->standing && comm_requests_room(comm, 1);
 }
 
 void comm_control_stop(struct comm_control *control)
 {
-    comm_requests_free(&control->sends);
     data_packet_free(control->abort);
     data_packet_free(control->loss);
     data_packet_free(control->last);
@@ -41,40 +37,42 @@ void comm_control_stop(struct comm_control *control)
 
 /* ---- Sending ---- */
 
+static void control_sent(struct comm *comm, struct comm_found *found, void *packet)
+{
+    (void)comm, (void)found;
+    data_packet_free(packet);
+}
+
 static int control_isend(struct comm *comm, int to, struct data_packet *packet, bool own)
 {
-    struct comm_requests *sends = &comm->control.sends;
     int mpi = MPI_Isend(packet, (int)data_packet_lines(packet->bytes), comm->line, to, COMM_PACKETS,
-                        comm->mpi, &sends->request[sends->n]);
+                        comm->mpi, comm_request_next(comm));
     if (mpi == MPI_SUCCESS)
-        comm_requests_started(sends, own ? NULL : packet);
+        comm_request_add(comm, control_sent, own ? NULL : packet);
     return mpi;
 }
 
 bool comm_control_send(struct comm *comm, int to, struct data_packet *packet)
 {
-    struct comm_requests *sends = &comm->control.sends;
     packet->key.slot = (uint32_t)comm->rank;
-    if (!comm_requests_room(sends, (size_t)sends->n + control_reserve(comm->n_ranks))) {
-        comm_broke_memory(comm, "a control message");
-    } else {
-        int mpi = control_isend(comm, to, packet, false);
-        if (comm_mpi_ok(comm, mpi, "MPI_Isend"))
-            return true;
-    }
+    if (!comm_requests_room(comm, 1))
+        comm_break_memory(comm, "a control message");
+    else if (comm_mpi_ok(comm, control_isend(comm, to, packet, false), "MPI_Isend"))
+        return true;
     data_packet_free(packet);
     return false;
 }
 
-/* Frees the packets that MPI has sent. True: none is left. */
-static bool control_sent(struct comm *comm)
+bool comm_control_tell(struct comm *comm, int to, enum comm_kind kind, const void *what,
+                       size_t bytes)
 {
-    struct comm_requests *sends = &comm->control.sends;
-    int done;
-    if (sends->n && comm_mpi_ok(comm, comm_requests_test(sends, &done), "MPI_Testsome"))
-        for (int i = 0; i < done; i++)
-            data_packet_free(sends->what[sends->n + i]);
-    return !sends->n;
+    struct data_packet *packet = data_packet_new(bytes, true);
+    if (!packet)
+        return false;
+    packet->kind = kind;
+    memcpy(data_payload(packet), what, bytes);
+    comm_control_send(comm, to, packet);
+    return true;
 }
 
 /* ---- Abort ---- */
@@ -84,7 +82,7 @@ static bool code_is_loss(int code)
     return code == DUITE_E_LOST || code == DUITE_E_MPI;
 }
 
-void comm_broke(struct comm *comm, int code, const char *message)
+void comm_break(struct comm *comm, int code, const char *message)
 {
     if (code_is_loss(code))
         atomic_store(&comm->lost, true);
@@ -97,34 +95,63 @@ void comm_broke(struct comm *comm, int code, const char *message)
         comm->setup.owner->broke(comm->setup.context);
 }
 
-void comm_broke_memory(struct comm *comm, const char *what)
+void comm_break_memory(struct comm *comm, const char *what)
 {
     char message[100];
     snprintf(message, sizeof message, "out of memory for %s", what);
-    comm_broke(comm, DUITE_E_MEMORY, message);
+    comm_break(comm, DUITE_E_MEMORY, message);
 }
 
-bool comm_mpi_ok(struct comm *comm, int mpi, const char *what)
+int comm_mpi_class(int mpi)
+{
+    int class = mpi;
+    return MPI_Error_class(mpi, &class) == MPI_SUCCESS ? class : mpi;
+}
+
+int comm_mpi(int mpi, const char *call)
+{
+    char reason[MPI_MAX_ERROR_STRING] = "unknown";
+    int length = 0;
+    if (mpi == MPI_SUCCESS)
+        return DUITE_OK;
+    MPI_Error_string(mpi, reason, &length);
+    return base_error(DUITE_E_MPI, "%s: %s", call, reason);
+}
+
+/* Messages of channels alone may come into too little room. */
+bool comm_mpi_ok(struct comm *comm, int mpi, const char *call)
 {
     if (mpi == MPI_SUCCESS)
         return true;
-    char reason[MPI_MAX_ERROR_STRING] = "", message[MPI_MAX_ERROR_STRING + 64];
-    int length = 0;
-    MPI_Error_string(mpi, reason, &length);
-    snprintf(message, sizeof message, "%s: %s", what, reason);
-    comm_broke(comm, DUITE_E_MPI, message);
+    if (comm_mpi_class(mpi) == MPI_ERR_TRUNCATE)
+        comm_break(comm, DUITE_E_DIFFERENT,
+                   "a message of a recorded graph does not fit: the ranks recorded different "
+                   "graphs");
+    else
+        comm_break(comm, comm_mpi(mpi, call), duite_message());
     return false;
 }
 
-int comm_broken(struct comm *comm)
+bool comm_mpi_cut(struct comm *comm, int mpi, const char *call)
 {
-    int code = atomic_load_explicit(&comm->broken, memory_order_acquire);
-    return code ? base_error(code, "%s", comm->reason.message) : DUITE_OK;
+    return mpi == MPI_SUCCESS || comm_mpi_class(mpi) == MPI_ERR_TRUNCATE ||
+           comm_mpi_ok(comm, mpi, call);
 }
 
-bool comm_is_cut(struct comm *comm)
+bool comm_is_broken(struct comm *comm)
 {
-    return comm_is_lost(comm);
+    return comm && atomic_load(&comm->broken) != 0;
+}
+
+bool comm_is_lost(struct comm *comm)
+{
+    return comm && atomic_load(&comm->lost);
+}
+
+int comm_error(struct comm *comm)
+{
+    int code = comm ? atomic_load(&comm->broken) : 0;
+    return code ? base_error(code, "%s", comm->reason.message) : DUITE_OK;
 }
 
 /* A send that fails here is not reported: MPI itself failed, and no rank can be reached. */
@@ -170,38 +197,19 @@ static void abort_hear(struct comm *comm, struct data_packet *packet)
         comm->control.entered = abort->entered;
         comm->control.kind = abort->kind;
     }
-    comm_broke(comm, abort->code, message);
-}
-
-static void loss_hear(struct comm *comm, struct data_packet *packet)
-{
-    (void)packet; /* it follows an abort message, whose reason stands */
-    atomic_store(&comm->lost, true);
-}
-
-bool comm_is_quiet(struct comm *comm)
-{
-    if (!comm_try_lock(comm))
-        return false;
-    bool quiet = comm->control.aborts && comm->control.heard == comm->n_ranks - 1 &&
-                 !comm->sends.n && !comm->receives.n && control_sent(comm);
-    comm_unlock(comm);
-    return quiet;
+    comm_break(comm, abort->code, message);
 }
 
 /* ---- Requests for tasks ---- */
 
 bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned idle, double seconds)
 {
-    struct data_packet *packet = comm_is_broken(comm) ? NULL : data_packet_new(0, true);
     bool sent = false;
-    if (!packet || !comm_try_lock(comm)) {
-        data_packet_free(packet);
+    if (!comm_try_lock(comm))
         return false;
-    }
-    if (comm_is_broken(comm)) { /* meanwhile: nothing follows the abort message */
-        data_packet_free(packet);
-    } else {
+    /* Nothing follows the abort message. */
+    struct data_packet *packet = comm_is_broken(comm) ? NULL : data_packet_new(0, true);
+    if (packet) {
         packet->kind = COMM_REQUEST;
         packet->pieces = idle;
         packet->key.number = (uint64_t)(1e9 * seconds);
@@ -209,7 +217,7 @@ bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned i
         comm_note(comm, true, rank, sizeof *packet);
         sent = comm_control_send(comm, rank, packet);
     }
-    comm_unlock(comm); /* the caller's next poll sends the posts made meanwhile */
+    comm_let_go(comm); /* the caller's next poll sends the posts made meanwhile */
     atomic_fetch_add_explicit(&comm->control.requested, sent, memory_order_relaxed);
     return sent;
 }
@@ -217,14 +225,16 @@ bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned i
 static void request_hear(struct comm *comm, struct data_packet *packet)
 {
     struct comm_control *control = &comm->control;
-    control->standing[packet->key.slot] = (struct comm_standing){
-        .until = base_seconds() + 1e-9 * (double)packet->key.number, .idle = packet->pieces};
-    atomic_store_explicit(&control->standing_any, 1, memory_order_relaxed);
+    control->standing[packet->key.slot] =
+        (struct comm_requester){.rank = (int)packet->key.slot,
+                                .idle = packet->pieces,
+                                .until = base_seconds() + 1e-9 * (double)packet->key.number};
+    atomic_store(&control->standing_any, 1);
 }
 
 bool comm_has_requests(struct comm *comm)
 {
-    return atomic_load_explicit(&comm->control.standing_any, memory_order_relaxed);
+    return atomic_load(&comm->control.standing_any);
 }
 
 bool comm_take_request(struct comm *comm, struct comm_requester *requester)
@@ -235,28 +245,28 @@ bool comm_take_request(struct comm *comm, struct comm_requester *requester)
     if (!comm_try_lock(comm))
         return false;
     for (int i = 0; i < comm->n_ranks && !found; i++) {
-        int rank = control->turn = (control->turn + 1) % comm->n_ranks;
-        struct comm_standing *standing = &control->standing[rank];
+        control->turn = (control->turn + 1) % comm->n_ranks;
+        struct comm_requester *standing = &control->standing[control->turn];
         found = standing->until > now;
         if (found)
-            *requester = (struct comm_requester){rank, standing->idle, standing->until};
+            *requester = *standing;
         standing->until = 0;
     }
     if (!found)
-        atomic_store_explicit(&control->standing_any, 0, memory_order_relaxed);
-    comm_unlock(comm);
+        atomic_store(&control->standing_any, 0);
+    comm_let_go(comm);
     return found;
 }
 
 void comm_return_request(struct comm *comm, const struct comm_requester *requester)
 {
-    struct comm_standing *standing = &comm->control.standing[requester->rank];
+    struct comm_requester *standing = &comm->control.standing[requester->rank];
     if (!comm_try_lock(comm))
         return; /* that rank will request again */
     if (standing->until < requester->until)
-        *standing = (struct comm_standing){requester->until, requester->idle};
-    atomic_store_explicit(&comm->control.standing_any, 1, memory_order_relaxed);
-    comm_unlock(comm);
+        *standing = *requester;
+    atomic_store(&comm->control.standing_any, 1);
+    comm_let_go(comm);
 }
 
 /* ---- The end ---- */
@@ -277,62 +287,58 @@ void comm_control_end(struct comm *comm)
     for (int to = 0; to < comm->n_ranks && !comm_is_broken(comm); to++)
         if (last_is_for(comm, to))
             comm_mpi_ok(comm, control_isend(comm, to, control->last, true), "MPI_Isend");
-    comm_unlock(comm);
-}
-
-static void last_hear(struct comm *comm, struct data_packet *packet)
-{
-    (void)packet;
-    comm->control.last_heard++;
+    comm_let_go(comm);
 }
 
 bool comm_control_over(struct comm *comm)
 {
+    const struct comm_control *control = &comm->control;
     int expected = 0;
+    if (comm_is_broken(comm) ? comm_is_lost(comm) : !comm->open)
+        return true;
     for (int from = 0; from < comm->n_ranks; from++)
         expected += last_is_for(comm, from);
     if (!comm_try_lock(comm))
         return false;
-    bool over = comm->control.last_heard == expected && !comm->sends.n && !comm->receives.n &&
-                control_sent(comm);
-    comm_unlock(comm);
+    const bool heard = comm_is_broken(comm) ? control->aborts && control->heard == comm->n_ranks - 1
+                                            : control->last_heard == expected;
+    const bool over = heard && !comm->requests.n;
+    comm_let_go(comm);
     return over;
 }
 
 /* ---- All kinds ---- */
 
-static void check_hear(struct comm *comm, struct data_packet *packet)
-{
-    comm_check_hear(comm, (int)packet->key.slot, data_payload(packet));
-}
-
-static const struct control_kind {
-    uint32_t kind;
-    void (*hear)(struct comm *comm, struct data_packet *packet);
-} CONTROL_KINDS[] = {
-    {COMM_ABORT, abort_hear},
-    {COMM_LOSS, loss_hear},
-    {COMM_CHECK, check_hear},
-    {COMM_DIFFERS, comm_difference_hear},
-    {COMM_INQUIRY, comm_difference_hear},
-    {COMM_ANSWER, comm_difference_hear},
-    {COMM_REQUEST, request_hear},
-    {COMM_LAST, last_hear},
-};
-
 bool comm_control_hear(struct comm *comm, struct data_packet *packet)
 {
-    for (size_t i = 0; i < sizeof CONTROL_KINDS / sizeof *CONTROL_KINDS; i++)
-        if (packet->kind == CONTROL_KINDS[i].kind) {
-            CONTROL_KINDS[i].hear(comm, packet);
-            return true;
-        }
-    return false;
+    switch (packet->kind) {
+    case COMM_ABORT:
+        abort_hear(comm, packet);
+        return true;
+    case COMM_LOSS: /* it follows an abort message, whose reason stands */
+        atomic_store(&comm->lost, true);
+        return true;
+    case COMM_CHECK:
+        comm_check_see(comm, (int)packet->key.slot, data_payload(packet));
+        return true;
+    case COMM_DIFFERS:
+    case COMM_INQUIRY:
+    case COMM_ANSWER:
+        comm_difference_hear(comm, packet);
+        return true;
+    case COMM_REQUEST:
+        request_hear(comm, packet);
+        return true;
+    case COMM_LAST:
+        comm->control.last_heard++;
+        return true;
+    default:
+        return false;
+    }
 }
 
 void comm_control_pass(struct comm *comm)
 {
-    control_sent(comm);
     if (!comm_is_broken(comm))
         comm_check_pass(comm);
     if (!comm_is_broken(comm))

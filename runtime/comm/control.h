@@ -2,7 +2,6 @@
 #define DUITE_COMM_CONTROL_H
 
 #include "runtime/comm/comm.h"
-#include "runtime/comm/requests.h"
 
 /* Messages between ranks beside values and tasks, for this folder only: control messages, the
  * divergence check, and the search for the first difference. Everything here is under the lock of
@@ -11,7 +10,7 @@
 /* ---- Control messages (control.c) ---- */
 
 /* Kinds of control messages. Each is a packet and travels like a value, so that messages between
- * two ranks keep their order. All of them share one set of MPI requests. */
+ * two ranks keep their order. */
 enum comm_kind {
     COMM_ABORT = 64, /* communication is broken on the sender: struct comm_abort */
     COMM_LOSS,    /* a rank is lost, which was found after the sender's abort message: the same */
@@ -33,16 +32,7 @@ struct comm_abort {
     char message[1008];
 };
 
-/* A request for tasks stands at its receiver until a task is granted or its time is over; a newer
- * one of the same rank replaces it. No rank waits for a grant, and requests do not count as
- * movement of the program. */
-struct comm_standing {
-    double until; /* 0: none */
-    unsigned idle;
-};
-
 struct comm_control {
-    struct comm_requests sends; /* under way; what: the packet, freed then, or NULL: one of these */
     struct data_packet *abort, *loss, *last;
     struct data_packet *spare; /* for a control message that comes when there is no memory */
     bool aborts, loss_sent;    /* the abort messages are sent; and those of a loss */
@@ -50,20 +40,24 @@ struct comm_control {
     uint64_t entered;          /* the most collective calls that an abort message told of */
     int32_t kind;              /* of the last of these */
     int last_heard;
-    struct comm_standing *standing; /* by rank */
-    int turn;                       /* the rank whose request was looked at last */
-    _Atomic int standing_any;       /* there may be some; any thread */
-    _Atomic uint64_t requested;     /* requests sent; any thread */
+    struct comm_requester *standing; /* by rank; a newer request replaces an older one */
+    int turn;                        /* the rank whose request was looked at last */
+    _Atomic int standing_any;        /* there may be some; any thread */
+    _Atomic uint64_t requested;      /* requests sent; any thread */
 };
 
 /* Takes memory ahead, so that abort messages and last messages need none later. False without
  * memory. */
-bool comm_control_start(struct comm_control *control, int n_ranks);
+bool comm_control_start(struct comm *comm);
 void comm_control_stop(struct comm_control *control);
 
 /* Sends the packet, which is the control's from now on. False: it is freed, and communication is
  * broken. */
 bool comm_control_send(struct comm *comm, int to, struct data_packet *packet);
+
+/* Sends a control message of so many bytes. False without memory. */
+bool comm_control_tell(struct comm *comm, int to, enum comm_kind kind, const void *what,
+                       size_t bytes);
 
 /* A packet came. True: it was a control message, which is done with; the packet stays the caller's.
  */
@@ -77,13 +71,10 @@ void comm_control_pass(struct comm *comm);
  * heartbeats go on. */
 void comm_control_end(struct comm *comm);
 
-/* While communication is whole: true if no message is on its way to or from this rank, nor will be.
+/* True if no message is on its way to or from this rank, nor will be: all sent their last message
+ * or, if communication broke, their abort message; or nothing can be awaited, as a rank is lost.
  * Takes the lock. */
 bool comm_control_over(struct comm *comm);
-
-/* After communication broke: true if no message at all is on its way to or from this rank, nor will
- * be. Takes the lock. */
-bool comm_is_quiet(struct comm *comm);
 
 /* ---- The divergence check (divergence.c) ---- */
 
@@ -125,7 +116,6 @@ struct comm_calls {
 
 /* False without memory. */
 bool comm_calls_start(struct comm_calls *calls);
-void comm_calls_stop(struct comm_calls *calls);
 
 /* True if two ranks are neighbours in the tree. */
 bool comm_check_joins(int a, int b);
@@ -133,11 +123,8 @@ bool comm_check_joins(int a, int b);
 /* Under the lock: compares this rank's new calls, and begins a check when one is due. */
 void comm_check_pass(struct comm *comm);
 
-/* Under the lock: a neighbour sent, or passed on, an entry. */
-void comm_check_hear(struct comm *comm, int from, const struct comm_called *theirs);
-
-/* Under the lock: all ranks agreed on all calls so far. */
-void comm_calls_agreed(struct comm *comm);
+/* Under the lock: takes an entry of this rank itself, or one that a neighbour sent or passed on. */
+void comm_check_see(struct comm *comm, int from, const struct comm_called *call);
 
 /* Under the lock: this rank's call of that number, or NULL: it is not in the log. */
 const struct comm_called *comm_calls_logged(struct comm_calls *calls, uint64_t number);
@@ -163,6 +150,34 @@ void comm_difference_hear(struct comm *comm, struct data_packet *packet);
 /* Under the lock: breaks if the time is over. */
 void comm_difference_pass(struct comm *comm);
 
-void comm_difference_stop(struct comm_difference *difference);
+/* ---- Rank 0's conclusion from the histories of all ranks (verdict.c) ---- */
+
+/* Rank 0's knowledge of a rank. */
+struct difference_rank {
+    bool answered, has_homes;
+    bool compared; /* some of its calls, with the reference */
+    bool older;    /* the first of these differs already */
+    uint64_t homes;
+    uint64_t last;              /* its last call */
+    uint64_t at;                /* its first call that differs from the reference's, or 0 */
+    uint64_t fingerprint, call; /* of this call ... */
+    uint64_t other_fingerprint, other_call; /* ... and of the reference's */
+};
+
+struct difference_inquiry {
+    struct comm_history_copy reference;
+    int answers;
+    struct difference_rank rank[];
+};
+
+/* A sentence under construction, cut off where it no longer fits. */
+struct comm_verdict {
+    size_t length;
+    char text[900];
+};
+
+/* Writes the best sentence there is into an empty verdict. It is comm->difference.message without
+ * an inquiry, or if the histories do not tell. Under the lock. */
+void comm_verdict_find(const struct comm *comm, struct comm_verdict *verdict);
 
 #endif

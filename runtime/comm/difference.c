@@ -10,11 +10,46 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/memory.h"
 #include "runtime/comm/internal.h"
-#include "runtime/comm/verdict.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* ---- The history ---- */
+
+#define FUNCTION_NAME(value, name) name,
+static const char *const CALLED_NAMES[COMM_N_CALLED] = {COMM_FUNCTIONS(FUNCTION_NAME)};
+
+enum comm_function comm_function_find(const char *name)
+{
+    for (int i = 0; i < COMM_N_CALLED; i++)
+        if (!strcmp(CALLED_NAMES[i], name))
+            return (enum comm_function)i;
+    return COMM_CALLED_OTHER;
+}
+
+const char *comm_function_name(uint32_t called)
+{
+    return CALLED_NAMES[called < COMM_N_CALLED ? called : COMM_CALLED_OTHER];
+}
+
+/* The ring is read while the main thread writes it: the copy leaves out entries that may have been
+ * overwritten meanwhile. */
+void comm_history_read(struct comm_history *history, struct comm_history_copy *copy)
+{
+    copy->last = atomic_load_explicit(&history->calls, memory_order_acquire);
+    for (size_t i = 0; i < COMM_HISTORY_CALLS; i++) {
+        struct comm_history_entry *entry = &history->entry[i];
+        copy->entry[i].fingerprint =
+            atomic_load_explicit(&entry->fingerprint, memory_order_acquire);
+        copy->entry[i].call = atomic_load_explicit(&entry->call, memory_order_acquire);
+    }
+    /* The call after the last one counted may be in the middle of being written. */
+    const uint64_t begun = atomic_load_explicit(&history->calls, memory_order_acquire) + 1;
+    copy->first = begun >= COMM_HISTORY_CALLS ? begun - COMM_HISTORY_CALLS + 1 : 1;
+}
+
+/* ---- Waiting for answers ---- */
 
 /* COMM_DIFFERS: a rank found a difference at its blocking call of that number. COMM_INQUIRY: only
  * the number. */
@@ -36,7 +71,7 @@ static void difference_conclude(struct comm *comm)
     struct comm_verdict verdict = {0};
     comm->difference.until = 0;
     comm_verdict_find(comm, &verdict);
-    comm_broke(comm, DUITE_E_DIFFERENT, verdict.text);
+    comm_break(comm, DUITE_E_DIFFERENT, verdict.text);
 }
 
 /* From now on it waits for as long as a rank may be silent; other ranks than 0 twice as long. */
@@ -110,16 +145,12 @@ static void difference_answer(struct comm *comm, uint64_t number, struct differe
 
 /* ---- Messages; under the lock ---- */
 
-static struct data_packet *difference_packet(struct comm *comm, enum comm_kind kind, size_t bytes)
+static void difference_break(struct comm *comm)
 {
-    struct data_packet *packet = data_packet_new(bytes, true);
-    if (packet)
-        packet->kind = kind;
-    else if (comm->difference.found)
-        comm_broke(comm, DUITE_E_DIFFERENT, comm->difference.message);
+    if (comm->difference.found)
+        comm_break(comm, DUITE_E_DIFFERENT, comm->difference.message);
     else
-        comm_broke_memory(comm, "a control message");
-    return packet;
+        comm_break_memory(comm, "a control message");
 }
 
 static void difference_inquire(struct comm *comm)
@@ -138,26 +169,18 @@ static void difference_inquire(struct comm *comm)
     difference->inquiry->reference = own->history;
     difference_take(comm, comm->rank, own);
     base_free(own);
-    for (int to = 0; to < comm->n_ranks && !comm_is_broken(comm); to++) {
-        struct data_packet *packet =
-            to == comm->rank ? NULL : difference_packet(comm, COMM_INQUIRY, sizeof(uint64_t));
-        if (!packet)
-            continue;
-        memcpy(data_payload(packet), &difference->number, sizeof difference->number);
-        comm_control_send(comm, to, packet);
-    }
+    for (int to = 0; to < comm->n_ranks && !comm_is_broken(comm); to++)
+        if (to != comm->rank && !comm_control_tell(comm, to, COMM_INQUIRY, &difference->number,
+                                                   sizeof difference->number))
+            difference_break(comm);
 }
 
 static void difference_report(struct comm *comm)
 {
-    struct comm_difference *difference = &comm->difference;
-    struct difference_found found = {.number = difference->number};
-    struct data_packet *packet = difference_packet(comm, COMM_DIFFERS, sizeof found);
-    if (!packet)
-        return;
-    snprintf(found.message, sizeof found.message, "%s", difference->message);
-    memcpy(data_payload(packet), &found, sizeof found);
-    comm_control_send(comm, 0, packet);
+    struct difference_found found = {.number = comm->difference.number};
+    snprintf(found.message, sizeof found.message, "%s", comm->difference.message);
+    if (!comm_control_tell(comm, 0, COMM_DIFFERS, &found, sizeof found))
+        difference_break(comm);
 }
 
 void comm_difference_found(struct comm *comm, uint64_t number, const char *message)
@@ -186,10 +209,12 @@ void comm_difference_hear(struct comm *comm, struct data_packet *packet)
         comm_difference_found(comm, found->number, found->message);
     } else {
         const uint64_t *number = data_payload(packet);
-        struct data_packet *answer =
-            difference_packet(comm, COMM_ANSWER, sizeof(struct difference_answer));
-        if (!answer)
+        struct data_packet *answer = data_packet_new(sizeof(struct difference_answer), true);
+        if (!answer) {
+            difference_break(comm);
             return;
+        }
+        answer->kind = COMM_ANSWER;
         difference_answer(comm, *number, data_payload(answer));
         comm_control_send(comm, 0, answer);
     }
@@ -199,9 +224,4 @@ void comm_difference_pass(struct comm *comm)
 {
     if (comm->difference.until > 0 && base_seconds() > comm->difference.until)
         difference_conclude(comm);
-}
-
-void comm_difference_stop(struct comm_difference *difference)
-{
-    base_free(difference->inquiry);
 }

@@ -19,12 +19,6 @@ bool comm_calls_start(struct comm_calls *calls)
     return calls->log && calls->seen;
 }
 
-void comm_calls_stop(struct comm_calls *calls)
-{
-    base_free(calls->log);
-    base_free(calls->seen);
-}
-
 /* ---- The log ---- */
 
 static struct comm_called *call_logged(struct comm_calls *calls, uint64_t number)
@@ -35,36 +29,31 @@ static struct comm_called *call_logged(struct comm_calls *calls, uint64_t number
 const struct comm_called *comm_calls_logged(struct comm_calls *calls, uint64_t number)
 {
     const struct comm_called *call = call_logged(calls, number);
-    const uint64_t made = atomic_load_explicit(&calls->made, memory_order_acquire);
+    const uint64_t made = atomic_load(&calls->made);
     return number && number <= made && call->number == number ? call : NULL;
 }
 
 bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint)
 {
     struct comm_calls *calls = &comm->calls;
-    uint64_t number = atomic_load_explicit(&calls->made, memory_order_relaxed) + 1;
+    uint64_t number = atomic_load(&calls->made) + 1;
     struct comm_called *call = call_logged(calls, number);
     *call = (struct comm_called){.number = number,
                                  .fingerprint = fingerprint,
                                  .homes = comm->setup.table->homes,
                                  .rank = comm->rank};
     snprintf(call->name, sizeof call->name, "%s", name);
-    atomic_store_explicit(&calls->made, number, memory_order_release);
-    return number - atomic_load_explicit(&calls->agreed, memory_order_relaxed) == COMM_LOGGED_CALLS;
-}
-
-void comm_calls_agreed(struct comm *comm)
-{
-    atomic_store_explicit(&comm->calls.agreed,
-                          atomic_load_explicit(&comm->calls.made, memory_order_relaxed),
-                          memory_order_relaxed);
+    atomic_store(&calls->made, number);
+    return number - atomic_load(&calls->agreed) == COMM_LOGGED_CALLS;
 }
 
 void comm_waits(struct comm *comm, bool waits)
 {
+    if (!comm)
+        return;
     struct comm_calls *calls = &comm->calls;
-    uint64_t number = waits ? atomic_load_explicit(&calls->made, memory_order_relaxed) : 0;
-    atomic_store_explicit(&calls->waits, number, memory_order_release);
+    uint64_t number = waits ? atomic_load(&calls->made) : 0;
+    atomic_store(&calls->waits, number);
 }
 
 /* ---- The tree ---- */
@@ -79,25 +68,16 @@ bool comm_check_joins(int a, int b)
     return a != b && (a < b ? tree_parent(b) == a : tree_parent(a) == b);
 }
 
-static void check_send(struct comm *comm, int to, const struct comm_called *call)
-{
-    struct data_packet *packet = data_packet_new(sizeof *call, true);
-    if (!packet)
-        return; /* the run goes on: a wait finds the difference, only later */
-    packet->kind = COMM_CHECK;
-    memcpy(data_payload(packet), call, sizeof *call);
-    comm_control_send(comm, to, packet);
-}
-
-/* To all neighbours but one. */
+/* Sends the entry to all neighbours but one. Without memory the run goes on: a wait finds the
+ * difference, only later. */
 static void check_pass_on(struct comm *comm, int from, const struct comm_called *call)
 {
     int rank = comm->rank;
     if (rank && tree_parent(rank) != from)
-        check_send(comm, tree_parent(rank), call);
+        comm_control_tell(comm, tree_parent(rank), COMM_CHECK, call, sizeof *call);
     for (int bit = 1; rank + bit < comm->n_ranks && !(rank & bit); bit <<= 1)
         if (rank + bit != from)
-            check_send(comm, rank + bit, call);
+            comm_control_tell(comm, rank + bit, COMM_CHECK, call, sizeof *call);
 }
 
 /* ---- Comparing ---- */
@@ -117,12 +97,11 @@ static void call_compare(struct comm *comm, const struct comm_called *a,
     comm_difference_found(comm, a->number, message);
 }
 
-/* Takes an entry of this rank itself, or one that `from` sent. */
-static void check_see(struct comm *comm, int from, const struct comm_called *call)
+void comm_check_see(struct comm *comm, int from, const struct comm_called *call)
 {
     struct comm_calls *calls = &comm->calls;
     struct comm_called *seen = &calls->seen[call->number % SEEN_CALLS];
-    if (call->number <= atomic_load_explicit(&calls->agreed, memory_order_relaxed))
+    if (comm_is_broken(comm) || call->number <= atomic_load(&calls->agreed))
         return;
     if (seen->number == call->number) {
         call_compare(comm, seen, call);
@@ -136,18 +115,12 @@ static void check_see(struct comm *comm, int from, const struct comm_called *cal
     check_pass_on(comm, from, call);
 }
 
-void comm_check_hear(struct comm *comm, int from, const struct comm_called *theirs)
-{
-    if (!comm_is_broken(comm))
-        check_see(comm, from, theirs);
-}
-
 /* Calls that this rank made since the last time. */
 static void check_new_calls(struct comm *comm)
 {
     struct comm_calls *calls = &comm->calls;
-    uint64_t made = atomic_load_explicit(&calls->made, memory_order_acquire);
-    uint64_t agreed = atomic_load_explicit(&calls->agreed, memory_order_relaxed);
+    uint64_t made = atomic_load(&calls->made);
+    uint64_t agreed = atomic_load(&calls->agreed);
     uint64_t last = calls->last_seen < made ? calls->last_seen : made;
     for (uint64_t n = 1 + (agreed > calls->compared ? agreed : calls->compared); n <= last; n++)
         if (calls->seen[n % SEEN_CALLS].number == n)
@@ -158,7 +131,7 @@ static void check_new_calls(struct comm *comm)
 void comm_check_pass(struct comm *comm)
 {
     struct comm_calls *calls = &comm->calls;
-    uint64_t number = atomic_load_explicit(&calls->waits, memory_order_acquire);
+    uint64_t number = atomic_load(&calls->waits);
     check_new_calls(comm);
     if (!number || calls->seen[number % SEEN_CALLS].number == number)
         return;
@@ -167,6 +140,6 @@ void comm_check_pass(struct comm *comm)
         calls->waited = number;
         calls->since = now;
     } else if (now - calls->since > PATIENCE_SECONDS) {
-        check_see(comm, comm->rank, call_logged(calls, number));
+        comm_check_see(comm, comm->rank, call_logged(calls, number));
     }
 }

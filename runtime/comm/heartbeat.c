@@ -22,7 +22,7 @@ static void heartbeat_lost(struct comm *comm)
     snprintf(message, sizeof message,
              "rank %d on host %s is lost: nothing was heard of it for %g s", rank_before(comm),
              comm->heartbeat.host, comm->heartbeat.seconds);
-    comm_broke(comm, DUITE_E_LOST, message);
+    comm_break(comm, DUITE_E_LOST, message);
 }
 
 /* Posts the receive of the next heartbeat. */
@@ -102,7 +102,7 @@ static bool heartbeat_look(void *context)
     const bool made = locked || before == COMM_LOOK_MADE;
     atomic_store_explicit(state, made ? COMM_LOOK_NOT_DUE : COMM_LOOK_DUE, memory_order_relaxed);
     if (locked)
-        comm_unlock(comm); /* the next poll sends the posts made meanwhile */
+        comm_let_go(comm); /* the next poll sends the posts made meanwhile */
     return made;
 }
 
@@ -118,8 +118,10 @@ int comm_heartbeat_start(struct comm *comm, struct base_monitor *monitor)
     return base_monitor_add(monitor, &heartbeat->look);
 }
 
-void comm_heartbeat_open(struct comm *comm, double seconds, const char *host)
+void comm_ring(struct comm *comm, double seconds, const char *host)
 {
+    if (!comm)
+        return;
     struct comm_heartbeat *heartbeat = &comm->heartbeat;
     snprintf(heartbeat->host, sizeof heartbeat->host, "%s", host);
     if (seconds <= 0) {

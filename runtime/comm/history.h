@@ -17,26 +17,27 @@ enum comm_call_kind {
     COMM_CALLED    /* a function: enum comm_function */
 };
 
-enum comm_function {
-    COMM_CALLED_OTHER, /* none of these */
-    COMM_CALLED_NEW,
-    COMM_CALLED_NEW_SIZED,
-    COMM_CALLED_HINT,
-    COMM_CALLED_COLOCATE,
-    COMM_CALLED_SET,
-    COMM_CALLED_FREE,
-    COMM_CALLED_GRAPH_BIND,
-    COMM_CALLED_GRAPH_FREE,
-    COMM_CALLED_REPLAY,
-    COMM_CALLED_REPLAY_WHILE,
-    COMM_CALLED_GET,
-    COMM_CALLED_GET_AT,
-    COMM_CALLED_GET_COUNT,
-    COMM_CALLED_WAIT,
-    COMM_CALLED_STOP,
-    COMM_CALLED_COUNT_ALL,
-    COMM_N_CALLED
-};
+/* The functions: ROW(value, name). The first one stands for all others. */
+#define COMM_FUNCTIONS(ROW)                                                                        \
+    ROW(OTHER, "a function of duite")                                                              \
+    ROW(NEW, "duite_new")                                                                          \
+    ROW(NEW_SIZED, "duite_new_sized")                                                              \
+    ROW(HINT, "duite_hint")                                                                        \
+    ROW(COLOCATE, "duite_colocate")                                                                \
+    ROW(SET, "duite_set")                                                                          \
+    ROW(FREE, "duite_free")                                                                        \
+    ROW(GRAPH_BIND, "duite_graph_bind")                                                            \
+    ROW(GRAPH_FREE, "duite_graph_free")                                                            \
+    ROW(REPLAY, "duite_replay")                                                                    \
+    ROW(REPLAY_WHILE, "duite_replay_while")                                                        \
+    ROW(GET, "duite_get")                                                                          \
+    ROW(GET_AT, "duite_get_at")                                                                    \
+    ROW(GET_COUNT, "duite_get_count")                                                              \
+    ROW(WAIT, "duite_wait")                                                                        \
+    ROW(STOP, "duite_stop")                                                                        \
+    ROW(COUNT_ALL, "duite_count_all")
+#define COMM_FUNCTION_VALUE(value, name) COMM_CALLED_##value,
+enum comm_function { COMM_FUNCTIONS(COMM_FUNCTION_VALUE) COMM_N_CALLED };
 
 /* 2 bits of kind, 22 of kernel or function, 40 of forks: no program has so many of either. */
 static inline uint64_t comm_call_bits(enum comm_call_kind kind, uint32_t which, uint64_t forks)

@@ -3,9 +3,10 @@
 
 #include "runtime/base/monitor.h"
 #include "runtime/base/stack.h"
-#include "runtime/comm/arrivals.h"
 #include "runtime/comm/comm.h"
 #include "runtime/comm/control.h"
+
+#include <pthread.h>
 
 /* For the files of this folder only: the parts of a comm (control.h has the control messages), then
  * the comm itself. "Under the lock" means: the caller holds comm->lock. */
@@ -15,26 +16,51 @@
 enum { COMM_PIECE_TAGS = 16 };
 enum { COMM_PACKETS, COMM_HEARTBEATS, COMM_PIECES, COMM_CHANNELS = COMM_PIECES + COMM_PIECE_TAGS };
 
-/* ---- Transport: packets between ranks (transport.c) ---- */
-
 /* The findings of one poll, delivered after the lock is let go. */
 struct comm_found {
     struct data_packet *packets;
-    struct comm_letter *sent;
-    struct comm_channel *through; /* their message is */
-    struct comm_channel *copies;  /* their message is large: see comm_channel_copy */
+    struct comm_post *over; /* letters that are sent, channels that are through or to be copied */
     bool any;
     bool more; /* so much came that the lock is let go before the rest is received */
 };
 
-/* Under the lock: sends posted letters; receives messages. */
-void comm_transport_send(struct comm *comm, struct comm_found *found);
-void comm_transport_receive(struct comm *comm, struct comm_found *found);
+/* ---- Requests (requests.c); all of it under the lock ---- */
 
-/* Without the lock: delivers the findings. */
-void comm_transport_deliver(struct comm *comm, struct worker *worker, struct comm_found *found);
+/* A request is over: a letter is sent, a packet came, and so on. It may add others. */
+typedef void comm_over(struct comm *comm, struct comm_found *found, void *what);
 
-/* ---- Pieces (pieces.c) ---- */
+struct comm_request {
+    comm_over *over;
+    void *what;
+    bool failed;
+    char *into; /* of a large message: where the rest of it is received, and from whom */
+    size_t left;
+    int from, tag;
+};
+
+struct comm_requests {
+    MPI_Request *request;
+    struct comm_request *of;
+    int *index; /* this and the next for MPI_Testsome */
+    MPI_Status *status;
+    int n;
+    size_t capacity[4];
+    size_t reserved; /* more of them that must find room: of control messages and channels */
+};
+
+/* Room for n more beside those reserved. False without memory. */
+bool comm_requests_room(struct comm *comm, size_t n);
+
+/* A request is added in two steps, if there is room: MPI writes it to the next place; then it
+ * counts. */
+MPI_Request *comm_request_next(struct comm *comm);
+void comm_request_add(struct comm *comm, comm_over *over, void *what);
+
+/* Takes the request at place i out of the table; the last one gets its place. */
+struct comm_request comm_request_take(struct comm *comm, int i);
+
+/* Tests all, and ends those that are over. */
+void comm_requests_pass(struct comm *comm, struct comm_found *found);
 
 /* A message of more bytes than this is sent in pieces of so many. MPI may copy a whole message in
  * one call, seconds long if it is large, and the lock is held meanwhile; it is let go between two
@@ -47,24 +73,79 @@ static inline bool comm_is_large(size_t bytes)
     return bytes > comm_piece_bytes;
 }
 
-/* True if the piece that begins at `at` is the last one of a message of so many bytes. */
-static inline bool comm_is_last_piece(size_t bytes, size_t at)
-{
-    return bytes - at <= comm_piece_bytes;
-}
-
-/* The next three are under the lock; their codes are MPI's. Sends all pieces; the request is over
- * when the receiver has all but the last, which it is receiving. */
+/* Sends all pieces; the request is over when the receiver has all but the last, which it is
+ * receiving. Returns MPI's code. */
 int comm_pieces_send(struct comm *comm, const void *from, size_t bytes, int to, int tag,
                      MPI_Request *request);
 
-/* Posts the receive of the piece that begins at `at`, when the one before is over. A message that
- * is not large is its only piece. */
-int comm_piece_receive(struct comm *comm, void *into, size_t bytes, size_t at, int from, int tag,
-                       MPI_Request *request);
+/* Adds the request of all pieces, if there is room. False: MPI failed, which is told. */
+bool comm_pieces_receive(struct comm *comm, struct comm_request of);
 
 /* Receives all pieces, which are on their way, and forgets them. */
 void comm_pieces_forget(struct comm *comm, size_t bytes, int from, int tag);
+
+/* ---- Transport: packets between ranks (transport.c) ---- */
+
+/* Under the lock: begins what was posted; receives messages. */
+void comm_transport_begin(struct comm *comm, struct comm_found *found);
+void comm_transport_receive(struct comm *comm, struct comm_found *found);
+
+/* A letter's request is over. */
+comm_over comm_letter_sent;
+
+/* Without the lock: delivers the findings. */
+void comm_transport_deliver(struct comm *comm, struct worker *worker, struct comm_found *found);
+
+/* ---- Arrivals (arrivals.c) ---- */
+
+/* The time in which messages were awaited. `clock` is one word, so it can be read without a lock.
+ * While none is awaited it holds the ticks so far, with bit 0 clear. Otherwise it holds these minus
+ * the moment at which waiting began, with bit 0 set. Written under the lock of its owner. */
+struct comm_gauge {
+    uint64_t awaited; /* messages */
+    _Atomic uint64_t clock;
+};
+
+/* Matches packets that arrive with their targets, whichever comes first. Safe from any thread. */
+struct comm_arrivals {
+    pthread_mutex_t lock;
+    bool closed;
+    struct comm_gauge gauge; /* of the packets that are expected and not there */
+    struct comm_arrival
+        *table; /* uthash by key: expected and not all there, or there and not expected yet */
+};
+
+void comm_arrivals_start(struct comm_arrivals *arrivals);
+void comm_arrivals_stop(struct comm_arrivals *arrivals); /* frees packets never wanted */
+
+/* Notes a target for so many packets; *early gets those that came already, linked by next. False
+ * without memory. */
+bool comm_arrivals_expect(struct comm_arrivals *arrivals, struct data_key key,
+                          struct comm_target target, uint32_t packets, struct data_packet **early);
+
+enum comm_take {
+    COMM_WANTED, /* *target is set: deliver it */
+    COMM_KEPT,   /* until it is expected */
+    COMM_LOST    /* it is wanted nowhere, or there is no memory: the caller frees it */
+};
+
+/* A packet came. */
+enum comm_take comm_arrivals_take(struct comm_arrivals *arrivals, struct data_packet *packet,
+                                  struct comm_target *target);
+
+/* Adds messages that are awaited elsewhere to the gauge; negative: takes them off. */
+void comm_arrivals_also(struct comm_arrivals *arrivals, int messages);
+
+/* Calls back with everything awaited and its number of packets. No awaited packet is handed out
+ * during the call. */
+void comm_arrivals_look(struct comm_arrivals *arrivals,
+                        void (*awaited)(void *context, const struct data_key *key,
+                                        const struct comm_target *target, uint32_t packets),
+                        void *context);
+
+/* After the first call no packet is expected, and those that come are lost. Each call takes one
+ * waiting target, once for every packet that it wants; false: there are no more. */
+bool comm_arrivals_close(struct comm_arrivals *arrivals, struct comm_target *target);
 
 /* ---- Tags of channels (tags.c) ---- */
 
@@ -81,18 +162,12 @@ struct comm_tags {
     int next, last; /* last: the largest that MPI has */
 };
 
-void comm_tags_start(struct comm_tags *tags, int last);
-void comm_tags_stop(struct comm_tags *tags);
-
 /* n tags for a plan, the same on all ranks. COMM_NEEDS_TAGS: there are none before the ranks meet.
  * Errors: memory. */
 int comm_tags_take(struct comm_tags *tags, int n, int *first);
 
 /* The program drops the plan whose tags begin here. */
 void comm_tags_drop(struct comm_tags *tags, int first);
-
-/* All ranks met, and have closed the channels of the plans that the program dropped. */
-void comm_tags_met(struct comm_tags *tags);
 
 /* Plans that the program holds. */
 size_t comm_tags_held(const struct comm_tags *tags);
@@ -105,40 +180,30 @@ size_t comm_tags_held(const struct comm_tags *tags);
 struct comm_group; /* the channels of one set */
 
 struct comm_channels {
-    _Atomic(struct comm_channel *) ready; /* linked by next */
-    struct comm_requests awaited;         /* under the lock: receives of channels that were ready */
-    struct comm_channel *stalled;         /* under the lock: their buffers are still sent */
-    struct comm_group *open, *closed;     /* under the lock; closed: some messages are still sent */
-    size_t room;                          /* of `awaited`: receives of the open ones */
+    int awaited;                      /* under the lock: requests of channels */
+    struct comm_group *open, *closed; /* under the lock; closed: some messages are still sent */
     unsigned looks;
     struct comm_tags tags;
     _Atomic bool awaits; /* there are some */
-    bool lost;           /* messages no longer come */
 };
 
-/* Starts the channels: asks MPI for its largest tag. False if that fails. Before the lock is used.
- */
-bool comm_channels_start(struct comm *comm);
+/* Starts the channels: asks MPI for its largest tag. Before the lock is used. Errors: MPI's. */
+int comm_channels_start(struct comm *comm);
 /* Under the lock, at the end: false if MPI may still read or write memory, which then stays. */
 bool comm_channels_stop(struct comm *comm);
 
-/* Posts a channel that is ready; the caller makes sure that a worker polls afterwards. Any
- * thread. */
-void comm_channel_post(struct comm *comm, struct comm_channel *channel);
+/* Under the lock: sends a channel's message, or awaits it. False: its buffer is still sent. */
+bool comm_channel_begin(struct comm *comm, struct comm_found *found, struct comm_channel *channel);
 
-/* Under the lock: sends and receives what can be, and finds channels. */
-void comm_channels_pass(struct comm *comm, struct comm_found *found);
+/* The receive of a channel's message is over. */
+comm_over comm_channel_came;
 
-/* Without the lock, for one of `copies`: writes its message, which is posted then, or reads the one
- * that came. True: it is through. */
+/* Without the lock, for a channel that is over. One whose message is large writes it, and is posted
+ * again; or reads the one that came. True: it is through. */
 bool comm_channel_copy(struct comm *comm, struct comm_channel *channel);
 
 /* Under the lock: communication is broken, and nothing is awaited any more. */
 void comm_channels_give_up(struct comm *comm);
-
-/* Shows messages that have not come, and those that cannot be sent yet. Under the lock. */
-struct comm_looker;
-void comm_channels_look(struct comm *comm, const struct comm_looker *looker);
 
 /* ---- Heartbeats (heartbeat.c) ---- */
 
@@ -172,16 +237,12 @@ struct comm_heartbeat {
     MPI_Request sent, heard;
 };
 
-/* Registers with the monitor, which does nothing before comm_heartbeat_open. comm_heartbeat_stop is
+/* Registers with the monitor, which does nothing before comm_ring. comm_heartbeat_stop is
  * due all the same. Errors: DUITE_E_SYSTEM, memory. */
 int comm_heartbeat_start(struct comm *comm, struct base_monitor *monitor);
 
 /* Under the lock of the comm: makes the look if one is due. */
 void comm_heartbeat_pass(struct comm *comm);
-
-/* Under the lock of the comm: heartbeats begin, if `seconds`, the same on all ranks, is > 0.
- * `host`: of the rank before this one. */
-void comm_heartbeat_open(struct comm *comm, double seconds, const char *host);
 
 /* Ends the monitor's looks; no other thread but the monitor is left. All ranks are at their end.
  * Unless communication is lost, takes leave of both neighbours, so that no heartbeat is on its way
@@ -198,9 +259,6 @@ struct comm_reduced {
 };
 enum { COMM_REDUCED = sizeof(struct comm_reduced) / sizeof(uint64_t) };
 
-/* The kinds of collective calls. */
-enum comm_collective { COMM_AGREES, COMM_GATHERS, COMM_SUMS, COMM_FIRSTS };
-
 /* ---- The comm ---- */
 
 struct comm {
@@ -211,9 +269,9 @@ struct comm {
     struct comm_setup setup;
     int rank, n_ranks;
     atomic_flag lock;
-    _Atomic(struct comm_letter *) posts;
-    struct comm_requests sends, receives; /* touched by the holder of `lock` only, like: */
-    struct comm_letter *stalled; /* large ones that wait for others, in the order of their posts */
+    _Atomic(struct comm_post *) posts;
+    struct comm_requests requests; /* touched by the holder of `lock` only, like: */
+    struct comm_post *stalled;     /* wait for others, in the order of their posts */
     struct comm_arrivals arrivals;
     struct comm_channels channels;
     _Atomic int broken;
@@ -224,47 +282,52 @@ struct comm {
     struct comm_heartbeat heartbeat;
     struct comm_calls calls;
     struct comm_difference difference;
-    const struct comm_report *report;              /* NULL: nobody */
-    struct worker *worker;                         /* under the lock: the one that passes */
-    bool open, may_request;                        /* comm_open was called; with requests */
-    bool silent;                                   /* the owner is not told that it broke */
-    double latency, per_byte;                      /* seconds: of the slowest link measured */
-    uint64_t entered;                              /* collective calls */
-    enum comm_collective kind;                     /* of the last of them */
-    struct comm_reduced own, max;                  /* of the last agreement */
-    double addend[COMM_SUMMED], sums[COMM_SUMMED]; /* of the last sum */
+    struct worker *worker;     /* under the lock: the one that passes */
+    bool open, may_request;    /* comm_open was called; with requests */
+    bool silent;               /* the owner is not told that it broke */
+    double latency, per_byte;  /* seconds: of the slowest link measured */
+    uint64_t entered;          /* collective calls */
+    enum comm_collective kind; /* of the last of them */
+    enum comm_collective next; /* the one to enter, if `enters`, once the lock can be had */
+    bool enters;
+    struct comm_reduced own, max;           /* of the last agreement */
     MPI_Request request;                    /* of the last one; MPI_REQUEST_NULL once it is over */
     struct comm_word *words;                /* one a rank, and this rank's own */
     _Atomic uint64_t messages, bytes, came; /* sent, and of these the bytes; received */
 };
 
-/* Makes and frees the MPI objects of collective calls. False: MPI failed. */
-bool comm_collective_start(struct comm *comm);
+/* Posts; the caller makes sure that a worker polls afterwards. Any thread. */
+void comm_post(struct comm *comm, struct comm_post *post);
+
+static inline void comm_found_over(struct comm_found *found, struct comm_post *post)
+{
+    post->next = found->over;
+    found->over = post;
+}
+
+/* A type of so many bytes. */
+int comm_bytes_type(size_t bytes, MPI_Datatype *type);
+/* Makes and frees the MPI objects of collective calls. Errors: MPI's. */
+int comm_collective_start(struct comm *comm);
 void comm_collective_stop(struct comm *comm);
 /* Joins the collective calls that other ranks entered before communication broke. All ranks are at
  * their end. */
 void comm_catch_up(struct comm *comm);
 
-/* True for MPI_SUCCESS; else communication is broken. */
-bool comm_mpi_ok(struct comm *comm, int mpi, const char *what);
+/* True for MPI_SUCCESS; else communication is broken. cut: true even if a message was longer than
+ * what it was received into. */
+#define COMM_OK(comm, call, ...) comm_mpi_ok(comm, call(__VA_ARGS__), #call)
+bool comm_mpi_ok(struct comm *comm, int mpi, const char *call);
+bool comm_mpi_cut(struct comm *comm, int mpi, const char *call);
+/* The class of MPI's code: MPI_ERR_TRUNCATE and so on. */
+int comm_mpi_class(int mpi);
 
 /* Reports a message, if there is a report: before it is sent, so that it never comes before it was
  * sent, and after it came. Under the lock. */
 static inline void comm_note(const struct comm *comm, bool sends, int peer, size_t bytes)
 {
-    if (comm->report)
-        comm->report->message(comm->worker, sends, peer, bytes);
-}
-
-static inline bool comm_is_broken(struct comm *comm)
-{
-    return atomic_load_explicit(&comm->broken, memory_order_acquire) != 0;
-}
-
-/* True if MPI itself failed, or a rank is lost: messages may stay on their way for ever. */
-static inline bool comm_is_lost(struct comm *comm)
-{
-    return atomic_load_explicit(&comm->lost, memory_order_acquire);
+    if (comm->setup.report)
+        comm->setup.report->message(comm->worker, sends, peer, bytes);
 }
 
 static inline bool comm_try_lock(struct comm *comm)
@@ -272,18 +335,7 @@ static inline bool comm_try_lock(struct comm *comm)
     return !atomic_flag_test_and_set_explicit(&comm->lock, memory_order_acquire);
 }
 
-static inline void comm_unlock(struct comm *comm)
-{
-    atomic_flag_clear_explicit(&comm->lock, memory_order_release);
-}
-
-/* True if something posted is not sent yet. Any thread. */
-static inline bool comm_has_posts(struct comm *comm)
-{
-    return !BASE_STACK_IS_EMPTY(&comm->posts) || !BASE_STACK_IS_EMPTY(&comm->channels.ready);
-}
-
-/* Ask after comm_unlock: letters posted meanwhile, by threads that did not get the lock, must not
+/* Ask after comm_let_go: letters posted meanwhile, by threads that did not get the lock, must not
  * wait for the next poll. Pairs with comm_send: it tries the lock after this look, or this look
  * sees its post. */
 static inline bool comm_left_to_us(struct comm *comm)
@@ -292,12 +344,12 @@ static inline bool comm_left_to_us(struct comm *comm)
     return comm_has_posts(comm);
 }
 
-/* True if comm_control_pass has work. Most polls have none, so this looks at five numbers instead
+/* True if comm_control_pass has work. Most polls have none, so this looks at four numbers instead
  * of making five calls. Under the lock. */
 static inline bool comm_control_is_due(struct comm *comm)
 {
     const struct comm_calls *calls = &comm->calls;
-    return comm->control.sends.n || comm_is_broken(comm) || comm->difference.until > 0 ||
+    return comm_is_broken(comm) || comm->difference.until > 0 ||
            atomic_load_explicit(&calls->waits, memory_order_relaxed) ||
            atomic_load_explicit(&calls->made, memory_order_relaxed) != calls->compared;
 }

@@ -1,5 +1,5 @@
-libduite_la_SOURCES += runtime/comm/arrivals.c runtime/comm/arrivals.h runtime/comm/channel.c runtime/comm/channel.h runtime/comm/collective.c \
+libduite_la_SOURCES += runtime/comm/arrivals.c runtime/comm/channel.c runtime/comm/collective.c \
 	runtime/comm/comm.c runtime/comm/comm.h runtime/comm/control.c runtime/comm/control.h runtime/comm/difference.c \
-	runtime/comm/divergence.c runtime/comm/heartbeat.c runtime/comm/history.c runtime/comm/history.h \
-	runtime/comm/hosts.c runtime/comm/internal.h runtime/comm/message.h runtime/comm/pieces.c runtime/comm/requests.c runtime/comm/requests.h runtime/comm/tags.c runtime/comm/transport.c \
-	runtime/comm/verdict.c runtime/comm/verdict.h
+	runtime/comm/divergence.c runtime/comm/heartbeat.c runtime/comm/history.h \
+	runtime/comm/hosts.c runtime/comm/internal.h runtime/comm/message.h runtime/comm/requests.c runtime/comm/tags.c runtime/comm/transport.c \
+	runtime/comm/verdict.c

@@ -6,16 +6,6 @@
 #include "runtime/base/memory.h"
 #include "runtime/comm/internal.h"
 
-void comm_tags_start(struct comm_tags *tags, int last)
-{
-    *tags = (struct comm_tags){.next = COMM_CHANNELS, .last = last};
-}
-
-void comm_tags_stop(struct comm_tags *tags)
-{
-    base_free(tags->range);
-}
-
 static const struct comm_tag_range *range_over(const struct comm_tags *tags, int first, int n)
 {
     for (size_t i = 0; i < tags->n; i++)
@@ -57,8 +47,9 @@ void comm_tags_drop(struct comm_tags *tags, int first)
         tags->range[i].dropped = true;
 }
 
-void comm_tags_met(struct comm_tags *tags)
+void comm_channels_met(struct comm *comm)
 {
+    struct comm_tags *tags = &comm->channels.tags;
     for (size_t i = tags->n; i-- > 0;)
         if (tags->range[i].dropped)
             range_remove(tags, i);

@@ -23,20 +23,18 @@ static int pieces_tag(const struct data_packet *packet)
     return COMM_PIECES + (int)((packet->key.slot + packet->key.number) % COMM_PIECE_TAGS);
 }
 
-static struct data_packet *letter_packet(const struct comm *comm, struct comm_letter *letter)
-{
-    return comm->setup.owner->packet(letter);
-}
-
 /* True if a large message must wait for another one. */
 static bool message_stalls(struct comm *comm, struct comm_letter *letter)
 {
-    const struct data_packet *packet = comm_is_broken(comm) ? NULL : letter_packet(comm, letter);
+    const struct data_packet *packet =
+        comm_is_broken(comm) ? NULL : comm->setup.owner->packet(letter);
     if (!packet || !packet_is_large(packet))
         return false;
-    for (int i = 0; i < comm->sends.n; i++) {
-        struct comm_letter *other = comm->sends.what[i];
-        const struct data_packet *sent = letter_packet(comm, other);
+    for (int i = 0; i < comm->requests.n; i++) {
+        if (comm->requests.of[i].over != comm_letter_sent)
+            continue;
+        struct comm_letter *other = comm->requests.of[i].what;
+        const struct data_packet *sent = comm->setup.owner->packet(other);
         if (other->to == letter->to && packet_is_large(sent) &&
             pieces_tag(sent) == pieces_tag(packet))
             return true;
@@ -62,54 +60,58 @@ static bool message_send(struct comm *comm, struct comm_letter *letter)
 {
     if (comm_is_broken(comm))
         return false;
-    struct data_packet *packet = letter_packet(comm, letter);
-    MPI_Request *request = packet ? comm_requests_place(&comm->sends) : NULL;
-    if (!request) {
-        comm_broke_memory(comm, "a message");
+    struct data_packet *packet = comm->setup.owner->packet(letter);
+    if (!packet || !comm_requests_room(comm, 1)) {
+        comm_break_memory(comm, "a message");
         return false;
     }
     size_t lines = data_packet_lines(packet->bytes);
     comm_note(comm, true, letter->to, lines * sizeof *packet);
-    if (!comm_mpi_ok(comm, packet_isend(comm, packet, letter->to, request), "MPI_Isend"))
+    const int mpi = packet_isend(comm, packet, letter->to, comm_request_next(comm));
+    if (!comm_mpi_ok(comm, mpi, "MPI_Isend"))
         return false;
-    comm_requests_started(&comm->sends, letter);
+    comm_request_add(comm, comm_letter_sent, letter);
     atomic_fetch_add_explicit(&comm->messages, 1, memory_order_relaxed);
     atomic_fetch_add_explicit(&comm->bytes, lines * sizeof *packet, memory_order_relaxed);
     return true;
 }
 
-static void message_push_sent(struct comm_found *found, struct comm_letter *letter)
+void comm_letter_sent(struct comm *comm, struct comm_found *found, void *letter)
 {
-    letter->next = found->sent;
-    found->sent = letter;
+    (void)comm;
+    comm_found_over(found, &((struct comm_letter *)letter)->post);
 }
 
-void comm_transport_send(struct comm *comm, struct comm_found *found)
+/* False: it must wait for another one. */
+static bool letter_begin(struct comm *comm, struct comm_found *found, struct comm_letter *letter)
 {
-    struct comm_letter *posts = BASE_STACK_TAKE(&comm->posts), *in_order = comm->stalled;
-    struct comm_letter **end = &in_order;
+    if (message_stalls(comm, letter))
+        return false;
+    found->any = true;
+    if (!message_send(comm, letter))
+        comm_letter_sent(comm, found, letter);
+    return true;
+}
+
+void comm_transport_begin(struct comm *comm, struct comm_found *found)
+{
+    struct comm_post *posts = BASE_STACK_TAKE(&comm->posts), *in_order = comm->stalled;
+    struct comm_post **end = &in_order;
     BASE_LIST_REVERSE(posts);
     while (*end)
         end = &(*end)->next;
     *end = posts;
     end = &comm->stalled;
     while (in_order) {
-        struct comm_letter *letter = in_order;
-        in_order = letter->next;
-        if (message_stalls(comm, letter)) {
-            *end = letter;
-            end = &letter->next;
+        struct comm_post *post = in_order;
+        in_order = post->next;
+        if (post->is_channel ? comm_channel_begin(comm, found, (struct comm_channel *)post)
+                             : letter_begin(comm, found, (struct comm_letter *)post))
             continue;
-        }
-        found->any = true;
-        if (!message_send(comm, letter))
-            message_push_sent(found, letter);
+        *end = post;
+        end = &post->next;
     }
     *end = NULL;
-    int done;
-    comm_mpi_ok(comm, comm_requests_test(&comm->sends, &done), "MPI_Testsome");
-    for (int i = 0; i < done; i++)
-        message_push_sent(found, comm->sends.what[comm->sends.n + i]);
 }
 
 /* ---- Receiving ---- */
@@ -121,21 +123,22 @@ static void message_receive_scarce(struct comm *comm, MPI_Message *message, int 
 {
     struct data_packet *spare = comm->control.spare;
     if (lines > (int)data_packet_lines(sizeof(struct comm_abort))) {
-        comm_broke_memory(comm, "a message");
-        MPI_Mrecv(NULL, 0, comm->line, message, MPI_STATUS_IGNORE); /* truncated on purpose */
+        comm_break_memory(comm, "a message");
+        comm_mpi_cut(comm, MPI_Mrecv(NULL, 0, comm->line, message, MPI_STATUS_IGNORE), "MPI_Mrecv");
         return;
     }
-    int mpi = MPI_Mrecv(spare, lines, comm->line, message, MPI_STATUS_IGNORE);
-    if (!comm_mpi_ok(comm, mpi, "MPI_Mrecv") || comm_control_hear(comm, spare))
+    if (!COMM_OK(comm, MPI_Mrecv, spare, lines, comm->line, message, MPI_STATUS_IGNORE) ||
+        comm_control_hear(comm, spare))
         return;
-    comm_broke_memory(comm, "a message");
+    comm_break_memory(comm, "a message");
     if (packet_is_large(spare))
         comm_pieces_forget(comm, spare->bytes, from, pieces_tag(spare));
 }
 
-/* A packet is here. */
-static void message_came(struct comm *comm, struct comm_found *found, struct data_packet *packet)
+/* A packet is here, whole. */
+static void packet_came(struct comm *comm, struct comm_found *found, void *what)
 {
+    struct data_packet *packet = what;
     data_packet_came(packet);
     if (comm_control_hear(comm, packet)) {
         data_packet_free(packet);
@@ -146,59 +149,37 @@ static void message_came(struct comm *comm, struct comm_found *found, struct dat
     found->packets = packet;
 }
 
-/* Posts the receive of the next piece; there is room for its request. */
-static void large_receive(struct comm *comm, struct data_packet *packet)
-{
-    MPI_Request *request = comm_requests_place(&comm->receives);
-    int mpi = comm_piece_receive(comm, data_payload(packet), packet->bytes, packet->came,
-                                 (int)packet->from, pieces_tag(packet), request);
-    if (comm_mpi_ok(comm, mpi, "MPI_Irecv"))
-        comm_requests_started(&comm->receives, packet);
-}
-
 /* The header of a large packet came, in a packet of its own, which is freed. */
 static void large_begin(struct comm *comm, struct data_packet *header, int from)
 {
     struct data_packet *packet = data_packet_new(header->bytes, false);
-    if (packet && comm_requests_place(&comm->receives)) {
+    if (packet) {
         *packet = *header;
         data_packet_came(packet);
-        packet->came = 0;
-        packet->from = (uint64_t)from;
-        large_receive(comm, packet);
+        comm_pieces_receive(comm, (struct comm_request){.over = packet_came,
+                                                        .what = packet,
+                                                        .into = data_payload(packet),
+                                                        .left = packet->bytes,
+                                                        .from = from,
+                                                        .tag = pieces_tag(packet)});
     } else {
-        data_packet_free(packet);
-        comm_broke_memory(comm, "a message");
+        comm_break_memory(comm, "a message");
         comm_pieces_forget(comm, header->bytes, from, pieces_tag(header));
     }
     header->lines = 1;
     data_packet_free(header);
 }
 
-/* A piece came. True if it was the last one. */
-static bool large_is_through(struct comm *comm, struct comm_found *found,
-                             struct data_packet *packet)
-{
-    if (comm_is_last_piece(packet->bytes, packet->came))
-        return true;
-    found->more = true;
-    atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
-    packet->came += comm_piece_bytes;
-    large_receive(comm, packet);
-    return false;
-}
-
 /* A message of one line comes whole; it may be the header of a large packet. */
 static void message_receive_line(struct comm *comm, struct comm_found *found, MPI_Message *message,
                                  struct data_packet *packet, int from)
 {
-    int mpi = MPI_Mrecv(packet, 1, comm->line, message, MPI_STATUS_IGNORE);
-    if (!comm_mpi_ok(comm, mpi, "MPI_Mrecv"))
+    if (!COMM_OK(comm, MPI_Mrecv, packet, 1, comm->line, message, MPI_STATUS_IGNORE))
         data_packet_free(packet);
     else if (packet_is_large(packet))
         large_begin(comm, packet, from);
     else
-        message_came(comm, found, packet);
+        packet_came(comm, found, packet);
 }
 
 static bool message_receive(struct comm *comm, struct comm_found *found, size_t *received)
@@ -206,17 +187,16 @@ static bool message_receive(struct comm *comm, struct comm_found *found, size_t 
     int there = 0, lines = 0;
     MPI_Message message;
     MPI_Status status;
-    int mpi = MPI_Improbe(MPI_ANY_SOURCE, COMM_PACKETS, comm->mpi, &there, &message, &status);
-    if (!comm_mpi_ok(comm, mpi, "MPI_Improbe") || !there)
+    if (!COMM_OK(comm, MPI_Improbe, MPI_ANY_SOURCE, COMM_PACKETS, comm->mpi, &there, &message,
+                 &status) ||
+        !there)
         return false;
-    mpi = MPI_Get_count(&status, comm->line, &lines);
-    if (!comm_mpi_ok(comm, mpi, "MPI_Get_count") || lines < 1)
+    if (!COMM_OK(comm, MPI_Get_count, &status, comm->line, &lines) || lines < 1)
         return false;
     size_t bytes = ((size_t)lines - 1) * sizeof(struct data_packet);
     *received += bytes;
     struct data_packet *packet = data_packet_new(bytes, false);
-    MPI_Request *request = packet ? comm_requests_place(&comm->receives) : NULL;
-    if (!request) {
+    if (!packet || !comm_requests_room(comm, 1)) {
         data_packet_free(packet);
         message_receive_scarce(comm, &message, lines, status.MPI_SOURCE);
         return true;
@@ -226,31 +206,20 @@ static bool message_receive(struct comm *comm, struct comm_found *found, size_t 
         message_receive_line(comm, found, &message, packet, status.MPI_SOURCE);
         return true;
     }
-    mpi = MPI_Imrecv(packet, lines, comm->line, &message, request);
-    if (!comm_mpi_ok(comm, mpi, "MPI_Imrecv")) {
+    if (!COMM_OK(comm, MPI_Imrecv, packet, lines, comm->line, &message, comm_request_next(comm))) {
         data_packet_free(packet);
         return false;
     }
-    comm_requests_started(&comm->receives, packet);
+    comm_request_add(comm, packet_came, packet);
     return true;
 }
 
 void comm_transport_receive(struct comm *comm, struct comm_found *found)
 {
     size_t received = 0;
-    int done;
     while (received < comm_piece_bytes && message_receive(comm, found, &received))
         found->any = true;
     found->more |= received >= comm_piece_bytes;
-    if (!comm->receives.n)
-        return;
-    comm_mpi_ok(comm, comm_requests_test(&comm->receives, &done), "MPI_Testsome");
-    for (int i = 0, n = comm->receives.n; i < done;
-         i++) { /* next pieces take the places before i */
-        struct data_packet *packet = comm->receives.what[n + i];
-        if (!packet_is_large(packet) || large_is_through(comm, found, packet))
-            message_came(comm, found, packet);
-    }
 }
 
 /* ---- Delivering, without the lock ---- */
@@ -271,7 +240,7 @@ static void message_deliver_unexpected(struct comm *comm, struct worker *worker,
         return;
     data_packet_free(packet);
     if (!dropped)
-        comm_broke_memory(comm, "a task of another rank");
+        comm_break_memory(comm, "a task of another rank");
 }
 
 static void message_deliver_value(struct comm *comm, struct worker *worker,
@@ -286,7 +255,7 @@ static void message_deliver_value(struct comm *comm, struct worker *worker,
         break;
     case COMM_LOST:
         data_packet_free(packet);
-        comm_broke_memory(comm, "a message that came early");
+        comm_break_memory(comm, "a message that came early");
     }
 }
 
@@ -301,22 +270,17 @@ void comm_transport_deliver(struct comm *comm, struct worker *worker, struct com
         else
             message_deliver_value(comm, worker, packet);
     }
-    while (found->copies) {
-        struct comm_channel *channel = found->copies;
-        found->copies = channel->next;
-        if (comm_channel_copy(comm, channel))
+    while (found->over) {
+        struct comm_post *post = found->over;
+        struct comm_letter *letter = (struct comm_letter *)post;
+        struct comm_channel *channel = (struct comm_channel *)post;
+        found->over = post->next;
+        if (!post->is_channel) {
+            data_packet_free(letter->packet);
+            owner->sent(comm->setup.context, worker, letter);
+        } else if (comm_channel_copy(comm, channel)) {
             owner->through(comm->setup.context, worker, channel);
-    }
-    while (found->through) {
-        struct comm_channel *channel = found->through;
-        found->through = channel->next;
-        owner->through(comm->setup.context, worker, channel);
-    }
-    while (found->sent) {
-        struct comm_letter *letter = found->sent;
-        found->sent = letter->next;
-        data_packet_free(letter->packet);
-        owner->sent(comm->setup.context, worker, letter);
+        }
     }
 }
 

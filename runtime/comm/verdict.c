@@ -1,6 +1,5 @@
 /* The first difference is the earliest call that differs from the reference's. Ranks that did the
  * same at that call are a group; the sentence names the groups and the call of each. */
-#include "runtime/comm/verdict.h"
 
 #include "runtime/base/memory.h"
 #include "runtime/comm/internal.h"

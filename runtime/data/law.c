@@ -160,13 +160,6 @@ int data_law_check_kernel(const duite_kernel *kernel, const duite_law *const *la
     return DUITE_OK;
 }
 
-const duite_law *data_law_of(const duite_kernel *kernel, size_t i)
-{
-    bool listed = i < DUITE_MAX_ACCESS && kernel->access[i] != DUITE_NONE;
-    const duite_law *law = listed ? kernel->law[i] : kernel->variadic_law;
-    return law ? law : &duite_sum;
-}
-
 void data_law_neutral(const duite_law *law, void *values, size_t count, duite_type type)
 {
     if (law->neutral)

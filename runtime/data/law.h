@@ -41,7 +41,12 @@ int data_laws_check(const duite_law *const *laws);
 int data_law_check_kernel(const duite_kernel *kernel, const duite_law *const *laws);
 
 /* The law of parameter i, which is cw. Never NULL. */
-const duite_law *data_law_of(const duite_kernel *kernel, size_t i);
+static inline const duite_law *data_law_of(const duite_kernel *kernel, size_t i)
+{
+    const bool listed = i < DUITE_MAX_ACCESS && kernel->access[i] != DUITE_NONE;
+    const duite_law *law = listed ? kernel->law[i] : kernel->variadic_law;
+    return law ? law : &duite_sum;
+}
 
 /* Writes the law's neutral elements. */
 void data_law_neutral(const duite_law *law, void *values, size_t count, duite_type type);

@@ -25,12 +25,15 @@ static inline bool data_order_waits(bool writes, bool earlier_writes)
 /* True if an access waits for the value, as a reader; and if it leaves another one, as a writer. */
 static inline bool data_order_reads(duite_mode mode)
 {
-    return mode == DUITE_R || mode == DUITE_RW;
+    return mode & DUITE_R;
 }
 static inline bool data_order_writes(duite_mode mode)
 {
-    return mode == DUITE_W || mode == DUITE_RW;
+    return mode & DUITE_W;
 }
+_Static_assert((DUITE_R & DUITE_W) == 0 && DUITE_RW == (DUITE_R | DUITE_W) &&
+                   (DUITE_CW & DUITE_RW) == 0,
+               "bits of an immediate mode");
 
 /* True if the access is one more of the open contributions; else it closes them. `law`: its own, if
  * it contributes. */

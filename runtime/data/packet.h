@@ -31,9 +31,7 @@ struct data_packet {
     struct data_packet *next; /* for whoever holds it; means nothing to the receiver */
     uint64_t lines;           /* of memory, this one among them; 0: it is a scope's, see task_cell;
                                  means nothing to the receiver */
-    uint64_t came; /* bytes of a large message that comes in pieces, and the rank that sends it;
-                      mean nothing to the receiver */
-    uint64_t from;
+    uint64_t unused[2];
 };
 _Static_assert(sizeof(struct data_packet) == 64, "a header takes one cache line");
 

@@ -21,7 +21,7 @@ bool offload_send(struct task_graph *graph, struct worker *worker, struct task *
 
 /* The result of a delegated task came; the callee owns it. A result that names no delegated task is
  * dropped. After offload_lost its task was given up. Before, each delegated task has one result, so
- * such a result is an error of its sender. It is counted (offload_refused), and a standstill's
+ * such a result is an error of its sender. It is counted (offload_look), and a standstill's
  * report names the count. */
 void offload_result_arrived(struct task_graph *graph, struct worker *worker,
                             struct data_packet *packet);
@@ -32,12 +32,11 @@ void offload_lost(struct task_graph *graph, struct worker *worker);
 /* Frees everything, when no task is left and no message comes any more. */
 void offload_stop(struct task_graph *graph);
 
-/* Calls back with each delegated task, which stays so during the call. */
-void offload_look(struct task_graph *graph,
-                  void (*look)(void *context, const struct task *task, int rank), void *context);
-
-/* How many results came that named no delegated task. */
-uint64_t offload_refused(struct task_graph *graph);
+/* Calls back with each delegated task, which stays so during the call. Returns how many results
+ * came that named no delegated task. */
+uint64_t offload_look(struct task_graph *graph,
+                      void (*look)(void *context, const struct task *task, int rank),
+                      void *context);
 
 /* A task of another rank came; the packet becomes the callee's. False without memory: then it stays
  * the caller's. */

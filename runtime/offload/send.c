@@ -5,9 +5,51 @@
 
 #include "runtime/base/memory.h"
 #include "runtime/data/law.h"
-#include "runtime/offload/names.h"
 
 #include <string.h>
+
+/* ---- Names ---- */
+
+uint64_t offload_name_give(struct offload_names *names, struct offload_pending *pending)
+{
+    uint32_t i = names->free - 1;
+    if (!names->free) {
+        i = names->n;
+        struct offload_name *slot =
+            base_grow(names->slot, &names->capacity, (size_t)i + 1, sizeof *slot);
+        if (!slot)
+            return 0;
+        names->slot = slot;
+        names->slot[i] = (struct offload_name){.generation = 1};
+        names->n++;
+    }
+    struct offload_name *slot = &names->slot[i];
+    names->free = slot->next;
+    slot->pending = pending;
+    return (uint64_t)slot->generation << 32 | i;
+}
+
+struct offload_pending *offload_name_take(struct offload_names *names, uint64_t name)
+{
+    uint32_t i = (uint32_t)name;
+    struct offload_name *slot = i < names->n ? &names->slot[i] : NULL;
+    if (!slot || !slot->pending || slot->generation != name >> 32) {
+        names->refused++;
+        return NULL;
+    }
+    struct offload_pending *pending = slot->pending;
+    slot->pending = NULL;
+    slot->generation += slot->generation == UINT32_MAX ? 2 : 1; /* never 0 */
+    slot->next = names->free;
+    names->free = i + 1;
+    return pending;
+}
+
+void offload_names_free(struct offload_names *names)
+{
+    base_free(names->slot);
+    *names = (struct offload_names){0};
+}
 
 /* ---- Going ---- */
 
@@ -268,7 +310,7 @@ static void result_unpack_below(struct task *task, struct worker *worker,
 static const struct data_failure *result_take(const struct task *task, duite_param *param,
                                               struct data_packet *result)
 {
-    return result ? result_unpack(task, param, result) : task_lost_failure();
+    return result ? result_unpack(task, param, result) : &task_lost_failure;
 }
 
 /* One of two things happened; `pending` may be gone afterwards, and the task. */
@@ -326,8 +368,8 @@ void offload_lost(struct task_graph *graph, struct worker *worker)
     base_free(names);
 }
 
-void offload_look(struct task_graph *graph,
-                  void (*look)(void *context, const struct task *task, int rank), void *context)
+uint64_t offload_look(struct task_graph *graph,
+                      void (*look)(void *context, const struct task *task, int rank), void *context)
 {
     pthread_mutex_lock(&graph->lock);
     for (uint32_t i = 0; graph->offload_names && i < graph->offload_names->n; i++) {
@@ -335,13 +377,7 @@ void offload_look(struct task_graph *graph,
         if (pending)
             look(context, pending->task, pending->send.to);
     }
-    pthread_mutex_unlock(&graph->lock);
-}
-
-uint64_t offload_refused(struct task_graph *graph)
-{
-    pthread_mutex_lock(&graph->lock);
-    uint64_t refused = graph->offload_names ? graph->offload_names->refused : 0;
+    const uint64_t refused = graph->offload_names ? graph->offload_names->refused : 0;
     pthread_mutex_unlock(&graph->lock);
     return refused;
 }

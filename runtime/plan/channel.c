@@ -17,9 +17,6 @@ struct message_failure {
     struct data_failure failure;
 };
 
-static const struct data_failure channel_lost = {
-    .code = DUITE_E_MPI, .kernel = UINT32_MAX, .text = "communication between the ranks broke"};
-
 static size_t channel_value_room(const struct plan_place *place)
 {
     return (place->bytes + 7) / 8 * 8;
@@ -137,5 +134,5 @@ void plan_channel_lost(struct comm_channel *channel)
     atomic_store_explicit(&plan->tainted, PLAN_POISONED, memory_order_relaxed);
     for (uint32_t i = 0; i < task->n; i++)
         if (use[i].writes)
-            plan->place[use[i].place].failure = &channel_lost;
+            plan->place[use[i].place].failure = &task_lost_failure;
 }

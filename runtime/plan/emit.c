@@ -2,7 +2,7 @@
  * once, here; afterwards only bindings, arguments and replays change it. It lives as long as its
  * record or a replay of it. */
 #include "runtime/plan/plan.h"
-#include "runtime/task/internal.h"
+#include "runtime/task/ready.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -349,7 +349,7 @@ void plan_drop(struct plan *plan, struct worker *worker)
     if (!plan)
         return;
     if (plan->turn.current)
-        task_release(plan->graph, worker, plan->turn.current);
+        ready_release(plan->graph, worker, plan->turn.current);
     plan->turn.current = NULL;
     if (plan->channels.drop)
         plan->channels.drop(&plan->channels);

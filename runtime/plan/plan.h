@@ -1,7 +1,7 @@
 #ifndef DUITE_PLAN_PLAN_H
 #define DUITE_PLAN_PLAN_H
 
-#include "runtime/comm/channel.h"
+#include "runtime/comm/message.h"
 #include "runtime/plan/record.h"
 
 /* A plan: a record compiled to flat arrays; with several ranks, this rank's part of it. Workers and

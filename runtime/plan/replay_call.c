@@ -2,7 +2,7 @@
  * that reads or writes each of its objects; forked rounds are tasks like any other. Both leave the
  * same bytes, the same poison and the same numbers of tasks. */
 #include "runtime/plan/plan.h"
-#include "runtime/task/internal.h"
+#include "runtime/task/ready.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -147,7 +147,7 @@ static int replay_use_all(struct plan_record *record, struct worker *worker, str
     plan->started++;
     atomic_fetch_add_explicit(&plan->refs, 1, memory_order_relaxed);
     record->changes = NULL;
-    task_settled(graph, worker, task, done);
+    ready_take(graph, worker, task, done + 1);
     return DUITE_OK;
 }
 

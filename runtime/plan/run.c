@@ -100,7 +100,7 @@ static void run_starve(struct plan *plan, struct task *task)
     if (plan->gate)
         plan_taint(plan, PLAN_STARVED);
     if (plan->words)
-        comm_broke_memory(plan->graph->comm, "a replay");
+        comm_break_memory(plan->graph->comm, "a replay");
 }
 
 void plan_replay_run(struct task *task)

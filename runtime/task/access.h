@@ -6,12 +6,22 @@
 #include "runtime/base/error.h"
 #include "runtime/data/law.h"
 
-#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
-
-/* One access of a fork: its object is found, then the access waits for its version. The short way
+/* One access of a fork: its object is found, then the access waits for its version. The short ways
  * of most forks and the general one take these steps; each passes constants, by which the compiler
  * leaves out the questions that it need not ask. */
 #define ACCESS_INLINE __attribute__((always_inline)) static inline
+
+/* The kernels that a way is for: plain ones, with objects that have no contributions; few accesses,
+ * cw among them; any (see task_fixed). */
+enum access_kernels { ACCESS_PLAIN, ACCESS_FEW, ACCESS_ANY };
+
+/* The immediate mode of parameter i. */
+ACCESS_INLINE duite_mode access_mode(const struct task_fixed *fixed, size_t i,
+                                     enum access_kernels kernels)
+{
+    return kernels == ACCESS_ANY ? task_immediate(task_mode_of(fixed, i))
+                                 : fixed->kernel->access[i];
+}
 
 /* How a fork looks for its objects. */
 struct access_look {
@@ -49,14 +59,20 @@ ACCESS_INLINE struct data_object *access_find(const struct access_look *look, du
     return object;
 }
 
+/* This fork names none of the first n objects after all. */
+ACCESS_INLINE void access_unmark(struct data_object *const *object, size_t n)
+{
+    while (n > 0)
+        object[--n]->mark = 0;
+}
+
 /* The same for objects that may have open contributions, which a contribution joins. */
 ACCESS_INLINE struct data_object *access_find_any(const struct access_look *look,
                                                   const struct task_fixed *fixed, size_t i,
-                                                  duite_object name)
+                                                  duite_object name, enum access_kernels kernels)
 {
-    const duite_mode mode = task_mode_of(fixed, i);
-    struct data_object *object = access_find(look, name, mode);
-    if (!object || task_immediate(mode) != DUITE_CW ||
+    struct data_object *object = access_find(look, name, task_mode_of(fixed, i));
+    if (!object || access_mode(fixed, i, kernels) != DUITE_CW ||
         (object->leaves && object->law == data_law_of(fixed->kernel, i)))
         return object;
     object->mark = 0;
@@ -65,38 +81,41 @@ ACCESS_INLINE struct data_object *access_find_any(const struct access_look *look
 
 /* Every rank notes the access of a task on rank `at`, or of a replicated one. Open contributions
  * that it does not join are combined; rank `at` gets the value that it reads, and has the one that
- * it writes. `plain`: the kernel is, and there are no contributions. Errors: memory; the graph is
- * broken. */
-ACCESS_INLINE int access_note(struct task_scope *scope, struct worker *worker,
-                              const duite_kernel *kernel, size_t i, struct data_object *object,
-                              duite_mode mode, int at, bool plain)
+ * it writes. Errors: memory; the graph is broken. */
+ACCESS_INLINE int access_note(const struct task_fork_call *call, size_t i,
+                              struct data_object *object, duite_mode mode,
+                              enum access_kernels kernels)
 {
+    const duite_kernel *kernel = call->kernel;
+    struct task_scope *scope = call->scope;
     int code = DUITE_OK;
-    if (!plain && object->leaves && !data_order_joins(mode, data_law_of(kernel, i), object->law))
-        code = task_reduce(scope, worker, object);
-    if (!plain && (code || mode == DUITE_CW))
+    if (kernels != ACCESS_PLAIN && object->leaves &&
+        !data_order_joins(mode, data_law_of(kernel, i), object->law))
+        code = task_reduce(scope, call->worker, object);
+    if (kernels != ACCESS_PLAIN && (code || mode == DUITE_CW))
         return code;
-    if (!plain && kernel->replicated && !scope->depth)
-        return task_note_everywhere(scope->graph, worker, object, mode);
-    if (data_order_reads(mode) && object->holder != at)
-        code = task_fetch(scope->graph, worker, object, at);
+    if (kernels == ACCESS_ANY && kernel->replicated && !scope->depth)
+        return task_note_everywhere(scope->graph, call->worker, object, mode);
+    if (data_order_reads(mode) && object->holder != call->at)
+        code = task_fetch(scope->graph, call->worker, object, call->at);
     if (!code && data_order_writes(mode))
-        task_note_version(object, at);
+        task_note_version(object, call->at);
     return code;
 }
 
 /* The same, and all that an access of a task that another rank runs is here. */
-ACCESS_INLINE int access_elsewhere(struct task_scope *scope, struct worker *worker,
-                                   const duite_kernel *kernel, size_t i, struct data_object *object,
-                                   duite_mode mode, int at, bool plain)
+ACCESS_INLINE int access_elsewhere(const struct task_fork_call *call, size_t i,
+                                   struct data_object *object, enum access_kernels kernels)
 {
-    const int code = access_note(scope, worker, kernel, i, object, mode, at, plain);
+    const duite_mode mode = access_mode(call->fixed, i, kernels);
+    const int code = access_note(call, i, object, mode, kernels);
     if (code)
         return code;
-    if (!plain && mode == DUITE_CW)
-        return task_contribute(scope->graph, NULL, i, object, data_law_of(kernel, i), at);
+    if (kernels != ACCESS_PLAIN && mode == DUITE_CW)
+        return task_contribute(call->scope->graph, NULL, i, object, data_law_of(call->kernel, i),
+                               call->at);
     if (data_order_writes(mode) && object->current)
-        task_forget(scope->graph, worker, object);
+        task_forget(call->scope->graph, call->worker, object);
     return DUITE_OK;
 }
 
@@ -118,7 +137,5 @@ ACCESS_INLINE bool access_wait(struct task_scope *scope, struct task_access *acc
     *done += data_version_overwrite(version, out, &access->waiter);
     return true;
 }
-
-#pragma GCC visibility pop
 
 #endif

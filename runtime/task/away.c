@@ -82,7 +82,7 @@ static void leaf_comes_home(struct data_piece *leaf, const struct task_left_valu
         return;
     leaf->packet = data_packet_new(left->bytes, false);
     if (!leaf->packet) {
-        leaf->failure = task_nest_no_memory();
+        leaf->failure = &task_scope_no_memory;
         return;
     }
     leaf->value = data_payload(leaf->packet);
@@ -100,7 +100,7 @@ void task_lent_comes_home(struct task_scope *inner, struct worker *worker, size_
     }
     struct data_version *version = task_value_version(object, left->values, left->bytes);
     if (!version) {
-        task_scope_fail(inner, task_nest_no_memory());
+        task_scope_fail(inner, &task_scope_no_memory);
         return;
     }
     data_version_poison(version, left->failure);

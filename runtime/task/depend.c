@@ -1,11 +1,9 @@
 /* Dependences, the second stage of a task: its accesses become versions on this rank. Each access
  * becomes a hold on the version that it reads, the heir of the one that it overwrites, a leaf of a
  * sum, or a lent object. On other ranks the same call forgets stale versions, and sends or awaits
- * copies. Values that are not there yet wake the task later: ready.h. */
+ * copies (message.c). Values that are not there yet wake the task later: ready.h. */
 #include "runtime/task/access.h"
 #include "runtime/task/ready.h"
-
-#include "runtime/data/law.h"
 
 /* ---- Versions on this rank ---- */
 
@@ -32,57 +30,8 @@ void task_forget(struct task_graph *graph, struct worker *worker, struct data_ob
 {
     if (!object->current)
         return;
-    task_release(graph, worker, object->current);
+    ready_release(graph, worker, object->current);
     object->current = NULL;
-}
-
-static int fetch_send(struct task_graph *graph, struct worker *worker, struct data_object *object,
-                      int to)
-{
-    struct data_version *version = task_local(graph, object);
-    struct task *task = version ? task_new(&graph->root, TASK_SEND, 1, sizeof *task->send) : NULL;
-    if (!task)
-        return DUITE_E_MEMORY;
-    *task->send = (struct comm_letter){.key = task_key(graph, object), .sender = task, .to = to};
-    task->access[0].waiter.mode = DUITE_R;
-    task_settled(graph, worker, task, data_version_read(version, &task->access[0].waiter));
-    return DUITE_OK;
-}
-
-static int fetch_await(struct task_graph *graph, struct worker *worker, struct data_object *object)
-{
-    struct data_version *version = data_object_version(object);
-    if (!version) {
-        base_no_memory("a version");
-        return task_break(graph);
-    }
-    object->current = version;
-    const struct comm_target target = {
-        .arrived = task_arrived, .what = version, .from = object->holder};
-    if (!comm_expect(graph->comm, worker, task_key(graph, object), target, 1))
-        return DUITE_OK;
-    object->current = NULL;
-    data_version_free(version);
-    return task_break(graph);
-}
-
-int task_fetch(struct task_graph *graph, struct worker *worker, struct data_object *object, int to)
-{
-    if (!task_note_copy(graph, object, to))
-        return DUITE_OK;
-    if (graph->rank == to)
-        return fetch_await(graph, worker, object);
-    if (graph->rank == object->holder)
-        return fetch_send(graph, worker, object, to);
-    return DUITE_OK;
-}
-
-int task_fetch_all(struct task_graph *graph, struct worker *worker, struct data_object *object)
-{
-    int code = DUITE_OK;
-    for (int rank = 0; rank < graph->n_ranks && !code; rank++)
-        code = task_fetch(graph, worker, object, rank);
-    return code;
 }
 
 /* ---- Accesses ---- */
@@ -144,8 +93,7 @@ static int access_depend(struct task_fork_call *call, size_t i, duite_mode decla
 {
     struct data_object *object = task_fork_object(call, i);
     const duite_mode mode = task_immediate(declared);
-    int code =
-        access_note(call->scope, call->worker, call->kernel, i, object, mode, call->at, false);
+    const int code = access_note(call, i, object, mode, ACCESS_ANY);
     if (code)
         return code;
     if (mode == DUITE_CW)
@@ -169,7 +117,7 @@ static int depend_here(struct task_fork_call *call)
     if (code)
         task_void(call->scope->graph, call->worker, call->task, made, call->done);
     else
-        task_settled(call->scope->graph, call->worker, call->task, call->done);
+        ready_take(call->scope->graph, call->worker, call->task, call->done + 1);
     return code;
 }
 
@@ -177,49 +125,11 @@ static int depend_elsewhere(struct task_fork_call *call)
 {
     int code = DUITE_OK;
     for (size_t i = 0; i < call->n && !code; i++)
-        code =
-            access_elsewhere(call->scope, call->worker, call->kernel, i, task_fork_object(call, i),
-                             task_immediate(task_mode_of(call->fixed, i)), call->at, false);
+        code = access_elsewhere(call, i, task_fork_object(call, i), ACCESS_ANY);
     return code;
 }
 
 int task_depend(struct task_fork_call *call)
 {
     return call->task ? depend_here(call) : depend_elsewhere(call);
-}
-
-/* ---- ready.h, for those to whom a call more does not matter ---- */
-
-void task_settled(struct task_graph *graph, struct worker *worker, struct task *task, uint32_t done)
-{
-    ready_take(graph, worker, task, done + 1);
-}
-
-void task_wake(struct task_graph *graph, struct worker *worker, struct data_waiter *waiter)
-{
-    ready_wake(graph, worker, waiter);
-}
-
-/* The heir of the version that the value is passed on to may again be no task. */
-void task_wake_heir(struct task_graph *graph, struct worker *worker, struct data_waiter *heir)
-{
-    while (heir && !heir->back)
-        heir = task_pass(worker, heir);
-    ready_wake_heir(graph, worker, heir);
-}
-
-void task_release(struct task_graph *graph, struct worker *worker, struct data_version *version)
-{
-    ready_release(graph, worker, version);
-}
-
-struct data_waiter *task_produced(struct task_graph *graph, struct worker *worker,
-                                  struct data_version *version)
-{
-    return ready_produced(graph, worker, version);
-}
-
-void task_publish(struct task_graph *graph, struct worker *worker, struct data_version *version)
-{
-    ready_publish(graph, worker, version);
 }

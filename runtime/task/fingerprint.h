@@ -8,30 +8,39 @@
  * index, the rank it names and its objects; priority and cost are the running rank's and stay out.
  * The communication keeps the hash after each call (comm/history.h). */
 
-static inline uint64_t task_name_bits(duite_object name)
-{
-    return (uint64_t)name.generation << 32 | name.slot; /* as it lies in memory */
-}
-
-/* The hash of a fork: it begins with what is forked, and goes on with each object. It is a sum of
- * products: no multiplication waits for another one. */
 #define TASK_HASH_ODD UINT64_C(0x9e3779b97f4a7c15)
 
+static inline uint64_t task_name_bits(duite_object name)
+{
+    uint64_t bits; /* as it lies in memory: one load */
+    memcpy(&bits, &name, sizeof bits);
+    return bits;
+}
+
+/* The fingerprint with one more value. */
+static inline uint64_t task_fingerprint(uint64_t fingerprint, uint64_t value)
+{
+    fingerprint = (fingerprint ^ value) * TASK_HASH_ODD;
+    return fingerprint ^ fingerprint >> 32;
+}
+
+/* The hash of a fork: it begins with what is forked, and goes on with each object, as a polynomial:
+ * forks with the same objects in another order differ. */
 static inline uint64_t task_fork_hash(uint64_t what)
 {
     return what * TASK_HASH_ODD;
 }
 
-static inline uint64_t task_fork_hash_on(uint64_t hash, size_t i, duite_object name)
+static inline uint64_t task_fork_hash_on(uint64_t hash, duite_object name)
 {
-    return hash + task_name_bits(name) * (TASK_HASH_ODD * (2 * i + 3));
+    return (hash + task_name_bits(name)) * TASK_HASH_ODD;
 }
 
 static inline uint64_t task_fork_hash_all(uint64_t what, size_t n, const duite_object *objects)
 {
     uint64_t hash = task_fork_hash(what);
     for (size_t i = 0; i < n; i++)
-        hash = task_fork_hash_on(hash, i, objects[i]);
+        hash = task_fork_hash_on(hash, objects[i]);
     return hash;
 }
 

@@ -1,6 +1,14 @@
 /* Finishing, the last stage of a task: its outputs are published once, its inputs released, and the
- * task is freed. Values that other ranks send, or fail to send, are published by the same means. */
+ * task is freed. */
 #include "runtime/task/ready.h"
+
+/* The heir of the version that the value is passed on to may again be no task. */
+void task_wake_heir(struct task_graph *graph, struct worker *worker, struct data_waiter *heir)
+{
+    while (heir && !heir->back)
+        heir = task_pass(worker, heir);
+    ready_wake_heir(graph, worker, heir);
+}
 
 static inline void access_release(struct task_graph *graph, struct worker *worker,
                                   const struct task_access *access)
@@ -15,7 +23,7 @@ static inline void access_release(struct task_graph *graph, struct worker *worke
         ready_publish(graph, worker, access->waiter.version);
         break;
     case DUITE_CW:
-        task_wake(graph, worker, data_sum_release(access->leaf->sum));
+        ready_wake(graph, worker, data_sum_release(access->leaf->sum));
         break;
     default: /* postponed: the scope's */
         break;
@@ -35,48 +43,4 @@ void task_finish(struct task_graph *graph, struct worker *worker, struct task *t
         task_scope_end(inner, worker); /* it leaves `scope` when its children have */
     else
         task_left(graph, scope, worker);
-}
-
-/* ---- Messages ---- */
-
-static const struct data_failure communication_lost = {
-    .code = DUITE_E_MPI, .kernel = UINT32_MAX, .text = "communication between the ranks broke"};
-
-struct data_packet *task_send_packet(struct comm_letter *send)
-{
-    const struct task *task = send->sender;
-    if (send->packet || !task->n)
-        return send->packet;
-    const struct data_version *version = task->access[0].waiter.version;
-    if (version->poisoned)
-        return send->packet = task_poison_packet(send->key, version->failure);
-    /* The same bytes may be on their way to another rank already: then the header says just this.
-     */
-    struct data_packet *packet = version->packet;
-    struct data_key key = send->key;
-    if (packet->kind != DATA_VALUE || packet->key.slot != key.slot ||
-        packet->key.generation != key.generation || packet->key.number != key.number) {
-        packet->kind = DATA_VALUE;
-        packet->key = key;
-    }
-    return packet;
-}
-
-void task_arrived(void *graph, struct worker *worker, void *what, struct data_packet *packet)
-{
-    struct data_version *version = what;
-    if (!packet) {
-        data_version_poison(version, &communication_lost);
-    } else if (packet->kind == DATA_POISON) {
-        data_version_poison(version, task_fail(graph, data_payload(packet), false));
-        data_packet_free(packet);
-    } else {
-        version->packet = packet;
-    }
-    task_publish(graph, worker, version);
-}
-
-const struct data_failure *task_lost_failure(void)
-{
-    return &communication_lost;
 }

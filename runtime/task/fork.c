@@ -80,7 +80,7 @@ void task_void(struct task_graph *graph, struct worker *worker, struct task *tas
         task->inner = NULL;
     task->state = TASK_VOID;
     task->n = (uint32_t)made;
-    task_settled(graph, worker, task, done + missing);
+    ready_take(graph, worker, task, done + missing + 1);
 }
 
 uint64_t task_later_round(const struct task *task)
@@ -226,12 +226,11 @@ ACCESS_INLINE bool fork_take_objects(struct task_fork_call *call, bool nested)
 {
     const struct access_look look = access_look_of(call->scope, nested, false);
     for (size_t i = 0; i < call->n; i++) {
-        struct data_object *object = access_find_any(&look, call->fixed, i, call->objects[i]);
-        if (!object) {
-            task_fork_unmark(call, i);
+        call->object[i] = access_find_any(&look, call->fixed, i, call->objects[i], ACCESS_ANY);
+        if (!call->object[i]) {
+            access_unmark(call->object, i);
             return false;
         }
-        call->object[i] = object;
     }
     return true;
 }
@@ -290,22 +289,22 @@ static void fork_give_block(struct task *task, struct data_object *own, bool fol
     }
 }
 
-/* Forks after the checks: only memory can be missing. */
-static int fork_checked(struct task_fork_call *call, const struct task_options *options,
-                        const void *args)
+/* The object that the task runs for, or NULL. */
+static inline struct data_object *fork_own(const struct task_fork_call *call)
 {
-    const struct task_graph *graph = call->scope->graph;
-    const bool replicated = call->kernel->replicated;
     const uint32_t owner = task_fork_owner(call);
-    struct data_object *own = owner == TASK_NOBODY ? NULL : task_fork_object(call, owner);
-    call->at = call->scope->depth ? graph->rank
-                                  : task_owner_rank(options->at, replicated, own ? own->home : -1);
-    if (call->at == TASK_EVERYWHERE)
-        call->at = graph->rank;
-    if (call->at == graph->rank && !(call->task = fork_body(call, options, args)))
+    return owner == TASK_NOBODY ? NULL : task_fork_object(call, owner);
+}
+
+/* This rank runs the task of a right fork: only memory can be missing. */
+static int fork_here(struct task_fork_call *call, const struct task_options *options,
+                     const void *args)
+{
+    struct data_object *own = fork_own(call);
+    if (!(call->task = fork_body(call, options, args)))
         return DUITE_E_MEMORY;
-    if (call->task && own)
-        fork_give_block(call->task, own, task_owner_decides(options->at, replicated));
+    if (own)
+        fork_give_block(call->task, own, task_owner_decides(options->at, call->kernel->replicated));
     return task_depend(call);
 }
 
@@ -313,6 +312,7 @@ int task_fork_any(struct task_scope *scope, struct worker *worker,
                   const struct task_options *options, const duite_kernel *kernel, const void *args,
                   size_t n, const duite_object *objects)
 {
+    struct task_graph *graph = scope->graph;
     struct task_fork_call call;
     task_fork_call_init(&call, scope, worker, kernel, n, objects);
     const int code =
@@ -320,87 +320,98 @@ int task_fork_any(struct task_scope *scope, struct worker *worker,
     if (code)
         return code;
     scope->forks++;
-    if (!scope->depth && scope->graph->n_ranks > 1)
+    call.at = graph->rank;
+    if (!scope->depth && graph->n_ranks > 1) {
+        const struct data_object *own = fork_own(&call);
+        call.at = task_owner_rank(options->at, kernel->replicated, own ? own->home : -1);
         task_mix_fork(
-            scope->graph,
-            task_fork_hash_all(task_fork_what(call.fixed->index, options->at), n, objects),
+            graph, task_fork_hash_all(task_fork_what(call.fixed->index, options->at), n, objects),
             COMM_FORKED, call.fixed->index);
-    return fork_checked(&call, options, args);
+    }
+    if (call.at != graph->rank && call.at != TASK_EVERYWHERE)
+        return task_depend(&call);
+    call.at = graph->rank;
+    return fork_here(&call, options, args);
 }
 
-/* ---- The short way of tasks that other ranks run: once for plain kernels, once for others ---- */
+/* ---- The short way on several ranks, whose tasks mostly run elsewhere. Compiled once for plain
+ * kernels and once for those that contribute, too ---- */
 
 /* Finds the objects, and hashes their names. False: one needs a second look; nothing was done. */
-ACCESS_INLINE bool elsewhere_take(struct task_scope *scope, const struct task_fixed *fixed,
-                                  size_t n, const duite_object *name, struct data_object **object,
-                                  uint64_t *hash, bool plain)
+ACCESS_INLINE bool ranks_take_objects(const struct task_fork_call *call,
+                                      struct data_object **object, uint64_t *hash,
+                                      enum access_kernels kernels)
 {
-    const struct access_look look = access_look_of(scope, false, plain);
-    for (size_t i = 0; i < n; i++) {
-        object[i] = plain ? access_find(&look, name[i], DUITE_NONE)
-                          : access_find_any(&look, fixed, i, name[i]);
-        *hash = task_fork_hash_on(*hash, i, name[i]);
-        if (object[i])
-            continue;
-        while (i > 0)
-            object[--i]->mark = 0;
-        return false;
+    const bool plain = kernels == ACCESS_PLAIN;
+    const struct access_look look = access_look_of(call->scope, false, plain);
+    for (size_t i = 0; i < call->n; i++) {
+        object[i] = plain ? access_find(&look, call->objects[i], DUITE_NONE)
+                          : access_find_any(&look, call->fixed, i, call->objects[i], kernels);
+        *hash = task_fork_hash_on(*hash, call->objects[i]);
+        if (!object[i]) {
+            access_unmark(object, i);
+            return false;
+        }
     }
     return true;
 }
 
-/* Instead of a code: the fork is not of this kind, and nothing was done. */
-enum { ELSEWHERE_NOT = -1 };
-
-ACCESS_INLINE int elsewhere_try(struct task_graph *graph, struct worker *worker,
-                                const struct task_fixed *fixed, const void *args, size_t n,
-                                const duite_object *objects, bool plain)
+/* This rank runs it. A function apart: in the other ones the call stays in registers. */
+__attribute__((noinline)) static int ranks_here(const struct task_fixed *fixed,
+                                                struct task_scope *scope, struct worker *worker,
+                                                const void *args, const duite_object *objects,
+                                                struct data_object *const *object)
 {
+    struct task_fork_call call;
+    task_fork_call_init(&call, scope, worker, fixed->kernel, fixed->n, objects);
+    call.fixed = fixed;
+    call.at = scope->graph->rank;
+    memcpy(call.object, object, fixed->n * sizeof *object);
+    return fork_here(&call, &task_no_options, args);
+}
+
+ACCESS_INLINE int ranks_fork(struct task_graph *graph, struct worker *worker,
+                             const struct task_fixed *fixed, const void *args, size_t n,
+                             const duite_object *objects, enum access_kernels kernels)
+{
+    struct task_scope *root = &graph->root;
     struct data_object *object[TASK_FEW];
-    struct task_scope *scope = &graph->root;
-    const duite_kernel *kernel = fixed->kernel;
-    if ((plain ? n != fixed->n : kernel->replicated || n > TASK_FEW) ||
-        !task_fork_fits(fixed, args, n, objects))
-        return ELSEWHERE_NOT;
-    const uint32_t own = fixed->owner[n > fixed->n];
-    const struct data_object *owner =
-        own == TASK_NOBODY ? NULL : data_object_here(&graph->table, objects[own]);
-    const int at = task_owner_rank(TASK_ANYWHERE, false, owner ? owner->home : -1);
-    uint64_t hash = task_fork_hash(task_fork_what(fixed->index, TASK_ANYWHERE));
-    if (at == graph->rank || !elsewhere_take(scope, fixed, n, objects, object, &hash, plain))
-        return ELSEWHERE_NOT;
-    scope->forks++;
+    struct task_fork_call call;
+    uint64_t hash = fixed->hash;
+    task_fork_call_init(&call, root, worker, fixed->kernel, n, objects);
+    call.fixed = fixed;
+    if (!ranks_take_objects(&call, object, &hash, kernels))
+        return task_fork_any(root, worker, &task_no_options, fixed->kernel, args, n, objects);
+    root->forks++;
     task_mix_fork(graph, hash, COMM_FORKED, fixed->index);
+    call.at = fixed->owner[0] == TASK_NOBODY ? 0 : object[fixed->owner[0]]->home;
+    if (call.at == graph->rank)
+        return ranks_here(fixed, root, worker, args, objects, object);
     int code = DUITE_OK;
     for (size_t i = 0; i < n && !code; i++)
-        code = access_elsewhere(scope, worker, kernel, i, object[i],
-                                plain ? kernel->access[i] : task_immediate(task_mode_of(fixed, i)),
-                                at, plain);
+        code = access_elsewhere(&call, i, object[i], kernels);
     return code;
 }
 
-/* A function apart, since each needs most registers. */
 __attribute__((noinline)) static int
-elsewhere_other(struct task_graph *graph, struct worker *worker, const struct task_fixed *fixed,
-                const void *args, size_t n, const duite_object *objects)
+ranks_contribute(struct task_graph *graph, struct worker *worker, const struct task_fixed *fixed,
+                 const void *args, size_t n, const duite_object *objects)
 {
-    return elsewhere_try(graph, worker, fixed, args, n, objects, false);
+    return ranks_fork(graph, worker, fixed, args, n, objects, ACCESS_FEW);
 }
-
-/* ---- The entries ---- */
 
 int task_fork_ranks(struct task_graph *graph, struct worker *worker, const duite_kernel *kernel,
                     const void *args, size_t n, const duite_object *objects)
 {
     const struct task_fixed *fixed = task_kernel_find(graph, kernel);
-    int code = ELSEWHERE_NOT;
-    if (fixed)
-        code = fixed->plain ? elsewhere_try(graph, worker, fixed, args, n, objects, true)
-                            : elsewhere_other(graph, worker, fixed, args, n, objects);
-    if (code != ELSEWHERE_NOT)
-        return code;
-    return task_fork_any(&graph->root, worker, &task_no_options, kernel, args, n, objects);
+    if (!fixed || !fixed->few || n != fixed->n || !n || !objects ||
+        !task_args_fit(args, kernel->args_size))
+        return task_fork_any(&graph->root, worker, &task_no_options, kernel, args, n, objects);
+    return fixed->plain ? ranks_fork(graph, worker, fixed, args, n, objects, ACCESS_PLAIN)
+                        : ranks_contribute(graph, worker, fixed, args, n, objects);
 }
+
+/* ---- The entries ---- */
 
 int task_fork_main(struct task_graph *graph, struct worker *worker, const duite_kernel *kernel,
                    const void *args, size_t n, const duite_object *objects)

@@ -37,7 +37,9 @@ static int kernel_check(const duite_kernel *kernel, uint32_t index, struct task_
         return base_error(DUITE_E_KERNEL, "kernel %s has no body", kernel->name);
     *fixed = (struct task_fixed){.kernel = kernel,
                                  .index = index,
-                                 .plain = kernel->variadic == DUITE_NONE && !kernel->replicated};
+                                 .hash = task_fork_hash(task_fork_what(index, TASK_ANYWHERE)),
+                                 .few = kernel->variadic == DUITE_NONE && !kernel->replicated};
+    bool contributes = false;
     for (uint32_t i = 0; i < DUITE_MAX_ACCESS; i++) {
         duite_mode mode = kernel->access[i];
         if ((int)mode < DUITE_NONE || mode > DUITE_CWP)
@@ -48,13 +50,15 @@ static int kernel_check(const duite_kernel *kernel, uint32_t index, struct task_
                               kernel->name, i);
         fixed->n += mode != DUITE_NONE;
         fixed->postponed += task_postponed(mode);
-        fixed->plain &= mode <= DUITE_RW;
+        fixed->few &= !task_postponed(mode);
+        contributes |= mode == DUITE_CW;
     }
     if ((int)kernel->variadic < DUITE_NONE || kernel->variadic > DUITE_CWP)
         return base_error(DUITE_E_KERNEL, "kernel %s: `variadic` has no such mode: %d",
                           kernel->name, (int)kernel->variadic);
     const size_t grains = task_grains(fixed->n, kernel->args_size);
-    fixed->plain &= fixed->n <= TASK_FEW && grains <= UINT32_MAX;
+    fixed->few &= fixed->n <= TASK_FEW && grains <= UINT32_MAX;
+    fixed->plain = fixed->few && !contributes;
     fixed->grains = (uint32_t)grains;
     fixed->owner[0] = task_owner(kernel->access, kernel->variadic, fixed->n);
     fixed->owner[1] = task_owner(kernel->access, kernel->variadic, (size_t)fixed->n + 1);
@@ -268,17 +272,6 @@ const struct data_failure *task_fail_memory(const struct task *task)
 {
     struct data_failure failure = {.code = DUITE_E_MEMORY, .text = "no memory for what it writes"};
     return task_fail_task(task, NULL, &failure);
-}
-
-struct data_packet *task_poison_packet(struct data_key key, const struct data_failure *failure)
-{
-    struct data_packet *packet = data_packet_new(sizeof *failure, false);
-    if (!packet)
-        return NULL;
-    packet->key = key;
-    packet->kind = DATA_POISON;
-    memcpy(data_payload(packet), failure, sizeof *failure);
-    return packet;
 }
 
 struct data_key task_version_of(const struct task_graph *graph, duite_object object)

@@ -21,19 +21,6 @@ static inline size_t task_grains(size_t n, size_t extra)
            TASK_GRAIN;
 }
 
-/* Takes `done` and the hold of the fork from `pending`; at 0 the task is ready. */
-void task_settled(struct task_graph *graph, struct worker *worker, struct task *task,
-                  uint32_t done);
-
-/* Wakes a waiter: what it waited for is there. NULL is fine. */
-void task_wake(struct task_graph *graph, struct worker *worker, struct data_waiter *waiter);
-
-/* The version is there: wakes its readers, releases the producer's hold. */
-void task_publish(struct task_graph *graph, struct worker *worker, struct data_version *version);
-/* The same, but an heir that may now take the version over is returned, not woken. */
-struct data_waiter *task_produced(struct task_graph *graph, struct worker *worker,
-                                  struct data_version *version);
-
 /* Access i of the task, by its mode r, w or rw, waits for the object's current version, and leaves
  * a new one if it writes. Adds one to *done if there is nothing to wait for. Errors: memory; the
  * graph is broken. */
@@ -301,7 +288,7 @@ void task_void(struct task_graph *graph, struct worker *worker, struct task *tas
                uint32_t done);
 
 /* The failure of values that did not come because communication broke. */
-const struct data_failure *task_lost_failure(void);
+extern const struct data_failure task_lost_failure;
 
 /* The key of the current version of a main program's object. */
 static inline struct data_key task_key(const struct task_graph *graph,

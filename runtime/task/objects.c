@@ -1,6 +1,7 @@
 /* Operations on objects without a task of the program: free, read, set, resize, and moves of homes.
  * Each leaves a version, or a task of the runtime that makes one, as a fork would; every rank
  * concludes the same. */
+#include "runtime/task/ready.h"
 #include "runtime/task/scope.h"
 
 #include "runtime/base/error.h"
@@ -51,7 +52,7 @@ int task_copy(struct task_graph *graph, struct worker *worker, duite_object name
     task->copy = copy;
     task->block = object->block;
     task->access[0].waiter.mode = DUITE_R;
-    task_settled(graph, worker, task, data_version_read(version, &task->access[0].waiter));
+    ready_take(graph, worker, task, 1 + data_version_read(version, &task->access[0].waiter));
     return DUITE_OK;
 }
 
@@ -157,7 +158,8 @@ static int move_await(struct task_graph *graph, struct worker *worker,
         return DUITE_E_MEMORY;
     task->block = object->block;
     task->access[0].waiter.mode = DUITE_R;
-    task_settled(graph, worker, task, data_version_read(object->current, &task->access[0].waiter));
+    ready_take(graph, worker, task,
+               1 + data_version_read(object->current, &task->access[0].waiter));
     return DUITE_OK;
 }
 

@@ -10,11 +10,12 @@
 /* Ready, the third stage of a task. `pending` counts the accesses that the task waits for, and one
  * hold of the fork itself; at 0 the task may run. The taker of the last one hands the task to the
  * workers, which run it: run.c. A version wakes its readers when its value is there, and its heir
- * when nobody holds it any more. Inline for files that do so with every access. */
+ * when nobody holds it any more. */
 
 /* An heir that is no task passes the value on to the scope above. Not inline: it is rare. */
 void task_wake_heir(struct task_graph *graph, struct worker *worker, struct data_waiter *heir);
 
+/* Takes so many from `pending`; at 0 the task is ready. */
 __attribute__((always_inline)) static inline void
 ready_take(struct task_graph *graph, struct worker *worker, struct task *task, uint32_t taken)
 {
@@ -28,6 +29,7 @@ static inline struct task *ready_waiter_task(struct data_waiter *waiter)
     return (struct task *)(void *)((char *)waiter - waiter->back);
 }
 
+/* Wakes a waiter of a task: it waited for this. NULL is fine. */
 static inline void ready_wake(struct task_graph *graph, struct worker *worker,
                               struct data_waiter *waiter)
 {
@@ -35,7 +37,7 @@ static inline void ready_wake(struct task_graph *graph, struct worker *worker,
         ready_take(graph, worker, ready_waiter_task(waiter), 1);
 }
 
-/* As task_wake_heir. */
+/* Wakes an heir of any kind. */
 static inline void ready_wake_heir(struct task_graph *graph, struct worker *worker,
                                    struct data_waiter *heir)
 {
@@ -48,14 +50,15 @@ static inline void ready_wake_heir(struct task_graph *graph, struct worker *work
     ready_take(graph, worker, ready_waiter_task(heir), 1);
 }
 
-/* As task_release. */
+/* Releases a hold. */
 static inline void ready_release(struct task_graph *graph, struct worker *worker,
                                  struct data_version *version)
 {
     ready_wake_heir(graph, worker, data_version_release(version));
 }
 
-/* As task_produced. */
+/* The value is there: wakes the readers, and releases the producer's hold. Returns the heir if it
+ * may take the version over. */
 static inline struct data_waiter *ready_produced(struct task_graph *graph, struct worker *worker,
                                                  struct data_version *version)
 {
@@ -72,7 +75,7 @@ static inline struct data_waiter *ready_produced(struct task_graph *graph, struc
     return data_version_release(version);
 }
 
-/* As task_publish. */
+/* The same, and wakes the heir. */
 static inline void ready_publish(struct task_graph *graph, struct worker *worker,
                                  struct data_version *version)
 {

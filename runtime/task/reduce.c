@@ -1,7 +1,7 @@
 /* Sums that are closed. The first access of another kind ends the run of contributions. Then they
  * are reduced where the object's value is (its holder); other ranks send it the subtrees that they
  * have. */
-#include "runtime/task/internal.h"
+#include "runtime/task/ready.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -69,8 +69,8 @@ static int sum_combine_here(struct task_scope *scope, struct worker *worker,
     } else if (sum->senders) {
         code = pieces_expect(graph, worker, task->sum);
     }
-    task_wake(graph, worker, data_sum_release(sum));
-    task_settled(graph, worker, task, done);
+    ready_wake(graph, worker, data_sum_release(sum));
+    ready_take(graph, worker, task, done + 1);
     return code;
 }
 
@@ -82,8 +82,8 @@ static int sum_send_pieces(struct task_scope *scope, struct worker *worker,
     struct task *task = sum_reducer(scope, object, TASK_PIECES, 0);
     if (!task)
         return DUITE_E_MEMORY;
-    task_wake(graph, worker, data_sum_release(sum));
-    task_settled(graph, worker, task, 0);
+    ready_wake(graph, worker, data_sum_release(sum));
+    ready_take(graph, worker, task, 1);
     return DUITE_OK;
 }
 
@@ -115,8 +115,8 @@ int task_gather(struct task_scope *scope, struct worker *worker, struct data_obj
     task->access[0].waiter.mode = DUITE_CW;
     task->access[0].leaf = leaf;
     object->leaves = 0;
-    task_wake(graph, worker, data_sum_release(sum));
-    task_settled(graph, worker, task, 1);
+    ready_wake(graph, worker, data_sum_release(sum));
+    ready_take(graph, worker, task, 2);
     return DUITE_OK;
 }
 
@@ -254,7 +254,7 @@ void task_pieces_arrived(void *graph, struct worker *worker, void *what, struct 
 {
     struct data_sum *sum = what;
     if (!packet) {
-        atomic_store_explicit(&sum->lost, task_lost_failure(), memory_order_relaxed);
+        atomic_store_explicit(&sum->lost, &task_lost_failure, memory_order_relaxed);
     } else if (packet->kind == DATA_POISON) {
         const struct data_failure *failure = task_fail(graph, data_payload(packet), false);
         piece_add(graph, sum, (struct data_piece){.failure = failure});
@@ -262,5 +262,5 @@ void task_pieces_arrived(void *graph, struct worker *worker, void *what, struct 
     } else {
         pieces_add(graph, sum, packet);
     }
-    task_wake(graph, worker, data_sum_release(sum));
+    ready_wake(graph, worker, data_sum_release(sum));
 }

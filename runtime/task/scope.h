@@ -122,7 +122,7 @@ static inline struct data_object *task_find_given(struct task_scope *scope, duit
 int task_lend_reads(struct task_scope *scope);
 
 /* The failure of a task's results for lack of memory. */
-const struct data_failure *task_nest_no_memory(void);
+extern const struct data_failure task_scope_no_memory;
 
 #pragma GCC visibility pop
 

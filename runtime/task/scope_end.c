@@ -32,13 +32,8 @@ void task_left_last(struct task_graph *graph, struct task_scope *scope, struct w
     graph->offloaded_over(scope, worker);
 }
 
-static const struct data_failure scope_no_memory = {
+const struct data_failure task_scope_no_memory = {
     .code = DUITE_E_MEMORY, .kernel = UINT32_MAX, .text = "no memory for what a task leaves"};
-
-const struct data_failure *task_nest_no_memory(void)
-{
-    return &scope_no_memory;
-}
 
 /* Gives the maximum number of zeros, as no child wrote the version. */
 static void exit_give_zeros(const struct task_exit *exit)
@@ -48,7 +43,7 @@ static void exit_give_zeros(const struct task_exit *exit)
         data_packet_free(out->packet);
     out->packet = data_packet_new(exit->bytes, true);
     if (!out->packet)
-        data_version_poison(out, task_fail(exit->scope->graph, &scope_no_memory, true));
+        data_version_poison(out, task_fail(exit->scope->graph, &task_scope_no_memory, true));
 }
 
 struct data_waiter *task_pass(struct worker *worker, struct data_waiter *waiter)
@@ -63,7 +58,7 @@ struct data_waiter *task_pass(struct worker *worker, struct data_waiter *waiter)
     data_version_poison(out, failure);
     if (exit->untouched && !failure)
         exit_give_zeros(exit);
-    struct data_waiter *heir = task_produced(scope->graph, worker, out);
+    struct data_waiter *heir = ready_produced(scope->graph, worker, out);
     task_left(scope->graph, scope, worker);
     return heir;
 }
@@ -79,12 +74,12 @@ static void exit_give_back(struct task_exit *exit, struct worker *worker,
         data_version_poison(exit->out, failure);
         if (!failure)
             exit_give_zeros(exit);
-        task_publish(scope->graph, worker, exit->out);
+        ready_publish(scope->graph, worker, exit->out);
         return;
     }
     exit->in->heir = &exit->waiter;
     atomic_fetch_add_explicit(&scope->unfinished, 1, memory_order_relaxed);
-    task_release(scope->graph, worker, exit->in);
+    ready_release(scope->graph, worker, exit->in);
 }
 
 /* The children's contributions, or none, are this task's. */
@@ -96,9 +91,9 @@ static void exit_contribute(struct task_exit *exit, struct worker *worker,
     if (object->leaves) {
         if (!task_gather(scope, worker, object, exit->leaf))
             return;
-        exit->leaf->failure = &scope_no_memory;
+        exit->leaf->failure = &task_scope_no_memory;
     }
-    task_wake(scope->graph, worker, data_sum_release(exit->sum));
+    ready_wake(scope->graph, worker, data_sum_release(exit->sum));
 }
 
 void task_scope_fail(struct task_scope *scope, const struct data_failure *failure)
@@ -121,7 +116,7 @@ void task_scope_end(struct task_scope *scope, struct worker *worker)
         bool lost = object->leaves && task_reduce(scope, worker, object);
         if (exit && exit->out) {
             exit->untouched = exit->overwrites && !object->number;
-            exit_give_back(exit, worker, object, lost ? &scope_no_memory : failure);
+            exit_give_back(exit, worker, object, lost ? &task_scope_no_memory : failure);
         } else if (object->current) {
             ready_release(graph, worker, object->current);
         }

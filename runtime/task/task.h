@@ -209,7 +209,10 @@ struct task_graph {
         uint32_t index, n, postponed;
         uint32_t owner[2]; /* which of n objects, of more than n, a task runs for: see owner.h */
         uint32_t grains;   /* of a task with n objects */
-        bool plain;        /* r, w and rw alone, few of them, no others; and it is not replicated */
+        uint64_t hash;     /* of a fork that names no rank, before its objects */
+        bool few;          /* r, w, rw and cw alone, few of them, no others; and it is not
+                              replicated */
+        bool plain;        /* ... and no cw */
         bool direct;       /* ... and there is one rank */
         struct task *head; /* plain: template of a task that was just forked; owned */
     } * fixed;
@@ -257,8 +260,7 @@ static inline void task_mix(struct task_graph *graph, uint64_t value)
 {
     if (graph->n_ranks == 1)
         return;
-    uint64_t state = graph->fingerprint ^ value;
-    graph->fingerprint = duite_random(&state);
+    graph->fingerprint = task_fingerprint(graph->fingerprint, value);
 }
 static inline void task_mixed(struct task_graph *graph, enum comm_call_kind kind, uint32_t which)
 {
@@ -271,9 +273,9 @@ static inline void task_mixed(struct task_graph *graph, enum comm_call_kind kind
 static inline void task_mix_fork(struct task_graph *graph, uint64_t hash, enum comm_call_kind kind,
                                  uint32_t kernel)
 {
-    uint64_t state = graph->fingerprint ^ hash;
-    const uint64_t fingerprint = graph->fingerprint = duite_random(&state);
-    comm_history_add(graph->history, fingerprint, comm_call_bits(kind, kernel, graph->root.forks));
+    graph->fingerprint = task_fingerprint(graph->fingerprint, hash);
+    comm_history_add(graph->history, graph->fingerprint,
+                     comm_call_bits(kind, kernel, graph->root.forks));
 }
 
 /* ---- Main thread with the graph's root as scope: collective, the homes of all objects are
@@ -323,8 +325,6 @@ int task_free_object(struct task_scope *scope, struct worker *worker, duite_obje
  * waits for copy->done on the ranks it goes to. Main thread only. */
 int task_copy(struct task_graph *graph, struct worker *worker, duite_object object, int to,
               struct task_copy *copy);
-/* Releases a hold and wakes the heir. */
-void task_release(struct task_graph *graph, struct worker *worker, struct data_version *version);
 
 /* ---- Any worker ---- */
 

@@ -38,50 +38,45 @@ static void word_put_float(struct trace *trace, double value)
 
 enum { MAX_ENTRY = 1 << 24 }; /* of anything in an entry */
 
-/* False: it is too large for an entry, and lost. */
+/* Objects, homes and graphs are always kept; all others only while steps are recorded. */
+static bool call_is_always_kept(enum trace_call call)
+{
+    return call <= TRACE_OFF || call == TRACE_GRAPH;
+}
+
+/* False: this rank does not keep it now; or it is too large for an entry, and lost. */
 static bool entry_begin(struct trace *trace, enum trace_call call, size_t n)
 {
+    if (!trace || !trace->word || !(call_is_always_kept(call) || trace_is_on(trace)))
+        return false;
     trace->words_lost += n >= MAX_ENTRY;
     if (n < MAX_ENTRY)
         word_put(trace, (uint32_t)call | (uint32_t)n << 8);
     return n < MAX_ENTRY;
 }
 
-/* True if this rank keeps entries: those always there, and those that depend on the step. */
-static bool trace_keeps_words(const struct trace *trace)
-{
-    return trace && trace->word;
-}
-
-static bool trace_keeps_words_now(const struct trace *trace)
-{
-    return trace_keeps_words(trace) && trace_is_on(trace);
-}
-
 /* ---- Objects and homes ---- */
 
 void trace_object(struct trace *trace, const struct data_table *table, duite_object name)
 {
-    if (!trace_keeps_words(trace))
+    if (!entry_begin(trace, TRACE_OBJECT, 0))
         return;
     const struct data_object *object = &table->object[name.slot];
-    entry_begin(trace, TRACE_OBJECT, 0);
     word_put(trace, name.slot);
     word_put_long(trace, object->room);
 }
 
 void trace_freed(struct trace *trace, duite_object name)
 {
-    if (!trace_keeps_words(trace))
+    if (!entry_begin(trace, TRACE_FREE, 0))
         return;
-    entry_begin(trace, TRACE_FREE, 0);
     word_put(trace, name.slot);
 }
 
 void trace_hint(struct trace *trace, duite_object name, double weight, size_t n,
                 const duite_object *neighbours, const double *edge_weights)
 {
-    if (!trace_keeps_words(trace) || !entry_begin(trace, TRACE_HINT, n))
+    if (!entry_begin(trace, TRACE_HINT, n))
         return;
     word_put(trace, name.slot);
     word_put_double(trace, weight);
@@ -93,16 +88,15 @@ void trace_hint(struct trace *trace, duite_object name, double weight, size_t n,
 
 void trace_colocate(struct trace *trace, duite_object name, duite_object leader)
 {
-    if (!trace_keeps_words(trace))
+    if (!entry_begin(trace, TRACE_COLOCATE, 0))
         return;
-    entry_begin(trace, TRACE_COLOCATE, 0);
     word_put(trace, name.slot);
     word_put(trace, leader.slot);
 }
 
 void trace_settles(struct trace *trace, const struct data_table *table)
 {
-    if (!trace_keeps_words(trace))
+    if (!trace || !trace->word)
         return;
     void *moved =
         base_grow(trace->slot, &trace->slots_capacity, table->n_unsettled + 1, sizeof *trace->slot);
@@ -117,7 +111,7 @@ void trace_settles(struct trace *trace, const struct data_table *table)
 
 void trace_settled(struct trace *trace, const struct data_table *table)
 {
-    if (trace_keeps_words(trace))
+    if (trace)
         trace_moved(trace, table, trace->slot, trace->n_slots);
 }
 
@@ -125,9 +119,10 @@ void trace_moved(struct trace *trace, const struct data_table *table, const uint
                  size_t n)
 {
     enum { MANY = MAX_ENTRY / 2 };
-    for (size_t at = 0; trace_keeps_words(trace) && at < n; at += MANY) {
+    for (size_t at = 0; at < n; at += MANY) {
         size_t many = n - at < MANY ? n - at : MANY;
-        entry_begin(trace, TRACE_HOMES, many);
+        if (!entry_begin(trace, TRACE_HOMES, many))
+            return;
         for (size_t i = at; i < at + many; i++) {
             word_put(trace, slots[i]);
             word_put(trace, (uint32_t)table->object[slots[i]].home);
@@ -140,9 +135,8 @@ void trace_moved(struct trace *trace, const struct data_table *table, const uint
 void trace_switch(struct trace *trace, bool on, uint64_t step, uint64_t forks)
 {
     atomic_store_explicit(&trace->on, on, memory_order_relaxed);
-    if (!trace_keeps_words(trace))
+    if (!entry_begin(trace, on ? TRACE_ON : TRACE_OFF, 0))
         return;
-    entry_begin(trace, on ? TRACE_ON : TRACE_OFF, 0);
     word_put_long(trace, forks);
     word_put_long(trace, step);
     word_put_long(trace, base_ticks());
@@ -151,8 +145,6 @@ void trace_switch(struct trace *trace, bool on, uint64_t step, uint64_t forks)
 void trace_fork(struct trace *trace, const duite_kernel *kernel, const struct task_options *options,
                 size_t n, const duite_object *objects)
 {
-    if (!trace_keeps_words_now(trace))
-        return;
     bool plain = options->at == TASK_ANYWHERE && !options->priority && !(options->cost > 0);
     if (!entry_begin(trace, plain ? TRACE_FORK : TRACE_FORKED, n))
         return;
@@ -168,17 +160,15 @@ void trace_fork(struct trace *trace, const duite_kernel *kernel, const struct ta
 
 void trace_set(struct trace *trace, duite_object name)
 {
-    if (!trace_keeps_words_now(trace))
+    if (!entry_begin(trace, TRACE_SET, 0))
         return;
-    entry_begin(trace, TRACE_SET, 0);
     word_put(trace, name.slot);
 }
 
 void trace_get(struct trace *trace, duite_object name, int rank, uint64_t from)
 {
-    if (!trace_keeps_words_now(trace))
+    if (!entry_begin(trace, TRACE_GET, 0))
         return;
-    entry_begin(trace, TRACE_GET, 0);
     word_put(trace, name.slot);
     word_put(trace, (uint32_t)rank);
     word_put_long(trace, from);
@@ -187,9 +177,8 @@ void trace_get(struct trace *trace, duite_object name, int rank, uint64_t from)
 
 void trace_wait(struct trace *trace, uint64_t from)
 {
-    if (!trace_keeps_words_now(trace))
+    if (!entry_begin(trace, TRACE_WAIT, 0))
         return;
-    entry_begin(trace, TRACE_WAIT, 0);
     word_put_long(trace, from);
     word_put_long(trace, base_ticks());
 }
@@ -198,7 +187,7 @@ void trace_wait(struct trace *trace, uint64_t from)
 
 void trace_graph(struct trace *trace, uint32_t name, const struct plan_record *record)
 {
-    if (!trace_keeps_words(trace) || !entry_begin(trace, TRACE_GRAPH, record->n_objects))
+    if (!entry_begin(trace, TRACE_GRAPH, record->n_objects))
         return;
     word_put(trace, name);
     for (size_t i = 0; i < record->n_objects; i++)
@@ -219,7 +208,7 @@ void trace_graph(struct trace *trace, uint32_t name, const struct plan_record *r
 void trace_replay(struct trace *trace, uint32_t name, const struct plan_record *record,
                   const duite_object *flag, uint64_t rounds)
 {
-    if (!trace_keeps_words_now(trace) || !entry_begin(trace, TRACE_REPLAY, record->n_objects))
+    if (!entry_begin(trace, TRACE_REPLAY, record->n_objects))
         return;
     word_put(trace, name);
     word_put(trace, flag ? flag->slot : 0);

@@ -70,19 +70,14 @@ static bool clock_answer(struct trace *trace, double until)
     return false;
 }
 
-static void run_number_draw(struct trace *trace)
-{
-    uint64_t state = trace->header.epoch ^ (uint64_t)getpid() << 40;
-    trace->header.run = duite_random(&state);
-}
-
 void trace_align(struct trace *trace, MPI_Comm mpi)
 {
     const int n = (int)trace->header.n_ranks, rank = (int)trace->header.rank;
     const double until = base_seconds() + PATIENCE + EACH * n;
     struct trace_clock clock = {0};
+    uint64_t random = trace->header.epoch ^ (uint64_t)getpid() << 40;
     if (!trace->header.run && !rank)
-        run_number_draw(trace);
+        trace->header.run = duite_random(&random);
     if (n > 1 && trace->mpi == MPI_COMM_NULL && MPI_Comm_dup(mpi, &trace->mpi))
         return;
     bool fine = !trace->stuck;

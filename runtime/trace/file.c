@@ -302,7 +302,7 @@ void trace_free(struct trace *trace, bool mpi)
     pthread_mutex_destroy(&trace->lock);
     base_free(trace->ring);
     base_free(trace->word);
-    free(trace->slot);
+    base_free(trace->slot);
     free(trace->path);
     base_free(trace);
 }

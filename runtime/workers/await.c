@@ -8,14 +8,6 @@
 #include "runtime/base/clock.h"
 #include "runtime/workers/internal.h"
 
-/* The node did not come: the worker passes over twice as many waits as the last time, and one. At
- * most 255. */
-static void awaits_failed(struct work_awaits *awaits)
-{
-    awaits->on = false;
-    awaits->pass = awaits->vain = (uint8_t)(2 * awaits->vain + 1);
-}
-
 void work_may_await(struct worker *worker)
 {
     struct work_awaits *awaits = &worker->awaits;
@@ -78,7 +70,8 @@ void work_count_down_awaiting(struct worker *worker, struct task *task, struct w
     if (!worker->next && awaits_node(worker, node, batch)) {
         awaits->vain = 0;
     } else {
-        awaits_failed(awaits);
+        awaits->on = false; /* it passes over twice as many waits as the last time, and one */
+        awaits->pass = awaits->vain = (uint8_t)(2 * awaits->vain + 1);
         if (plan_node_give_up(node))
             return;
     }

@@ -23,7 +23,6 @@ struct work_balance {
     const duite_balancer *balancer;
     unsigned char *states; /* one a worker, lines apart */
     size_t stride;
-    double tick;
     uint64_t first_request, grant_ticks;
     struct work_cost cost;
     _Atomic uint64_t next, granted; /* ticks: when to request, when it was granted last */
@@ -48,7 +47,6 @@ int work_balance_start(struct work_balance **out, struct work_pool *pool)
     balance->balancer = balancer;
     pool->queues.goes_away = balance_goes_away;
     pool->queues.straight = false;
-    balance->tick = pool->queues.tick;
     balance->first_request = (uint64_t)(FIRST_REQUEST_SECONDS / pool->queues.tick);
     balance->grant_ticks = (uint64_t)(GRANT_SECONDS / pool->queues.tick);
     balance->giver = DUITE_NO_RANK;
@@ -135,12 +133,7 @@ void work_learn(struct worker *worker, const struct task *task, uint64_t ticks)
 
 double work_block_seconds(struct work_pool *pool, uint32_t block)
 {
-    return pool->queues.tick * (double)work_cost_take_block(&pool->balance->cost, block);
-}
-
-double work_other_seconds(struct work_pool *pool)
-{
-    return pool->queues.tick * (double)work_cost_take_other(&pool->balance->cost);
+    return pool->queues.tick * (double)work_cost_take(&pool->balance->cost, block);
 }
 
 /* ---- Tasks that may go ---- */
@@ -208,9 +201,9 @@ static bool leaf_grant_at_once(struct worker *worker, struct task *task, const d
 /* A task of another rank came: that rank may have more. */
 static void offloaded_came(struct work_balance *balance, const struct task *task)
 {
-    atomic_store_explicit(&balance->giver, offload_home(task), memory_order_relaxed);
-    atomic_store_explicit(&balance->attempt, 0, memory_order_relaxed);
-    atomic_store_explicit(&balance->next, 0, memory_order_relaxed);
+    atomic_store(&balance->giver, offload_home(task));
+    atomic_store(&balance->attempt, 0);
+    atomic_store(&balance->next, 0);
 }
 
 /* For queue_pool.goes_away. */
@@ -271,8 +264,8 @@ static void grant_from(struct grant *grant, struct queue *queue)
     grant_or_keep(grant, queue, taken);
 }
 
-static void grant_queues(struct worker *worker, const struct comm_requester *requester,
-                         unsigned *given)
+/* Returns how many tasks were granted. */
+static unsigned grant_queues(struct worker *worker, const struct comm_requester *requester)
 {
     struct work_pool *pool = worker->pool;
     struct grant grant = {.worker = worker,
@@ -286,7 +279,7 @@ static void grant_queues(struct worker *worker, const struct comm_requester *req
     atomic_thread_fence(memory_order_seq_cst);
     if (grant.asked.ready > grant.asked.granted)
         queue_wake_one(&pool->queues, DUITE_NO_QUEUE);
-    *given = grant.asked.granted;
+    return grant.asked.granted;
 }
 
 void work_grant(struct worker *worker)
@@ -295,13 +288,11 @@ void work_grant(struct worker *worker)
     struct comm *comm = worker->pool->setup.comm;
     struct comm_requester requester;
     uint64_t now = base_ticks();
-    if (!comm_has_requests(comm) ||
-        now - atomic_load_explicit(&balance->granted, memory_order_relaxed) < balance->grant_ticks)
+    if (!comm_has_requests(comm) || now - atomic_load(&balance->granted) < balance->grant_ticks)
         return;
-    atomic_store_explicit(&balance->granted, now, memory_order_relaxed);
-    unsigned given = 1;
-    while (given && comm_take_request(comm, &requester)) {
-        grant_queues(worker, &requester, &given);
+    atomic_store(&balance->granted, now);
+    for (unsigned given = 1; given && comm_take_request(comm, &requester);) {
+        given = grant_queues(worker, &requester);
         if (!given)
             comm_return_request(comm, &requester);
     }
@@ -311,35 +302,28 @@ void work_grant(struct worker *worker)
 /* ---- Requesting ---- */
 
 /* Unless the last request still stands. */
-static void request_send(struct worker *worker)
+void work_request(struct worker *worker, uint64_t idled)
 {
     struct work_pool *pool = worker->pool;
     struct work_balance *balance = pool->balance;
     uint64_t now = base_ticks();
     double seconds = 0;
-    if (!balance->balancer->victim || task_has_given_up(pool->setup.graph) ||
-        now < atomic_load_explicit(&balance->next, memory_order_relaxed))
+    if (idled < balance->first_request || !balance->balancer->victim ||
+        task_has_given_up(pool->setup.graph) || now < atomic_load(&balance->next))
         return;
-    unsigned attempt = atomic_load_explicit(&balance->attempt, memory_order_relaxed);
-    int giver = atomic_load_explicit(&balance->giver, memory_order_relaxed);
+    unsigned attempt = atomic_load(&balance->attempt);
+    int giver = atomic_load(&balance->giver);
     int rank = balancer_victim(worker, attempt, giver, &seconds);
     seconds = fmin(fmax(seconds, 0), LONGEST_REQUEST_SECONDS); /* whatever it says */
-    unsigned idle = 1 + (unsigned)atomic_load_explicit(&pool->queues.parked, memory_order_relaxed);
+    unsigned idle = 1 + (unsigned)atomic_load(&pool->queues.parked);
     bool other = rank >= 0 && rank < pool->setup.graph->n_ranks && rank != pool->setup.graph->rank;
     if (other && !comm_request(pool->setup.comm, worker, rank, idle, seconds))
         return;
-    atomic_store_explicit(&balance->next, now + (uint64_t)(seconds / balance->tick),
-                          memory_order_relaxed);
-    atomic_store_explicit(&balance->attempt, attempt + 1, memory_order_relaxed);
+    atomic_store(&balance->next, now + (uint64_t)(seconds / pool->queues.tick));
+    atomic_store(&balance->attempt, attempt + 1);
     /* A message may have ended the last task: running out of work again tells the main thread. */
     if (work_poll(worker))
         work_stir(worker);
-}
-
-void work_request(struct worker *worker, uint64_t idle)
-{
-    if (idle >= worker->pool->balance->first_request)
-        request_send(worker);
 }
 
 bool work_begins(struct worker *worker, const struct task *task)
@@ -351,6 +335,6 @@ bool work_begins(struct worker *worker, const struct task *task)
     size_t ready = queue_size(&worker->queue) + queue_size(&pool->queues.shared);
     bool last = offloaded <= STOCK * pool->setup.threads && ready < offloaded;
     if (last)
-        request_send(worker);
+        work_request(worker, UINT64_MAX);
     return last;
 }

@@ -7,18 +7,12 @@ enum { MEMORY_SHIFT = 3 }; /* of means: the last 2^3 bodies count most */
 
 /* ---- Ticks spent for blocks ---- */
 
-/* The block's place in its row; *row: the highest bit of block + 1. */
+/* The block's place in its row; *row: the highest bit of its number, which is 1 for no block. */
 static uint64_t spent_place(uint32_t block, unsigned *row)
 {
-    uint64_t number = (uint64_t)block + 1;
+    uint64_t number = (uint64_t)(block + 1) + 1;
     *row = 63 - (unsigned)__builtin_clzll(number);
     return number - (UINT64_C(1) << *row);
-}
-
-static void spent_add(struct work_spent_for *sum, uint64_t ticks)
-{
-    uint64_t now = atomic_load_explicit(&sum->ticks, memory_order_relaxed);
-    atomic_store_explicit(&sum->ticks, now + ticks, memory_order_relaxed);
 }
 
 void work_spend(struct work_spent *spent, uint32_t block, uint64_t ticks)
@@ -31,20 +25,7 @@ void work_spend(struct work_spent *spent, uint32_t block, uint64_t ticks)
         atomic_store_explicit(&spent->row[row], sums, memory_order_release);
     }
     if (sums)
-        spent_add(&sums[at], ticks);
-}
-
-void work_spend_else(struct work_spent *spent, uint64_t ticks)
-{
-    spent_add(&spent->otherwise, ticks);
-}
-
-static uint64_t spent_take_sum(struct work_spent_for *sum)
-{
-    uint64_t now = atomic_load_explicit(&sum->ticks, memory_order_relaxed);
-    uint64_t added = now - sum->taken;
-    sum->taken = now;
-    return added;
+        queue_bump(&sums[at].ticks, ticks);
 }
 
 uint64_t work_spent_take(struct work_spent *spent, uint32_t block)
@@ -52,12 +33,12 @@ uint64_t work_spent_take(struct work_spent *spent, uint32_t block)
     unsigned row;
     uint64_t at = spent_place(block, &row);
     struct work_spent_for *sums = atomic_load_explicit(&spent->row[row], memory_order_acquire);
-    return sums ? spent_take_sum(&sums[at]) : 0;
-}
-
-uint64_t work_spent_take_else(struct work_spent *spent)
-{
-    return spent_take_sum(&spent->otherwise);
+    if (!sums)
+        return 0;
+    uint64_t now = atomic_load_explicit(&sums[at].ticks, memory_order_relaxed);
+    uint64_t added = now - sums[at].taken;
+    sums[at].taken = now;
+    return added;
 }
 
 void work_spent_free(struct work_spent *spent)
@@ -87,21 +68,14 @@ void work_cost_stop(struct work_cost *cost)
     base_free(cost->mean);
 }
 
-static void cost_learn_block(struct work_spent *spent, const struct task *task, uint64_t ticks)
-{
-    uint32_t block;
-    if (task_follows(task, &block))
-        work_spend(spent, block, ticks);
-    else
-        work_spend_else(spent, ticks);
-}
-
 void work_cost_learn(struct work_cost *cost, unsigned worker, const struct task *task,
                      uint64_t ticks)
 {
     _Atomic uint64_t *mean = &cost->mean[worker * cost->row + task->kernel];
+    uint32_t block;
     if (cost->spent)
-        cost_learn_block(&cost->spent[worker], task, ticks);
+        work_spend(&cost->spent[worker], task_follows(task, &block) ? block : DUITE_NO_BLOCK,
+                   ticks);
     uint64_t before = atomic_load_explicit(mean, memory_order_relaxed);
     uint64_t now = before ? before - (before >> MEMORY_SHIFT) + (ticks >> MEMORY_SHIFT) : ticks;
     atomic_store_explicit(mean, now ? now : 1, memory_order_relaxed);
@@ -120,18 +94,10 @@ double work_cost_mean(const struct work_cost *cost, uint32_t kernel)
     return known ? sum / known : 0;
 }
 
-uint64_t work_cost_take_block(struct work_cost *cost, uint32_t block)
+uint64_t work_cost_take(struct work_cost *cost, uint32_t block)
 {
     uint64_t ticks = 0;
     for (unsigned i = 0; i < cost->workers; i++)
         ticks += work_spent_take(&cost->spent[i], block);
-    return ticks;
-}
-
-uint64_t work_cost_take_other(struct work_cost *cost)
-{
-    uint64_t ticks = 0;
-    for (unsigned i = 0; i < cost->workers; i++)
-        ticks += work_spent_take_else(&cost->spent[i]);
     return ticks;
 }

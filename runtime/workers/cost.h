@@ -3,6 +3,7 @@
 
 #include "runtime/task/task.h"
 
+#include <duite_policy.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -18,16 +19,13 @@ enum { WORK_SPENT_ROWS = 33 };
 
 /* Zeroed to begin with. Row k has 2^k blocks; it is made when it is needed and never moves. */
 struct work_spent {
-    _Alignas(64) struct work_spent_for otherwise; /* for no block */
     _Atomic(struct work_spent_for *) row[WORK_SPENT_ROWS];
 };
 
-/* Add ticks for a block, or for none; without memory for a row they are dropped. Take: returns the
- * ticks added since the last take. */
+/* Adds ticks for a block, or DUITE_NO_BLOCK; without memory for a row they are dropped. Take:
+ * returns the ticks added since the last take. */
 void work_spend(struct work_spent *spent, uint32_t block, uint64_t ticks);
-void work_spend_else(struct work_spent *spent, uint64_t ticks);
 uint64_t work_spent_take(struct work_spent *spent, uint32_t block);
-uint64_t work_spent_take_else(struct work_spent *spent);
 void work_spent_free(struct work_spent *spent);
 
 /* The cost of bodies, measured by the workers of a rank: a mean for each kernel and, if blocks may
@@ -50,9 +48,7 @@ void work_cost_learn(struct work_cost *cost, unsigned worker, const struct task 
 /* Mean ticks of a body of the kernel, over the workers that ran one; 0: none did. Any worker. */
 double work_cost_mean(const struct work_cost *cost, uint32_t kernel);
 
-/* Ticks since the last call in bodies that ran for the block; in those for no block. Main
- * thread. */
-uint64_t work_cost_take_block(struct work_cost *cost, uint32_t block);
-uint64_t work_cost_take_other(struct work_cost *cost);
+/* Ticks since the last call in bodies that ran for the block. Main thread. */
+uint64_t work_cost_take(struct work_cost *cost, uint32_t block);
 
 #endif

@@ -144,7 +144,7 @@ static struct task *idle_sleep(struct worker *worker, double seconds, const stru
     atomic_fetch_add(&pool->queues.parked, 1);
     queue_park_announce(&worker->park);
     struct task *task = work_find(worker);
-    if (task || atomic_load(&pool->stop) || (wish->done && wish->done(wish->context)) ||
+    if (task || atomic_load(&pool->stop) || work_wish_is_true(pool, wish) ||
         (!polled && poller_take(worker)))
         queue_park_cancel(&worker->park);
     else

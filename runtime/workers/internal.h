@@ -108,8 +108,10 @@ static inline void work_pause_core(void)
 struct work_wish {
     bool (*done)(void *context); /* NULL: nothing */
     void *context;
-    bool unheard; /* nobody wakes the worker for it: sleep for a pause at most */
+    bool unheard; /* nobody wakes the worker for it: sleep for a pause at most. Else it is true,
+                     too, once communication broke */
 };
+bool work_wish_is_true(const struct work_pool *pool, const struct work_wish *wish);
 
 /* A task that ran, and how. */
 struct work_ran {
@@ -135,6 +137,8 @@ struct task *work_find(struct worker *worker);
 /* True if a scheduler names victims without end in one round; the next duite_wait then returns an
  * error. */
 bool work_is_endless(struct work_pool *pool, unsigned attempt);
+/* Counts a task stolen from a victim. */
+void work_count_stolen(struct worker *worker, unsigned victim);
 /* Looks for work once; idles for a moment if there is none. */
 void work_look(struct worker *worker, const struct work_wish *wish);
 /* Sends and receives. Returns whether anything happened. */
@@ -193,6 +197,9 @@ bool work_is_crowded(struct worker *worker, uint64_t now);
 
 /* ---- wait.c ---- */
 
+/* Sends what was posted and, now and then, receives and grants tasks. There are several ranks. */
+void work_serve(struct worker *worker, uint64_t now);
+
 /* The worker finds no task: wakes the main thread if it waits and enough tasks are over. */
 void work_ran_out(struct worker *worker);
 
@@ -204,10 +211,6 @@ void work_note_task(struct worker *worker, const struct task *task, const struct
 bool work_note_relieve(struct worker *worker);
 /* The worker idled for so many ticks since idle_since. */
 void work_note_idle(struct worker *worker, uint64_t idle, uint64_t exposed);
-/* Messages, and the work of a busy worker on them: looking for them, sending, taking them. A begin
- * within another one does not count. Times below a microsecond are not noted. */
-extern const struct comm_report work_note_messages;
-
 /* ---- balance.c: the workers' part of a balancer. They measure bodies, request tasks of other
  * ranks when they have none, and grant tasks that are requested. A pool has none (NULL) without a
  * balancer, with one that moves nothing, or on one rank ---- */
@@ -226,8 +229,8 @@ void work_learn(struct worker *worker, const struct task *task, uint64_t ticks);
 /* Between tasks: grants tasks to the ranks that request some. */
 void work_grant(struct worker *worker);
 
-/* The poller has idled for so many ticks: requests tasks. */
-void work_request(struct worker *worker, uint64_t idle);
+/* The poller has idled for so many ticks: requests tasks if that is long. */
+void work_request(struct worker *worker, uint64_t idled);
 
 /* ---- standstill.c: the monitor looks, eight times in so many seconds, whether the main program
  * waits, or is in a function of a policy, and nothing of this rank moves. Then it reports on

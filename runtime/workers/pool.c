@@ -41,7 +41,7 @@ static void worker_start_scheduler(struct worker *worker)
     base_mark_end(worker->mark);
     base_mark_begin(worker->mark, BASE_SCHEDULER_LOCATE);
     if (scheduler->locate)
-        scheduler->locate(worker->state, work_near_of(&worker->pool->near, worker->index));
+        scheduler->locate(worker->state, &worker->pool->near.of[worker->index]);
     base_mark_end(worker->mark);
 }
 
@@ -127,8 +127,6 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     setup->graph->comm = setup->comm;
     setup->graph->check = setup->check ? pool_check_body : NULL;
     setup->graph->offloaded_over = offload_over;
-    if (setup->trace && setup->comm)
-        comm_set_report(setup->comm, &work_note_messages);
     int code = fine ? pool_start_threads(pool) : base_no_memory("the workers");
     return code ? code : watched;
 }
@@ -173,18 +171,15 @@ void work_count(struct work_pool *pool, duite_counters *counters)
 {
     for (unsigned i = 0; i < pool->setup.threads; i++) {
         struct queue_counts *counts = &pool->queues.worker[i].counts;
-        counters->tasks += atomic_load_explicit(&counts->tasks, memory_order_relaxed);
-        counters->placed += atomic_load_explicit(&counts->placed, memory_order_relaxed);
-        counters->stolen += atomic_load_explicit(&counts->stolen, memory_order_relaxed);
-        counters->stolen_far += atomic_load_explicit(&counts->far, memory_order_relaxed);
-        counters->chained += atomic_load_explicit(&counts->chained, memory_order_relaxed);
-        counters->delegated += atomic_load_explicit(&counts->delegated, memory_order_relaxed);
-        counters->busy +=
-            pool->queues.tick * (double)atomic_load_explicit(&counts->busy, memory_order_relaxed);
-        counters->idle +=
-            pool->queues.tick * (double)atomic_load_explicit(&counts->idle, memory_order_relaxed);
-        counters->exposed += pool->queues.tick *
-                             (double)atomic_load_explicit(&counts->exposed, memory_order_relaxed);
+        counters->tasks += atomic_load(&counts->tasks);
+        counters->placed += atomic_load(&counts->placed);
+        counters->stolen += atomic_load(&counts->stolen);
+        counters->stolen_far += atomic_load(&counts->far);
+        counters->chained += atomic_load(&counts->chained);
+        counters->delegated += atomic_load(&counts->delegated);
+        counters->busy += pool->queues.tick * (double)atomic_load(&counts->busy);
+        counters->idle += pool->queues.tick * (double)atomic_load(&counts->idle);
+        counters->exposed += pool->queues.tick * (double)atomic_load(&counts->exposed);
     }
     if (pool->setup.comm)
         counters->awaited =
@@ -193,7 +188,7 @@ void work_count(struct work_pool *pool, duite_counters *counters)
 
 const char *work_endless(const struct work_pool *pool)
 {
-    bool endless = atomic_load_explicit(&pool->endless, memory_order_relaxed);
+    bool endless = atomic_load(&pool->endless);
     return endless ? pool->setup.scheduler->name : NULL;
 }
 
@@ -243,11 +238,9 @@ static bool note_messages_begin(struct worker *worker)
     return true;
 }
 
-static void note_messages_end(struct worker *worker, bool begun)
+static void note_messages_end(struct worker *worker)
 {
     const double least = 1e-6; /* s: to note each look would cost as much as the look */
-    if (!begun)
-        return;
     const uint64_t took = base_ticks() - worker->messaging;
     if (worker->pool->queues.tick * (double)took >= least) {
         worker->within += took;
@@ -264,7 +257,7 @@ static void note_message(struct worker *worker, bool sends, int peer, size_t byt
         trace_mark(worker->ring, sends ? TRACE_SEND : TRACE_RECEIVE, (uint32_t)peer, bytes);
 }
 
-const struct comm_report work_note_messages = {
+const struct comm_report work_report = {
     .message = note_message, .begins = note_messages_begin, .ends = note_messages_end};
 
 void work_note(struct work_pool *pool, const struct trace_event *event)
@@ -276,13 +269,12 @@ void work_note_counters(struct work_pool *pool, struct trace_counters *counters)
 {
     for (unsigned i = 0; i < pool->setup.threads; i++) {
         struct queue_counts *from = &pool->queues.worker[i].counts;
-        counters[i] = (struct trace_counters){
-            .tasks = atomic_load_explicit(&from->tasks, memory_order_relaxed),
-            .stolen = atomic_load_explicit(&from->stolen, memory_order_relaxed),
-            .chained = atomic_load_explicit(&from->chained, memory_order_relaxed),
-            .delegated = atomic_load_explicit(&from->delegated, memory_order_relaxed),
-            .busy = atomic_load_explicit(&from->busy, memory_order_relaxed),
-            .idle = atomic_load_explicit(&from->idle, memory_order_relaxed)};
+        counters[i] = (struct trace_counters){.tasks = atomic_load(&from->tasks),
+                                              .stolen = atomic_load(&from->stolen),
+                                              .chained = atomic_load(&from->chained),
+                                              .delegated = atomic_load(&from->delegated),
+                                              .busy = atomic_load(&from->busy),
+                                              .idle = atomic_load(&from->idle)};
     }
     if (pool->setup.comm)
         comm_count(pool->setup.comm, &counters[0].messages, &counters[0].bytes);

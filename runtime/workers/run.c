@@ -3,7 +3,7 @@
  * is the worker's alone until it is finished. The counters of tasks are exact after each task, the
  * time in bodies after each batch. */
 #include "runtime/base/clock.h"
-#include "runtime/base/report.h"
+#include "runtime/base/error.h"
 #include "runtime/task/call.h"
 #include "runtime/workers/internal.h"
 
@@ -26,12 +26,6 @@ enum {
     BODIES = 16,         /* tasks of a batch, */
     NODES = 4,           /* and nodes: so few that together they may still leave no affinity */
     IN_TURN = 16         /* tasks from the queue before the worker looks around again */
-};
-
-/* The condition on which a waiting body goes on. */
-struct run_until {
-    bool (*done)(void *context);
-    void *context;
 };
 
 /* ---- Batches ---- */
@@ -109,14 +103,8 @@ static void any_finish(struct worker *worker, struct task *task)
  * to its file if its ring is full. Returns whether that took time beside the messages. */
 static bool any_between(struct worker *worker, uint64_t now)
 {
-    const struct work_pool *pool = worker->pool;
-    struct comm *comm = pool->setup.comm;
-    if (comm && (comm_posted(comm) || now - worker->polled > pool->poll_ticks)) {
-        worker->polled = now;
-        work_poll(worker);
-        if (pool->balance)
-            work_grant(worker);
-    }
+    if (worker->pool->setup.comm)
+        work_serve(worker, now);
     return worker->ring && work_note_relieve(worker);
 }
 
@@ -217,7 +205,7 @@ STEP void run_finish(struct task_graph *graph, struct worker *worker, struct tas
 }
 
 STEP struct task *run_next(struct worker *worker, unsigned *length, unsigned *in_turn,
-                           const struct run_until *until, enum run_form form)
+                           const struct work_wish *until, enum run_form form)
 {
     struct task *task = work_take_next(worker);
     if (task || form == RUN_ANY || form == RUN_NODE)
@@ -234,7 +222,7 @@ STEP struct task *run_next(struct worker *worker, unsigned *length, unsigned *in
 /* Runs the task and those of its form that come next; *length counts inline tasks in turn. Returns
  * the task of another form that comes next, or NULL. */
 STEP struct task *run_in_turn(struct worker *worker, struct task *task, unsigned *length,
-                              const struct run_until *until, enum run_form form)
+                              const struct work_wish *until, enum run_form form)
 {
     const struct work_pool *pool = worker->pool;
     const bool any = form == RUN_ANY, timed = form != RUN_CHILD;
@@ -331,7 +319,7 @@ void work_run(struct worker *worker, struct task *task)
 
 void work_run_children(struct worker *worker, bool (*done)(void *context), void *context)
 {
-    const struct run_until until = {done, context};
+    const struct work_wish until = {.done = done, .context = context};
     struct task *task = run_next_child(worker);
     unsigned length = 1;
     if (task && run_fits(worker, task, RUN_CHILD))

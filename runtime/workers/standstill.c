@@ -10,7 +10,6 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/base/report.h"
 #include "runtime/offload/offload.h"
 #include "runtime/workers/internal.h"
 
@@ -42,17 +41,16 @@ void work_waits(struct work_pool *pool, const struct work_why *why)
 static uint64_t pool_movement(struct work_pool *pool)
 {
     const uint64_t odd = 0x9e3779b97f4a7c15u;
-    uint64_t sum = atomic_load_explicit(&pool->standstill.waits.turn, memory_order_relaxed);
-    sum =
-        sum * odd + atomic_load_explicit(&pool->setup.graph->root.unfinished, memory_order_relaxed);
+    uint64_t sum = atomic_load(&pool->standstill.waits.turn);
+    sum = sum * odd + atomic_load(&pool->setup.graph->root.unfinished);
     for (unsigned i = 0; i < pool->setup.threads; i++) {
         const struct worker *worker = &pool->queues.worker[i];
         const struct queue_counts *counts = &worker->counts;
-        sum = sum * odd + (uintptr_t)atomic_load_explicit(&worker->runs, memory_order_relaxed);
-        sum = sum * odd + atomic_load_explicit(&counts->over, memory_order_relaxed);
-        sum = sum * odd + atomic_load_explicit(&counts->tasks, memory_order_relaxed);
-        sum = sum * odd + atomic_load_explicit(&counts->placed, memory_order_relaxed);
-        sum = sum * odd + atomic_load_explicit(&counts->chained, memory_order_relaxed);
+        sum = sum * odd + (uintptr_t)atomic_load(&worker->runs);
+        sum = sum * odd + atomic_load(&counts->over);
+        sum = sum * odd + atomic_load(&counts->tasks);
+        sum = sum * odd + atomic_load(&counts->placed);
+        sum = sum * odd + atomic_load(&counts->chained);
     }
     return pool->setup.comm ? sum * odd + comm_movement(pool->setup.comm) : sum;
 }
@@ -60,7 +58,7 @@ static uint64_t pool_movement(struct work_pool *pool)
 static bool pool_runs_a_body(struct work_pool *pool)
 {
     for (unsigned i = 0; i < pool->setup.threads; i++)
-        if (atomic_load_explicit(&pool->queues.worker[i].runs, memory_order_relaxed))
+        if (atomic_load(&pool->queues.worker[i].runs))
             return true;
     return false;
 }
@@ -169,8 +167,7 @@ static unsigned report_bodies(struct report *report, bool held)
     struct work_pool *pool = report->pool;
     unsigned n = 0;
     for (unsigned i = 0; i < pool->setup.threads; i++) {
-        const struct task *task =
-            atomic_load_explicit(&pool->queues.worker[i].runs, memory_order_acquire);
+        const struct task *task = atomic_load(&pool->queues.worker[i].runs);
         if (!task)
             continue;
         if (n++ >= MAX_BODIES)
@@ -180,8 +177,7 @@ static unsigned report_bodies(struct report *report, bool held)
                         held ? report_words(report, task).text : "a task");
     }
     for (unsigned i = 0; i < pool->setup.threads && held; i++) {
-        const struct task *task =
-            atomic_load_explicit(&pool->queues.worker[i].runs, memory_order_acquire);
+        const struct task *task = atomic_load(&pool->queues.worker[i].runs);
         for (uint32_t k = 0; task && task->type == TASK_BODY && k < task->n; k++)
             report_waiters(report, task, k);
     }
@@ -267,27 +263,18 @@ static void report_away(void *context, const struct task *task, int rank)
         report_waiters(report, task, i);
 }
 
-static void report_refused(struct report *report, uint64_t refused)
-{
-    if (refused)
-        report_line(report, "%llu results of tasks on other ranks named no delegated task",
-                    (unsigned long long)refused);
-}
-
 /* ---- All of it ---- */
 
 /* Reports the call in which the main program waits, if it does. */
 static bool report_main(struct report *report, double seconds)
 {
     struct work_waits *waits = &report->pool->standstill.waits;
-    const char *call = atomic_load_explicit(&waits->call, memory_order_acquire);
-    const char *what = atomic_load_explicit(&waits->what, memory_order_relaxed);
+    const char *call = atomic_load(&waits->call);
+    const char *what = atomic_load(&waits->what);
     char object[80];
     if (!what)
-        snprintf(object, sizeof object, "object %u.%u, version %llu",
-                 atomic_load_explicit(&waits->slot, memory_order_relaxed),
-                 atomic_load_explicit(&waits->generation, memory_order_relaxed),
-                 (unsigned long long)atomic_load_explicit(&waits->number, memory_order_relaxed));
+        snprintf(object, sizeof object, "object %u.%u, version %llu", atomic_load(&waits->slot),
+                 atomic_load(&waits->generation), (unsigned long long)atomic_load(&waits->number));
     report_line(
         report,
         "%s waits for %s, and for %.3g s no task of this rank began or ended and no message came",
@@ -301,10 +288,10 @@ static bool report_main(struct report *report, double seconds)
 
 static uint64_t report_unfinished(const struct work_pool *pool)
 {
-    uint64_t left = atomic_load_explicit(&pool->standstill.waits.tasks, memory_order_relaxed);
+    uint64_t left = atomic_load(&pool->standstill.waits.tasks);
     for (unsigned i = 0; i < pool->setup.threads; i++)
-        left -= atomic_load_explicit(&pool->queues.worker[i].counts.over, memory_order_relaxed) -
-                atomic_load_explicit(&pool->queues.worker[i].counts.more, memory_order_relaxed);
+        left -= atomic_load(&pool->queues.worker[i].counts.over) -
+                atomic_load(&pool->queues.worker[i].counts.more);
     return left;
 }
 
@@ -321,8 +308,10 @@ static void standstill_report(struct work_pool *pool, double seconds)
     const unsigned bodies = policies + report_bodies(&report, report_hold_workers(pool));
     const unsigned before = report.lines;
     const bool looked = !pool->setup.comm || comm_look(pool->setup.comm, &looker);
-    offload_look(pool->setup.graph, report_away, &report);
-    report_refused(&report, offload_refused(pool->setup.graph));
+    const uint64_t refused = offload_look(pool->setup.graph, report_away, &report);
+    if (refused)
+        report_line(&report, "%llu results of tasks on other ranks named no delegated task",
+                    (unsigned long long)refused);
     const uint64_t left = waits ? report_unfinished(pool) : 0;
     if (waits)
         report_line(&report, "unfinished tasks of this rank: %llu", (unsigned long long)left);
@@ -348,7 +337,7 @@ static bool standstill_look(void *context)
     struct work_standstill *standstill = &pool->standstill;
     const struct base_marks *marks = pool->setup.marks;
     const double now = base_seconds();
-    const bool waits = atomic_load_explicit(&standstill->waits.call, memory_order_relaxed);
+    const bool waits = atomic_load(&standstill->waits.call);
     const uint64_t main = waits ? 0 : base_mark_inside(marks, 0);
     const uint64_t moved = pool_movement(pool) + main;
     if (moved != standstill->before || !(waits || main % 256 != BASE_NO_CALL)) {

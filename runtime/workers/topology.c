@@ -105,7 +105,9 @@ void work_cores_free(struct work_cores *cores)
     *cores = (struct work_cores){0};
 }
 
-unsigned work_cores_distance(int a, int b)
+/* Levels of the topology from unit a up to the smallest part of the machine that has b, too.
+ * Returns 0 for the same unit, or if hwloc does not know one. */
+static unsigned cores_distance(int a, int b)
 {
     unsigned distance = 0;
     pthread_mutex_lock(&topology_lock);
@@ -157,7 +159,7 @@ bool work_near_start(struct work_near *near, unsigned n, const int *cores)
         return false;
     for (unsigned i = 0; i < n && cores; i++)
         for (unsigned j = 0; j < n; j++)
-            near->distance[i * n + j] = work_cores_distance(cores[i], cores[j]);
+            near->distance[i * n + j] = cores_distance(cores[i], cores[j]);
     for (unsigned i = 0; i < n; i++)
         near_fill_row(near, i);
     return true;

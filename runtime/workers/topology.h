@@ -17,10 +17,6 @@ struct work_cores {
 int work_cores_find(struct work_cores *cores);
 void work_cores_free(struct work_cores *cores);
 
-/* Levels of the topology from unit a up to the smallest part of the machine that has b, too.
- * Returns 0 for the same unit, or if hwloc does not know one. After work_cores_find. */
-unsigned work_cores_distance(int a, int b);
-
 /* Binds the calling thread to one processing unit; -1: leaves it where it is. A refusal is no
  * error. */
 void work_cores_bind(int unit);
@@ -37,11 +33,6 @@ struct work_near {
  * memory; work_near_stop is due all the same. */
 bool work_near_start(struct work_near *near, unsigned n, const int *cores);
 void work_near_stop(struct work_near *near);
-
-static inline const duite_near *work_near_of(const struct work_near *near, unsigned worker)
-{
-    return &near->of[worker];
-}
 
 /* True if another worker is nearer than `other`. */
 static inline bool work_near_is_far(const struct work_near *near, unsigned worker, unsigned other)

@@ -23,8 +23,9 @@ uint64_t work_unfinished(const struct work_pool *pool)
     return pool->setup.graph->tasks - queue_all_over(&pool->queues);
 }
 
-bool work_is_drained(struct work_pool *pool)
+bool work_is_drained(void *context)
 {
+    const struct work_pool *pool = context;
     /* A task in its own queue is not over: no need to read the others' counters. */
     return queue_is_empty(&pool->queues.worker[0].queue) && !work_unfinished(pool);
 }
@@ -42,10 +43,16 @@ void work_ran_out(struct worker *worker)
 
 /* ---- Waiting ---- */
 
+bool work_wish_is_true(const struct work_pool *pool, const struct work_wish *wish)
+{
+    struct comm *comm = wish->unheard ? NULL : pool->setup.comm;
+    return wish->done && (wish->done(wish->context) || (comm && comm_is_broken(comm)));
+}
+
 static void main_drain(struct work_pool *pool, const struct work_wish *wish)
 {
     atomic_store(&pool->queues.awaited, pool->setup.graph->tasks);
-    while (!wish->done(wish->context))
+    while (!work_wish_is_true(pool, wish))
         work_look(&pool->queues.worker[0], wish);
     atomic_store_explicit(&pool->queues.awaited, 0, memory_order_relaxed);
     work_busy_again(&pool->queues.worker[0]);
@@ -56,26 +63,13 @@ void work_drain(struct work_pool *pool, bool (*done)(void *), void *context)
     main_drain(pool, &(struct work_wish){.done = done, .context = context, .unheard = true});
 }
 
-struct main_until {
-    bool (*done)(void *context);
-    void *context;
-    struct comm *comm;
-};
-
-static bool main_is_done(void *context)
-{
-    const struct main_until *until = context;
-    return until->done(until->context) || (until->comm && comm_broken(until->comm));
-}
-
 void work_until(struct work_pool *pool, const struct work_why *why, bool (*done)(void *),
                 void *context)
 {
-    struct main_until until = {done, context, pool->setup.comm};
-    if (until.comm && comm_posted(until.comm))
+    if (pool->setup.comm && comm_has_posts(pool->setup.comm))
         work_poll(&pool->queues.worker[0]);
     work_waits(pool, why);
-    main_drain(pool, &(struct work_wish){.done = main_is_done, .context = &until});
+    main_drain(pool, &(struct work_wish){.done = done, .context = context});
     work_waits(pool, NULL);
 }
 
@@ -104,29 +98,21 @@ void work_throttle(struct work_pool *pool, uint64_t max)
 
 /* ---- Calls that do not wait ---- */
 
-void work_once(struct work_pool *pool)
+void work_serve(struct worker *worker, uint64_t now)
 {
-    work_look(&pool->queues.worker[0], &(struct work_wish){.unheard = true});
-}
-
-void work_idle_ends(struct work_pool *pool)
-{
-    work_busy_again(&pool->queues.worker[0]);
-}
-
-void work_tick(struct work_pool *pool)
-{
-    struct worker *worker = &pool->queues.worker[0];
-    struct comm *comm = pool->setup.comm;
-    if (!comm)
-        return;
-    uint64_t now = base_ticks();
-    if (!comm_posted(comm) && now - worker->polled < pool->poll_ticks)
+    const struct work_pool *pool = worker->pool;
+    if (now - worker->polled < pool->poll_ticks && !comm_has_posts(pool->setup.comm))
         return;
     worker->polled = now;
     work_poll(worker);
     if (pool->balance)
         work_grant(worker);
+}
+
+void work_tick(struct work_pool *pool)
+{
+    if (pool->setup.comm)
+        work_serve(&pool->queues.worker[0], base_ticks());
 }
 
 struct worker *work_main(struct work_pool *pool)
@@ -254,8 +240,7 @@ static struct task *inside_steal_from(struct worker *worker, unsigned victim,
     struct task *task = queue_steal(&pool->queues.worker[victim].queue, &worker->queue);
     if (!task)
         return NULL;
-    queue_bump(&worker->counts.stolen, 1);
-    trace_mark(worker->ring, TRACE_STEAL, victim, 0);
+    work_count_stolen(worker, victim);
     if (task_may_run(wait->scope, task))
         return task;
     wait->refused++;
@@ -332,7 +317,7 @@ __attribute__((noinline)) static void inside_wait(struct worker *worker,
                                       .barren = NOT_BARREN,
                                       .look = queue_nests_freely(worker) ? LOOKED_AT : UINT32_MAX};
     struct inside_wait wait = begin;
-    while (!done(context) && !(comm && comm_broken(comm))) {
+    while (!done(context) && !(comm && comm_is_broken(comm))) {
         struct task *task = inside_find(worker, &wait);
         if (task) {
             work_busy_again(worker);

@@ -19,7 +19,7 @@ bool work_is_endless(struct work_pool *pool, unsigned attempt)
     return true;
 }
 
-static void steal_count(struct worker *worker, unsigned victim)
+void work_count_stolen(struct worker *worker, unsigned victim)
 {
     const struct work_near *near = &worker->pool->near;
     queue_bump(&worker->counts.stolen, 1);
@@ -45,7 +45,7 @@ struct task *work_find(struct worker *worker)
             continue;
         task = queue_steal(queue = &pool->queues.worker[victim].queue, &worker->queue);
         if (task)
-            steal_count(worker, victim);
+            work_count_stolen(worker, victim);
     }
     worker->left_some = task && queue_ranks(queue);
     return task;

@@ -38,8 +38,11 @@ struct work_setup {
                          binding */
 };
 
-/* For comm_start, whose context is the task graph. */
+/* For comm_start, whose context is the task graph; the second with a trace. It notes messages, and
+ * the work of a busy worker on them: looking for them, sending, taking them. A begin within another
+ * one does not count. Times below a microsecond are not noted. */
 extern const struct comm_owner work_messages;
+extern const struct comm_report work_report;
 
 /* Errors: memory, DUITE_E_SYSTEM. The calling thread becomes worker 0. */
 int work_start(struct work_pool **pool, const struct work_setup *setup);
@@ -82,20 +85,14 @@ bool work_stands_still(struct work_pool *pool, struct work_stillness *still);
 int work_inside(struct worker *worker, const struct task_scope *scope, bool (*done)(void *context),
                 void *context);
 
-/* One look around by the main thread: a task or a poll; idles a moment if there is nothing. */
-void work_once(struct work_pool *pool);
-
-/* The main thread has done with work_once: its idle time ends. */
-void work_idle_ends(struct work_pool *pool);
-
 /* Sends what was posted and, now and then, polls: the main thread calls it as it forks. */
 void work_tick(struct work_pool *pool);
 
 /* Tasks of this rank that are not over. Main thread. */
 uint64_t work_unfinished(const struct work_pool *pool);
 
-/* True if there are none. Cheap: the main thread asks after each task. */
-bool work_is_drained(struct work_pool *pool);
+/* True if the pool has none. Cheap: the main thread asks after each task. */
+bool work_is_drained(void *pool);
 
 /* The name of the scheduler if it named victims without an end, which is an error; else NULL. */
 const char *work_endless(const struct work_pool *pool);
@@ -107,11 +104,10 @@ void work_throttle(struct work_pool *pool, uint64_t max);
 /* Counts of all workers of this rank. Exact when no task is left. */
 void work_count(struct work_pool *pool, duite_counters *counters);
 
-/* For a balancer that moves homes, on several ranks. The first two: seconds since the last call in
- * bodies of tasks that run for a block of this rank, and in all others. The third: the balancer's
- * answer, see duite_balancer.migrate. Main thread. */
+/* For a balancer that moves homes, on several ranks. The first: seconds since the last call in
+ * bodies of tasks that run for a block of this rank, or for DUITE_NO_BLOCK. The second: the
+ * balancer's answer, see duite_balancer.migrate. Main thread. */
 double work_block_seconds(struct work_pool *pool, uint32_t block);
-double work_other_seconds(struct work_pool *pool);
 uint64_t work_migrate(struct work_pool *pool, const duite_blocks *blocks, int *home);
 
 /* For the trace: an event of worker 0; the counts of each worker of this rank. Main thread. */

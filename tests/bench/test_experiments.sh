@@ -57,7 +57,7 @@ ok "six loops on one thread and on two" threads_agree
 ok "six loops of what they do not know" refused 'obstacles=[{plane: {point: [0, 0, 0], normal: [0, 1, 0]}}]' "met by image"
 ok "six loops of triangles" refused 'materials.cloth={model: triangles, density: 0.2, stretch: 40, shear: 10}' "springs alone"
 if test "${DUITE_LONG:-}" = 1; then
-    ok "zara" table zara 22 "at 1600 particles"
+    ok "zara" table zara 35 "at 1600 particles"
     ok "partutex" table partutex 7 "22,500 vertices, 2 steps"
     ok "partutex-shirt" table partutex-shirt $((2 * $(nproc))) "mean of 1 run"
     ok "link" table link 9 "at 900 particles, implicit, over 2 steps"

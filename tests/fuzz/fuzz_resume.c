@@ -133,7 +133,7 @@ static void make(struct made *made)
     struct flow *flow = NULL;
     start_mpi();
     const char *path = fuzz_file("scene.yaml", SCENE, sizeof SCENE - 1);
-    if (scene_read_phase(&made->model, path, 0, 0, NULL, &error) ||
+    if (scene_read(&made->model, path, 0, NULL, &error) ||
         flow_prepare(&flow, &made->model, 1, &error))
         fail(error.text);
     const struct flow_output output = {.context = made, .save = keep};

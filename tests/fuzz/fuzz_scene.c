@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SETS = 4, PHASES = 3 };
+enum { SETS = 4 };
 
 static const char MESH[] = "o cloth1\ng left\nv 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt 0 0\nvt 1 0\n"
                            "vt 1 1\nvt 0 1\nf 1/1 2/2 3/3\ng right\nf 1/1 3/3 4/4\n";
@@ -61,14 +61,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     text[size] = '\0';
     const size_t n = take_sets(text, set);
     const char *path = fuzz_file("scene.yaml", data, size);
-    int code = 0;
-    for (uint32_t phase = 0; phase < PHASES && !code; phase++) {
-        struct cloth_error error = {0};
-        struct model model;
-        code = scene_read_phase(&model, path, phase, n, set, &error);
-        code = code || phase + 1 >= model.n_phases;
-        model_free(&model);
-    }
+    struct cloth_error error = {0};
+    struct model *models;
+    uint32_t n_models;
+    scene_read_phases(&models, &n_models, path, n, set, &error);
+    for (uint32_t i = 0; i < n_models; i++)
+        model_free(models + i);
+    free(models);
     free(text);
     return 0;
 }

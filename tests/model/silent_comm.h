@@ -5,16 +5,16 @@
  * (comm_poll is its own). Included once in a program. */
 #include "runtime/workers/workers.h"
 
-bool comm_posted(struct comm *comm)
+bool comm_has_posts(struct comm *comm)
 {
     (void)comm;
     return false;
 }
 
-int comm_broken(struct comm *comm)
+bool comm_is_broken(struct comm *comm)
 {
     (void)comm;
-    return 0;
+    return false;
 }
 
 void comm_workers_end(struct comm *comm)
@@ -48,7 +48,7 @@ bool comm_awaits(struct comm *comm)
     return false;
 }
 
-void comm_broke_memory(struct comm *comm, const char *what)
+void comm_break_memory(struct comm *comm, const char *what)
 {
     (void)comm;
     (void)what;
@@ -57,11 +57,6 @@ void comm_broke_memory(struct comm *comm, const char *what)
 void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)
 {
     *messages = *bytes = comm != NULL;
-}
-
-void comm_set_report(struct comm *comm, const struct comm_report *report)
-{
-    (void)comm, (void)report;
 }
 
 uint64_t comm_awaited_ticks(const struct comm *comm)

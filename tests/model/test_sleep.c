@@ -24,6 +24,7 @@ static struct {
     _Atomic int sent, received; /* messages; each makes the task of its number ready */
     bool copies;                /* bodies do as duite_get's copy does: they set copied and notify */
     _Atomic int copied;
+    int looks;
     bool long_body; /* task 0 sees message 1 sent, and lasts until task 1 is over */
 } its;
 
@@ -281,15 +282,19 @@ static void wait_two(void)
 
 /* ---- With messages: nobody is woken by them ---- */
 
-/* Idles twice, as in a collective call, and may become the poller; then does something else: the
- * other thread must receive. */
+static bool looked_around(void *context)
+{
+    (void)context;
+    return its.looks++ >= 4;
+}
+
+/* Idles a few times, as in a collective call, and may become the poller; then does something else:
+ * the other thread must receive. */
 static void idle_then_leave(void)
 {
     start_workers(2, &sched_steal, true);
     its.graph.tasks = 1;
-    work_once(its.pool);
-    work_once(its.pool);
-    work_idle_ends(its.pool);
+    work_drain(its.pool, looked_around, NULL);
     receive(0);
     explore_await(&its.over[0]);
 }

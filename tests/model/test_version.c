@@ -44,7 +44,7 @@ static void read_version(int i)
     explore_check(++its.ran[i] == 1);
     explore_check(atomic_load_explicit(&its.written, memory_order_relaxed));
     atomic_store_explicit(&its.done[i], 1, memory_order_relaxed);
-    task_release(&its.graph, NULL, its.version);
+    ready_release(&its.graph, NULL, its.version);
 }
 
 void ready(struct task_graph *graph, struct worker *worker, struct task *task)
@@ -65,7 +65,7 @@ void ready(struct task_graph *graph, struct worker *worker, struct task *task)
 static void produce(void)
 {
     atomic_store_explicit(&its.written, 1, memory_order_relaxed);
-    task_publish(&its.graph, NULL, its.version);
+    ready_publish(&its.graph, NULL, its.version);
 }
 
 static struct task *new_task(int number)
@@ -79,7 +79,7 @@ static void fork_reader(int i)
 {
     struct task *task = new_task(i);
     task->access[0].waiter.mode = DUITE_R;
-    task_settled(&its.graph, NULL, task, data_version_read(its.version, &task->access[0].waiter));
+    ready_take(&its.graph, NULL, task, 1 + data_version_read(its.version, &task->access[0].waiter));
 }
 
 static void fork_writer(void)
@@ -89,7 +89,7 @@ static void fork_writer(void)
     task->access[0].waiter.mode = DUITE_W;
     its.object.current = its.version;
     task_wait(&its.graph.root, task, 0, &its.object, &done);
-    task_settled(&its.graph, NULL, task, done);
+    ready_take(&its.graph, NULL, task, done + 1);
 }
 
 static void fork_readers(void)

@@ -1,6 +1,6 @@
 /* Names of tasks on other ranks: what comes back is looked up, and refused and counted if it
  * names nothing. */
-#include "runtime/offload/names.h"
+#include "runtime/offload/message.h"
 #include "tests/support/unit.h"
 
 enum { N = 100 };

@@ -7,6 +7,7 @@ plan_later
 # plans: the sums of 5 ranks and more go from rank to rank.
 cases tests/runtime/ranks << 'END'
 control        | 2 5 8     | few messages until all ranks agree
+cut            | 2 1 3     | messages longer than their receives
 delegate       | 2 1 3     | tasks that run on other ranks than their own
 delegate       | 2         | the same in checking mode | DUITE_CHECK=accesses
 homes          | 2 3       | what settles the homes of objects

@@ -79,7 +79,6 @@ has() { # PROGRAM, or hdf5: it was built
 run_command() { # COMMAND NAME
     case $1 in
         './bootstrap && make demo' | './bootstrap && make check') return ;; # a machine's set-up: .ci/run, and make check-long
-        '.ci/run'*) ok "$2" sh -n "$srcdir/.ci/run" ;;
         srun*) skip "$2" "only in a job of Slurm" ;;
         *slot:PE=*) skip "$2" "only where there are so many cores" ;;
         *--live*) if has duite-view && grep -q '^#define HAVE_ZMQ 1' "$build/config.h"; then ok "$2" here "$1"; else skip "$2" "no live view"; fi ;;

@@ -5,9 +5,11 @@
 #     near WHAT FOUND EXPECTED MOST    says the relative error, fails beyond MOST
 #     below WHAT FOUND MOST            says what was found, fails where it is more than MOST
 #     less A B                         their difference
+#     row, table                       rows of docs/accuracy.md (tests/support/table.sh)
 #     says SENTENCE SCENE...           a hundredth of a second of the scene, which says the sentence
 # near and below print to the test's own output, as TAP comments, also when a case passes.
 
+. "$srcdir/tests/support/table.sh"
 skip_unless "$DUITE_CLOTH"
 cd "$scratch" || exit 99
 exec 3>&1
@@ -25,7 +27,7 @@ run() { limited "$DUITE_CLOTH" "$@" --threads 1 --quiet --output out; }
 rows() {
     probes_program=$1
     shift
-    awk -F, "$@" 'function c(name) { if (name in at) return $at[name]; print "there is no column " name; bad = 1; exit }
+    awk -F, -v OFMT=%.17g "$@" 'function c(name) { if (name in at) return $at[name]; print "there is no column " name; bad = 1; exit }
         NR == 1 { for (i = 1; i <= NF; i++) { split($i, column, " "); at[column[1]] = i } next }
         '"$probes_program"' END { if (bad) exit 2 }' out/probes.csv
 }
@@ -36,10 +38,12 @@ last() {
 }
 
 near() {
+    noted "$(awk -v a="$2" -v b="$3" 'BEGIN { printf "%.17g", a / b - 1 }')"
     awk -v what="$1" -v a="$2" -v b="$3" -v most="$4" 'BEGIN { e = a / b - 1; e = e < 0 ? -e : e
         printf "# %s: %.8g, closed form %.8g, error %.2g\n", what, a, b, e; exit !(a != "" && e <= most) }' >&3
 }
 below() {
+    noted "$2"
     awk -v what="$1" -v a="$2" -v most="$3" 'BEGIN { printf "# %s: off by %.2g\n", what, a; exit !(a != "" && a + 0 <= most) }' >&3
 }
-less() { awk -v OFMT=%.12g -v a="$1" -v b="$2" 'BEGIN { print a - b }'; }
+less() { awk -v OFMT=%.17g -v a="$1" -v b="$2" 'BEGIN { print a - b }'; }

@@ -70,6 +70,7 @@ tap_result() { # PASSED NAME
 
 tap_run() { # COMMAND...: leaves its status in $tap_got
     tap_got=0
+    rm -f "$scratch/noted"
     "$@" > "$scratch/output" 2>&1 < /dev/null || tap_got=$?
 }
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Textbook motions, said by scenes and read from probes alone: how vertices start, what they weigh, where they go. Errors are printed.
+# Textbook motions, said by scenes and read from probes alone: how vertices start, what they weigh, where they go. docs/accuracy.md has the errors.
 . "${srcdir:-.}/tests/support/tap.sh"
 . "$srcdir/tests/support/probes.sh"
 plan_later
@@ -19,16 +19,18 @@ time: {h: 5e-4, end: 0.8}
 integrator: rk4
 probes: [{name: p, vertices: [1, 2]}]
 END
-mode() { # -1 or 1: the slow or the fast one
+mode() { # -1 or 1: the slow or the fast one; its NAME
+    name=$2
     # shellcheck disable=SC2046
-    set -- $(awk -v sign="$1" -v OFMT=%.12g 'BEGIN { a = 0.03; b = -(80 * 0.3 + 40 * 0.1); w2 = (-b + sign * sqrt(b * b - 4 * a * 1600)) / 2 / a
+    set -- $(awk -v sign="$1" -v OFMT=%.17g 'BEGIN { a = 0.03; b = -(80 * 0.3 + 40 * 0.1); w2 = (-b + sign * sqrt(b * b - 4 * a * 1600)) / 2 / a
         print sqrt(w2), (80 - 0.1 * w2) / 40 }')
     run modes.yaml --set "cloths[0].start=[{vertices: [1], translate: [0.01, 0, 0]}, {vertices: [2], translate: [$(awk -v r="$2" 'BEGIN { printf "%.15g", r / 100 }'), 0, 0]}]" || return 1
     below "mode of two masses, $1 rad/s, of its amplitude" "$(rows '{ d = c("p.1.x") - 1 - 0.01 * cos(w * c("time")); e = c("p.2.x") - 2 - 0.01 * r * cos(w * c("time"))
-        if (d < 0) d = -d; if (e < 0) e = -e; if (d > most) most = d; if (e > most) most = e } END { print most / 0.01 }' -v w="$1" -v r="$2")" 1e-7
+        if (d < 0) d = -d; if (e < 0) e = -e; if (d > most) most = d; if (e > most) most = e } END { print most / 0.01 }' -v w="$1" -v r="$2")" 1e-7 &&
+        row "two unequal masses on springs, $name mode, \`rk4\`, ω h below 0.02: of the amplitude" "cos ω t"
 }
-ok "two unequal masses in their slow mode" mode -1
-ok "two unequal masses in their fast mode" mode 1
+ok "two unequal masses in their slow mode" mode -1 slow
+ok "two unequal masses in their fast mode" mode 1 fast
 
 # Two masses on a spring that it draws out to 1.2 times its length turn about each other: k (l - L) = m w^2 l / 2.
 cat > spin.yaml << 'END'
@@ -50,7 +52,8 @@ spin() { # INTEGRATOR RADIUS MOMENTUM: errors that are allowed
     set -- "$@" $(rows '{ x = c("p.1.x") - c("p.0.x"); z = c("p.1.z") - c("p.0.z"); r = sqrt(x * x + z * z) / 1.2 - 1
         j = 0; for (v = 0; v < 2; v++) j += c("p." v ".z") * c("p." v ".vx") - (c("p." v ".x") - 3) * c("p." v ".vz")
         j = j / (2 * 0.36 * 12.909944487358056) - 1; if (r < 0) r = -r; if (j < 0) j = -j; if (r > a) a = r; if (j > b) b = j } END { print a, b }')
-    below "two masses turn ten times, $1: their distance" "$4" "$2" && below "angular momentum, $1" "$5" "$3"
+    below "two masses turn ten times, $1: their distance" "$4" "$2" && below "angular momentum, $1" "$5" "$3" &&
+        row "two masses turn about each other on a drawn spring, ten turns, \`$1\`: distance; angular momentum" "k (l − L) = m ω² l / 2; kept" "$(digit "$4"); $(digit "$5")"
 }
 ok "two masses turn about each other, verlet" spin verlet 1e-4 1e-13
 ok "two masses turn about each other, symplectic_euler" spin symplectic_euler 2e-2 1e-13
@@ -82,10 +85,11 @@ END
 medium() { # INTEGRATOR FACTOR: of a velocity in a step
     run medium.yaml --set integrator="$1" || return 1
     below "five unequal masses in a medium, $1: their velocities" "$(rows 'function off(v) { v = v / u - 1; if (v < 0) v = -v; if (v > most) most = v }
-        { u = 2 * exp(c("step") * log(f)); for (i = 0; i < 3; i++) off(c("p." i ".vx")); for (i = 0; i < 2; i++) off(c("q." i ".vx")) } END { print most + 0 }' -v f="$2")" 1e-11
+        { u = 2 * exp(c("step") * log(f)); for (i = 0; i < 3; i++) off(c("p." i ".vx")); for (i = 0; i < 2; i++) off(c("q." i ".vx")) } END { print most + 0 }' -v f="$2")" 1e-11 &&
+        row "unequal masses in a medium of $3 1/s, \`$1\`: velocities" "$4"
 }
-ok "unequal masses in a medium, implicit_euler" medium implicit_euler "$(awk 'BEGIN { printf "%.17g", 1 / 1.03 }')"
-ok "unequal masses in a medium, explicit_euler" medium explicit_euler 0.97
+ok "unequal masses in a medium, implicit_euler" medium implicit_euler "$(awk 'BEGIN { printf "%.17g", 1 / 1.03 }')" 3 "v / (1 + 3 h) a step"
+ok "unequal masses in a medium, explicit_euler" medium explicit_euler 0.97 3 "(1 − 3 h) v a step"
 
 # A pendulum let go at 2 rad: its period by the arithmetic-geometric mean, the wire 1e-5 of its length longer.
 cat > far.yaml << 'END'
@@ -105,7 +109,8 @@ far() {
     near "period of a pendulum that swings to 2 rad" \
         "$(rows 'NR > 2 && (x > 0) != (c("p.1.x") > 0) { t = c("time") - 5e-4 * c("p.1.x") / (c("p.1.x") - x); if (n++) print 2 * (t - first); first = t }
             { x = c("p.1.x") }')" \
-        "$(awk 'BEGIN { a = 1; b = cos(1); while (a - b > 1e-14) { m = (a + b) / 2; b = sqrt(a * b); a = m } print 2 * 3.14159265358979 / sqrt(9.81) / a }')" 1e-4
+        "$(awk -v OFMT=%.17g 'BEGIN { a = 1; b = cos(1); while (a - b > 1e-14) { m = (a + b) / 2; b = sqrt(a * b); a = m } print 2 * 3.14159265358979 / sqrt(9.81) / a }')" 1e-4 &&
+        row "a pendulum swings to 2 rad: period" "2π / √(g / L) / M(1, cos 1), M the arithmetic-geometric mean"
 }
 ok "a pendulum that swings far" far
 
@@ -129,7 +134,8 @@ cone() { # after one turn
     set -- $(last p.1.x p.1.y p.1.z p.0.rx p.0.ry)
     near "conical pendulum, height" "$2" -0.8253356149 2e-5 && near "where it is after a turn" "$1" 0.56464247 2e-4 &&
         below "and across" "$3" 1e-3 && near "pull on its pin, upwards" "$5" 1.962 1e-4 &&
-        near "pull on its pin, inwards" "$4" "$(awk 'BEGIN { print -0.981 * sin(0.6) / cos(0.6) }')" 1e-3
+        near "pull on its pin, inwards" "$4" "$(awk -v OFMT=%.17g 'BEGIN { print -0.981 * sin(0.6) / cos(0.6) }')" 1e-3 &&
+        row "a conical pendulum: height, place after a turn, force on its pin" "ω² = g / (L cos α)"
 }
 ok "a conical pendulum" cone
 
@@ -150,8 +156,9 @@ links() {
     run links.yaml || return 1
     # shellcheck disable=SC2046
     set -- $(last p.1.y p.2.y)
-    near "a chain, its upper link" "$1" "$(awk 'BEGIN { print -0.1 * (1 + 1.962 / 40) }')" 1e-6 &&
-        near "its lower link, four times as long" "$(less "$2" "$1")" "$(awk 'BEGIN { print -0.4 * (1 + 0.981 / 40) }')" 1e-6
+    near "a chain, its upper link" "$1" "$(awk -v OFMT=%.17g 'BEGIN { print -0.1 * (1 + 1.962 / 40) }')" 1e-6 &&
+        near "its lower link, four times as long" "$(less "$2" "$1")" "$(awk -v OFMT=%.17g 'BEGIN { print -0.4 * (1 + 0.981 / 40) }')" 1e-6 &&
+        row "a chain hangs, its links of 0.1 and 0.4 m: lengths" "L (1 + F / EA), F the weights below"
 }
 ok "links of other lengths are drawn by the same strain" links
 
@@ -165,7 +172,8 @@ awk 'BEGIN { printf "schema: 1\ngravity: [0, 0, 0]\ncloths:\n  - mesh: {inline: 
 string() {
     run string.yaml || return 1
     below "third mode of a taut chain, of its amplitude" "$(rows '{ w = 2 * sqrt(5 / 0.01 / 0.125) * sin(3 * 3.14159265358979324 / 20)
-        d = c("p.5.y") + 1e-5 * cos(w * c("time")); if (d < 0) d = -d; if (d > most) most = d } END { print most / 1e-5 }')" 1e-5
+        d = c("p.5.y") + 1e-5 * cos(w * c("time")); if (d < 0) d = -d; if (d > most) most = d } END { print most / 1e-5 }')" 1e-5 &&
+        row "a taut chain of nine weights, third mode: of the amplitude" "ω = 2 √(T / m a) sin(3π / 20)"
 }
 ok "a taut chain in its third mode" string
 
@@ -189,7 +197,7 @@ slides() { # NAME, KEY=VALUE, what it slides more: in g sin 0.5 h t
     set -- "$1" $(rows 'NR == 2 { x = c("p.14.x"); y = c("p.14.y") }
         END { x = c("p.14.x") - x; y = c("p.14.y") - y; printf "%.15g %.15g", -0.8775825618903728 * x - 0.479425538604203 * y, -0.479425538604203 * x + 0.8775825618903728 * y }')
     near "sheet on a slope, $1" "$2" "$(awk -v more="$more" 'BEGIN { printf "%.15g", 9.81 * 0.479425538604203 * 0.4 * (0.2 + more * 0.002) }')" 1e-12 &&
-        below "and off it" "$3" 1e-13
+        below "and off it" "$3" 1e-13 && row "a sheet slides down a slope without friction, \`$1\`" "g sin α t² / 2"
 }
 ok "a sheet slides down a slope, verlet" slides verlet integrator=verlet 0
 
@@ -208,9 +216,10 @@ shaken() { # RATIO of W to the weight's own 20 rad/s
     # shellcheck disable=SC2046
     set -- "$1" $(rows 'NR > 2 + 11 * 96 { t = 2 * 3.14159265358979324 * (NR - 2) / 96; s += (c("p.1.x") - 1) * sin(t) / 48; k += (c("p.1.x") - 1) * cos(t) / 48 }
         END { print sqrt(s * s + k * k) / 0.01, atan2(k, s) }') \
-        $(awk -v W="$1" 'BEGIN { W *= 20; e = W * 0.8; d = 40 - 0.1 * W * W; f = 3.14159265358979324 / 96; f = (sin(f) / f) ^ 2
+        $(awk -v OFMT=%.17g -v W="$1" 'BEGIN { W *= 20; e = W * 0.8; d = 40 - 0.1 * W * W; f = 3.14159265358979324 / 96; f = (sin(f) / f) ^ 2
             print f * sqrt((1600 + e * e) / (d * d + e * e)), atan2(e, 40) - atan2(e, d) }')
-    near "weight shaken at $1 of its frequency, amplitude" "$2" "$4" 2e-4 && near "its phase" "$3" "$5" 5e-4
+    near "weight shaken at $1 of its frequency, amplitude" "$2" "$4" 2e-4 && near "its phase" "$3" "$5" 5e-4 &&
+        row "a weight shaken at $1 of its frequency: amplitude, phase" "(k + i W c) / (k − m W² + i W c)"
 }
 ok "a weight shaken slowly" shaken 0.5
 ok "a weight shaken at resonance" shaken 1
@@ -239,7 +248,7 @@ askew() {
     # shellcheck disable=SC2046
     set -- $(rows '{ j = 0; for (v = 0; v < 16; v++) j += 0.1 * (c("p." v ".z") * c("p." v ".vx") - c("p." v ".x") * c("p." v ".vz")) } END { print j < 0 ? -j / 1e-7 : j / 1e-7 }')
     near "torque of uncorrected forces, N m" "$1" "$(torque)" 1e-6 && run askew.yaml --report report --set materials.paper.forces=exact &&
-        below "and of exact ones" "$(torque)" 0
+        below "and of exact ones" "$(torque)" 0 && row "torque of \`forces: uncorrected\` on a sheet drawn askew; of exact forces" "growth of its angular momentum; 0"
 }
 ok "a sheet drawn out askew, torque of the papers' forces" askew
 
@@ -264,7 +273,8 @@ flap() { # NAME DAMPING SCENE...: its damping; the velocity along y against the 
     shift 2
     run flap.yaml "$@" || return 1
     below "flap on a hinge, $name" "$(rows '{ a = b * 50; w = sqrt(100 - a * a); t = c("time"); d = c("p.3.vy") - 0.001 * exp(-a * t) * (cos(w * t) - a / w * sin(w * t))
-        if (d < 0) d = -d; if (d > most) most = d } END { print most / 0.001 }' -v b="$damping")" 1e-6
+        if (d < 0) d = -d; if (d > most) most = d } END { print most / 0.001 }' -v b="$damping")" 1e-6 &&
+        row "a flap on a hinge, damping: $name" "ω² = D / m, e^(−β ω² t / 2)"
 }
 ok "a flap on a hinge, damped as all is" flap stiffness 0.02
 ok "a flap on a hinge, with a damping of its own" flap bending 0.05 --set materials.sheet.damping.bending=0.05
@@ -277,3 +287,4 @@ same() {
         ranks 2 "$DUITE_CLOTH" spin.yaml --quiet --output out --threads 2 --set grain=1 --end 0.1 --set integrator=implicit_euler && cmp out/probes.csv one.csv
 }
 ok "starts and masses on 2 ranks" same
+ok "docs/accuracy.md has these rows" table

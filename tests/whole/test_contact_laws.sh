@@ -42,17 +42,21 @@ lends() { # WHAT: no step gained more than contacts were lent in it, so no more 
     test "$(value contact_cuts)" = 0 && below "energy gained beyond what was lent, $1, of all" "$(share energy_gained_unlent)" 1e-9 &&
         below "energy gained less all that was lent, $1, of all" "$(less "$(share energy_gained)" "$(share energy_lent)")" 1e-9
 }
+gain() { digit "$(share energy_gained)"; }
+beyond() { digit "$(share energy_gained_unlent)"; }
 keeps() { # FRICTION: energy, of what they have at the start; momentum, of 8 g at 0.5 m/s twice
     # shellcheck disable=SC2086
     thrown $converged --set contact.friction="$1" || return 1
     lends "friction $1" && below "energy gained, friction $1, of all" "$(share energy_gained)" 1e-9 &&
-        below "momentum of two cloths, friction $1, of all" "$(momentum | awk '{ print $1 / 0.008 }')" 1e-12
+        below "momentum of two cloths, friction $1, of all" "$(momentum | awk -v OFMT=%.17g '{ print $1 / 0.008 }')" 1e-12 &&
+        row "two sheets of springs thrown at each other, μ = $1: momentum changed; energy gained, of all" "0; 0" "$(digit "$(momentum | awk -v OFMT=%.17g '{ print $1 / 0.008 }')"); $(gain)"
 }
 ok "without friction, energy and momentum" keeps 0
 ok "with friction" keeps 0.3
 gains_none() { # FRICTION
     # shellcheck disable=SC2086
-    thrown $converged --set contact.friction="$1" --set "$triangles" && lends "triangles, friction $1" && below "energy gained, triangles, of all" "$(share energy_gained)" 1e-9
+    thrown $converged --set contact.friction="$1" --set "$triangles" && lends "triangles, friction $1" && below "energy gained, triangles, of all" "$(share energy_gained)" 1e-9 &&
+        row "the same, triangles, μ = $1: energy gained, of all" "0" "$(gain)"
 }
 ok "by triangles, without friction" gains_none 0
 ok "by triangles, with friction" gains_none 0.3
@@ -73,23 +77,29 @@ spins() { # FRICTION OPTION...: prints what contact, and the motion, changed; th
     awk -v friction="$spins_friction" -v thickness=0.002 -f "$srcdir/tests/whole/spin.awk" out/probes.csv > spun && cat spun
 }
 soft='--set materials.m.stretch=1e-12 --set materials.m.shear=1e-12 --set materials.m.bend=1e-12'
-centred() { # OPTION...
-    spins 0 "$@" && below "what contact changes of the spin, $*" "$(awk '{ print $1 }' spun)" 1e-12
+centred() { # NAME OPTION...
+    name=$1
+    shift
+    spins 0 "$@" && below "what contact changes of the spin, $*" "$(awk '{ print $1 }' spun)" 1e-12 &&
+        row "the same, $name, μ = 0: spin that contact changes, of Σ m \|x\| \|v\|" "0"
 }
-ok "without friction contact keeps the spin" centred
-ok "triangles likewise" centred --set "$triangles"
-ok "bdf2 likewise, about where steps begin" centred --set integrator=bdf2
+ok "without friction contact keeps the spin" centred springs
+ok "triangles likewise" centred triangles --set "$triangles"
+ok "bdf2 likewise, about where steps begin" centred "springs, \`bdf2\`" --set integrator=bdf2
 # shellcheck disable=SC2086
-ok "sheets that nothing holds together" centred $soft
-kept() { below "the spin of all that moves" "$(awk '{ print $2 }' spun)" 1e-12; }
+ok "sheets that nothing holds together" centred "springs of 1e-12 N/m" $soft
+kept() { below "the spin of all that moves" "$(awk '{ print $2 }' spun)" 1e-12 && row "the same: spin of the motion" "kept"; }
 ok "their spin at the end of steps" kept
-rubs() { # OPTION...: of the bound
-    spins 0.3 "$@" && awk '{ print "# friction changes the spin by", $1, "of a bound of", $3; exit !($1 > 0.01 * $3 && $1 <= $3) }' spun >&3
+rubs() { # NAME OPTION...: of the bound
+    name=$1
+    shift
+    spins 0.3 "$@" && awk '{ print "# friction changes the spin by", $1, "of a bound of", $3; exit !($1 > 0.01 * $3 && $1 <= $3) }' spun >&3 &&
+        row "the same, $name, μ = 0.3: spin that friction changes, of 2.6 μ d J" "below 1" "$(awk '{ printf "%.2f", $1 / $3 }' spun)"
 }
-ok "friction changes it within the gaps' moment" rubs
-ok "by triangles" rubs --set "$triangles"
+ok "friction changes it within the gaps' moment" rubs springs
+ok "by triangles" rubs triangles --set "$triangles"
 # shellcheck disable=SC2086
-ok "with soft sheets" rubs $soft
+ok "with soft sheets" rubs "springs of 1e-12 N/m" $soft
 rubbed() { awk '{ exit !($2 <= $3 && $2 > 0.5 * $1) }' spun; }
 ok "and the spin at the end of steps" rubbed
 
@@ -119,11 +129,16 @@ falls() { # SCENE CONTACTS OPTION...: so many of them at least
     # shellcheck disable=SC2086
     run "$falls_scene.yaml" --report report.json $converged --set solver.stop.relative=1e-12 "$@" && test "$(value contacts)" -gt "$falls_contacts" && lends "$falls_scene $*"
 }
-none() { falls "$@" && below "energy gained" "$(share energy_gained)" 1e-9; }
+lent() { # NAME SCENE CONTACTS OPTION...; $friction is theirs
+    name=$1
+    shift
+    falls "$@" && row "$name, μ = $friction: energy gained beyond what was lent, of all" "0" "$(beyond)"
+}
+none() { falls "$@" && below "energy gained" "$(share energy_gained)" 1e-9 && row "four sheets of springs fall onto a floor and each other: energy gained, of all" "0" "$(gain)"; }
 ok "a pile on a floor gains no energy" none pile 50
 for friction in 0 0.3; do
-    ok "what lifts a pile is what it was lent, friction $friction" falls pile 100 --set time.end=0.3 --set contact.friction=$friction
-    ok "by triangles, friction $friction" falls pile 100 --set time.end=0.3 --set contact.friction=$friction --set "$triangles"
+    ok "what lifts a pile is what it was lent, friction $friction" lent "the same for 0.3 s, springs" pile 100 --set time.end=0.3 --set contact.friction=$friction
+    ok "by triangles, friction $friction" lent "the same, triangles" pile 100 --set time.end=0.3 --set contact.friction=$friction --set "$triangles"
 done
 cat > ball.yaml << 'END'
 schema: 1
@@ -137,25 +152,27 @@ energies: steps
 END
 sed -e 's/0\.01, 0\.105, 0\.02\]/0, 0.16, 0], rotate: [1, 1, 0, 0]/' -e 's/sphere: {.*}}/plane: {point: [0, 0, 0], normal: [0, 1, 0]}}/' ball.yaml > stand.yaml
 for friction in 0 0.3; do
-    ok "a sheet on a ball, friction $friction" falls ball 20 --set contact.friction=$friction
-    ok "a sheet that lands on its edge, friction $friction" falls stand 10 --set contact.friction=$friction
+    ok "a sheet on a ball, friction $friction" lent "a sheet on a ball" ball 20 --set contact.friction=$friction
+    ok "a sheet that lands on its edge, friction $friction" lent "a sheet that lands on its edge" stand 10 --set contact.friction=$friction
 done
-lifted() { test "$(share energy_gained | awk '{ print ($1 > 1e-3) }')" = 1; }
+lifted() { test "$(share energy_gained | awk -v OFMT=%.17g '{ print ($1 > 1e-3) }')" = 1; }
 ok "it jumps, by what it was lent" lifted
 # Steps of bdf2 may gain energy, but not beyond what time.energy_growth lets them, 0.5 % of 0.77 m g L of square sheets.
-guarded() { # SCENE MASS WIDTH OPTION...
-    guarded_scene=$1 guarded_most=$(awk -v m="$2" -v l="$3" 'BEGIN { print 0.005 * 0.77 * m * 9.81 * l }')
-    shift 3
+guarded() { # NAME SCENE MASS WIDTH OPTION...
+    guarded_name=$1 guarded_scene=$2 guarded_most=$(awk -v m="$3" -v l="$4" 'BEGIN { print 0.005 * 0.77 * m * 9.81 * l }')
+    shift 4
     # shellcheck disable=SC2086
     run "$guarded_scene.yaml" --report report.json $converged --set solver.stop.relative=1e-12 --set integrator=bdf2 --set time.energy_growth=0.005 "$@" &&
-        test "$(value contact_cuts)" = 0 && below "energy gained beyond what was lent, $guarded_scene $*, bdf2, J" "$(value energy_gained_unlent)" "$guarded_most"
+        test "$(value contact_cuts)" = 0 && below "energy gained beyond what was lent, $guarded_scene $*, bdf2, J" "$(value energy_gained_unlent)" "$guarded_most" &&
+        row "$guarded_name, μ = $friction, \`bdf2\`: energy gained beyond what was lent, of 0.77 m g L" "below 0.5 %" "$(awk -v e="$(value energy_gained_unlent)" -v most="$guarded_most" 'BEGIN { printf "%.2f %%", 0.5 * e / most }')"
 }
 for friction in 0 0.3; do
-    ok "a pile, bdf2, friction $friction" guarded pile 0.032 0.2 --set contact.friction=$friction
-    ok "by triangles, bdf2, friction $friction" guarded pile 0.032 0.2 --set contact.friction=$friction --set "$triangles"
-    ok "a sheet that lands on its edge, bdf2, friction $friction" guarded stand 0.018 0.3 --set contact.friction=$friction
+    ok "a pile, bdf2, friction $friction" guarded "the pile of springs" pile 0.032 0.2 --set contact.friction=$friction
+    ok "by triangles, bdf2, friction $friction" guarded "the pile of triangles" pile 0.032 0.2 --set contact.friction=$friction --set "$triangles"
+    ok "a sheet that lands on its edge, bdf2, friction $friction" guarded "the sheet that lands on its edge" stand 0.018 0.3 --set contact.friction=$friction
 done
 rests() { # 0.0314 J where it starts
-    run pile.yaml --report report.json --set time.end=0.8 && below "energy of motion of a pile after 0.8 s, J" "$(value energy_kinetic)" 1e-6
+    run pile.yaml --report report.json --set time.end=0.8 && below "energy of motion of a pile after 0.8 s, J" "$(value energy_kinetic)" 1e-6 && row "the pile of springs by linear steps: energy of motion after 0.8 s, of 31 mJ" "0" "$(digit "$(value energy_kinetic | awk -v OFMT=%.17g '{ print $1 / 0.0314 }')")"
 }
 ok "a pile comes to rest" rests
+ok "docs/accuracy.md has these rows" table

@@ -58,5 +58,5 @@ walk_alike() { # a drape of 0.1 s; the walk begins after 0.2 s
     scene walk 900 0.3 walk && sed -i '/name: drape/,/set: {/ s/set: {/set: {time.end: 0.1, /' walk.yaml && alike_all walk
 }
 ok "one hash of walk.yaml" walk_alike
-shirt_alike() { scene shirt 700 0 && alike_all shirt --set 'phases[1].set={time.end: 0.01}'; }
+shirt_alike() { scene shirt 700 0 && alike_all shirt --set 'phases[1].set.time.end=0.01'; }
 ok "one hash of shirt.yaml" shirt_alike

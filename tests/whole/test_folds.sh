@@ -106,7 +106,7 @@ turns() { # SETTING...: the corner is 0.1 m from the seam, 60 degrees behind the
 ok "along an edge of a panel" turns
 ok "along the edge of the other panel" turns --set 'cloths[0].folds[0].edge={panel: page, edge: 3}'
 waits() { # pulled, it is no hinge yet
-    run book.yaml --set 'phases=[{name: sew, set: {"cloths[0].seams.state": pulled, time.end: 0.1}}, {name: fold, set: {time.end: 4}}]' 2> said || { cat said; return 1; }
+    run book.yaml --set 'phases=[{name: sew, set: {"cloths[0].seams.state": pulled, time.end: 0.1}}, {name: fold, set: {"cloths[0].seams.state": welded, time.end: 4}}]' 2> said || { cat said; return 1; }
     below "corner of a page folded in a second phase, m" "$(awk -F, -v s="$(sine 60)" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i ~ /\.z/) at = i } END { d = $at + 0.1 * s; print d < 0 ? -d : d }' out/probes.csv)" 1e-6
 }
 ok "a seam that is welded in a later phase" waits

@@ -76,12 +76,12 @@ ok "one file for both" refused "cannot be the same file" mine.json -e 0.1 -o x.o
 
 # ---- Own garments
 
-documents=$srcdir/docs/garments.md
+documents=$srcdir/docs/measures.md
 listed() { # GARMENT: its measures are in the document, with size M's values and ranges
     run --measures "$1" > printed || return
     sed -n 's/^  \([a-z]*\) *\([0-9.]*\), \([0-9.]*\) more, \([0-9.]* to [0-9.]*\): \(.*\)/| `\1` | \2 | \3 | \4 | \5 |/p' printed > rows
     test "$(wc -l < rows)" -ge 9 || return
-    while read -r row; do grep -qF -e "$row" "$documents" || { echo "not in docs/garments.md: $row" && return 1; }; done < rows
+    while read -r row; do grep -qF -e "$row" "$documents" || { echo "not in docs/measures.md: $row" && return 1; }; done < rows
 }
 round_trip() { # GARMENT: the pattern that is written gives the same bits
     run --own "$1" --size S --measure height=1.7 -e 0.03 -o own.obj --write-pattern own.json -q &&

@@ -51,7 +51,7 @@ golden "zara.yaml" "$scenes/zara.yaml"
 golden "zara.yaml, explicit" "$scenes/zara.yaml" --set integrator=explicit_euler
 golden "fabrics.yaml, half a second" "$scenes/fabrics.yaml" --end 0.5
 golden "push.yaml, until the ball pushes" "$scenes/push.yaml" --end 0.7 --set 'cloths[0].mesh.grid.nx=33' --set 'cloths[0].mesh.grid.ny=41'
-golden "shirt.yaml of 700 vertices, sewn, five steps" "$scenes/shirt.yaml" --set 'cloths[0].mesh.pattern.vertices=700' --grain 100 --set 'phases[1].set={time.end: 0.005}'
+golden "shirt.yaml of 700 vertices, sewn, five steps" "$scenes/shirt.yaml" --set 'cloths[0].mesh.pattern.vertices=700' --grain 100 --set 'phases[1].set.time.end=0.005'
 golden "states.yaml, twenty steps" "$srcdir/bench/cg/states.yaml" --end 0.02
 
 triangles='materials.cloth={model: triangles, density: 0.2, stretch: [3000, 1000], shear: 100, poisson: 0.3, damping: {stiffness: 0.01}'
@@ -66,7 +66,7 @@ small "quadratic bending" --set 'materials.cloth.bending={model: quadratic, rigi
 small "limits of strain" --set "$triangles}" --set 'materials.cloth.strain_limit={at: 1e-3, stiffness: 1e4}'
 small "the floor after the step" --set contact.mode=project --set 'cloths[0].transform.translate=[0,0.002,0]' --set 'cloths[0].velocity=[0,-1,0]'
 small "bdf2 with Newton steps" --set integrator=bdf2 --set newton.steps=3 --set energies=steps --set time.h=0.004
-for integrator in symplectic_euler verlet midpoint rk4; do
+for integrator in symplectic_euler verlet rk4; do
     small "$integrator" --set integrator=$integrator --set obstacles=[] --set time.h=1e-5 --set time.end=1e-3 --set materials.cloth.damping.stiffness=1e-4
 done
 small "wind that swells, loads, a region, a pin that moves" --set 'air={wind: [3, 1, -2], curve: {sine: {frequency: 5, phase: 0.1}}}' \

@@ -44,7 +44,6 @@ swings() { # INTEGRATOR H MOST [SETTING...]
 ok "a mass on an edge by rk4" swings rk4 1e-3 1e-8
 ok "by velocity Verlet" swings verlet 1e-3 2e-4
 ok "by symplectic Euler" swings symplectic_euler 1e-4 2e-3
-ok "by the midpoint method" swings midpoint 1e-3 2e-4
 ok "by explicit Euler" swings explicit_euler 1e-5 2e-3
 ok "by implicit Euler" swings implicit_euler 1e-4 5e-3
 ok "by BDF2" swings bdf2 1e-4 1e-4

@@ -11,7 +11,7 @@ table=$srcdir/tests/whole/mannequin_golden.txt
 fresh=${DUITE_GOLDEN:-$scratch/fresh}
 case $fresh in /*) ;; *) fresh=$PWD/$fresh ;; esac
 page=$srcdir/cloth/app/duite-mannequin.1
-document=$srcdir/docs/garments.md
+document=$srcdir/docs/measures.md
 cd "$scratch" || exit 99
 
 run() { limited "$mannequin" "$@"; }
@@ -39,11 +39,11 @@ tabled() { # the table of the document is that of the program
     prints run -o figure.obj && sed -n 's/^\([a-z_]*\): \([0-9.]*\) m (.*/\1 \2/p' printed > girths
     test "$(wc -l < girths)" = 11 || return
     while read -r name girth; do
-        sed -n "/^## The body/,\$p" "$document" | grep "^| \`$name\` | " | awk -F '|' -v is="$girth" '{ exit !($3 - is < 0.005 && is - $3 < 0.005) }' ||
+        sed -n "/^## The figure/,\$p" "$document" | grep "^| \`$name\` | " | awk -F '|' -v is="$girth" '{ exit !($3 - is < 0.005 && is - $3 < 0.005) }' ||
             { echo "$name is $girth" && return 1; }
     done < girths
 }
-ok "docs/garments.md has all measures with their defaults" tabled
+ok "docs/measures.md has all measures with their defaults" tabled
 quiet() { prints run -o q.obj -q && test ! -s printed && test ! -s complained && test -s q.obj; }
 ok "--quiet" quiet
 
@@ -140,7 +140,7 @@ listed() { # the document's table of angles is that of the program
     test "$(wc -l < angles)" = 7 || return
     while read -r name angle; do grep -q "^| \`$name\` | $angle | " "$document" || { echo "$name" && return 1; }; done < angles
 }
-ok "docs/garments.md has all angles with their defaults" listed
+ok "docs/measures.md has all angles with their defaults" listed
 
 # A figure that walks is one body to all threads, and pushes what is in its way.
 walks() {

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Cloths of several materials, by regions, against closed forms, through probes alone. Errors are printed.
+# Cloths of several materials, by regions, against closed forms, through probes alone. docs/accuracy.md has the errors.
 . "${srcdir:-.}/tests/support/tap.sh"
 . "$srcdir/tests/support/probes.sh"
 plan_later
@@ -24,7 +24,7 @@ beats() {
     run beats.yaml || return 1
     below "beats of two coupled weights, of the amplitude" "$(rows '{ t = c("time"); s = cos(20 * t); f = cos(sqrt(440) * t)
         a = (c("p.1.x") - 1) / 0.01 - (s + f) / 2; b = (c("p.2.x") - 2) / 0.01 - (s - f) / 2
-        if (a < 0) a = -a; if (b < 0) b = -b; if (a > most) most = a; if (b > most) most = b } END { print most }')" 1e-5
+        if (a < 0) a = -a; if (b < 0) b = -b; if (a > most) most = a; if (b > most) most = b } END { print most }')" 1e-5 && row "two weights on springs, coupled by a weaker one, \`rk4\`: beats, of the amplitude" "(cos ω t ± cos √(ω² + 2 k₂ / m) t) / 2"
 }
 ok "a spring of its own between two weights" beats
 
@@ -51,19 +51,21 @@ solver: {stop: {relative: 1e-10}}
 grain: 9
 probes: [{name: p, vertices: [4, 21], values: [position]}, {name: pins, box: [[-0.5, 0, -1], [-0.5, 0, 1]], values: [total]}]
 END
-series() { # SCENE...
+series() { # NAME SCENE...
+    name=$1
+    shift
     run series.yaml "$@" || return 1
     # shellcheck disable=SC2046
     set -- $(last p.4.x p.21.x)
-    near "strip of two materials, the soft part" "$(less "$1" -0.5)" 0.408 1e-9 && near "the whole" "$(less "$2" -0.5)" 1.011 1e-9
+    near "strip of two materials, the soft part" "$(less "$1" -0.5)" 0.408 1e-9 && near "the whole" "$(less "$2" -0.5)" 1.011 1e-9 && row "a strip of two materials, of $name, drawn: either part" "s (L₁ / E₁ + L₂ / E₂)"
 }
-ok "a strip of two materials, springs" series
-ok "a strip of two materials, triangles" series --set materials.soft.model=triangles --set materials.hard.model=triangles \
+ok "a strip of two materials, springs" series springs
+ok "a strip of two materials, triangles" series triangles --set materials.soft.model=triangles --set materials.hard.model=triangles \
     --set materials.wrong.model=triangles
 weighs() {
     run series.yaml --set 'gravity=[0, -9.81, 0]' --set 'cloths[0].loads=[]' --set 'cloths[0].pins=[{box: [[-9, -9, -9], [9, 9, 9]]}]' \
         --set 'probes=[{name: p, box: [[-9, -9, -9], [9, 9, 9]], values: [total]}]' --end 100 || return 1
-    near "weight of a strip of two densities" "$(last p.total.ry)" "$(awk 'BEGIN { print 9.81 * 0.4 * (0.4 * 0.1 + 0.6 * 0.3) }')" 1e-6
+    near "weight of a strip of two densities" "$(last p.total.ry)" "$(awk -v OFMT=%.17g 'BEGIN { print 9.81 * 0.4 * (0.4 * 0.1 + 0.6 * 0.3) }')" 1e-6 && row "its weight" "g (ρ₁ A₁ + ρ₂ A₂)"
 }
 ok "a strip of two densities" weighs
 
@@ -86,13 +88,15 @@ time: {h: 2e-4, end: 1}
 integrator: rk4
 probes: [{name: p, vertices: [3], values: [velocity]}]
 END
-flap() { # SCENE...
+flap() { # MODEL SCENE...
+    name=$1
+    shift
     run flap.yaml "$@" || return 1
     below "flap on a fold of its own, dragged at its tip" "$(rows '{ a = 0.02 * 50 + 0.5; w = sqrt(100 - a * a); t = c("time"); d = c("p.3.vy") - 0.001 * exp(-a * t) * (cos(w * t) - a / w * sin(w * t))
-        if (d < 0) d = -d; if (d > most) most = d } END { print most / 0.001 }')" 1e-6
+        if (d < 0) d = -d; if (d > most) most = d } END { print most / 0.001 }')" 1e-6 && row "a flap on a fold of its own rigidity and damping, its tip dragged, \`$name\`" "ω² = D / m, e^(−(β ω² + d) t / 2)"
 }
-ok "a fold with a rigidity, its tip with a drag" flap
-ok "a quadratic fold" flap --set materials.fold.bending.model=quadratic
+ok "a fold with a rigidity, its tip with a drag" flap hinge
+ok "a quadratic fold" flap quadratic --set materials.fold.bending.model=quadratic
 
 # The limit of explicit steps is that of the hardest region: 2 / w, w^2 = 2 (k1 + k2) / m or less.
 warned() {
@@ -107,3 +111,4 @@ same() {
         ranks 2 "$DUITE_CLOTH" series.yaml --end 200 --quiet --output out --threads 2 && cmp out/probes.csv one.csv
 }
 ok "regions on 2 ranks" same
+ok "docs/accuracy.md has these rows" table

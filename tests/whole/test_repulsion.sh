@@ -19,23 +19,29 @@ END
 # A vertex of mass m rests at d - m g / k: one inside the sheet has 0.2 kg/m2 of a cell, one at a corner a quarter of that. In h^2 k / m = 0.02 of a
 # corner steps of 1 ms are short, those of 4 ms by implicit Euler are not.
 high() { awk -v m="$1" 'BEGIN { printf "%.15g", 0.002 - m * 0.2 * 0.1 * 0.1 / 9 * 9.81 / 5 }'; }
-rests() { # KEY=VALUE...
+rests() { # NAME KEY=VALUE...; a row of a table where it has a name
+    name=$1
+    shift
     for set; do set -- "$@" --set "$set"; shift; done
-    run rest.yaml "$@" && near "inside" "$(last p.5.y)" "$(high 1)" 1e-5 && near "at a corner" "$(last p.0.y)" "$(high 0.25)" 1e-5
+    run rest.yaml "$@" && near "inside" "$(last p.5.y)" "$(high 1)" 1e-5 && near "at a corner" "$(last p.0.y)" "$(high 0.25)" 1e-5 || return 1
+    test -z "$name" || row "a sheet rests on a level plane, $name: heights inside and at a corner" "d − m g / k"
 }
-ok "rests, implicit Euler" rests time.h=0.004
-ok "rests, BDF2" rests integrator=bdf2
-ok "rests, with Newton steps" rests newton.steps=4
-ok "rests, with sliders" rests time.h=0.004 'cloths[0].pins=[{vertices: [0], to: plane, normal: [1, 0, 0]}]'
-ok "rests, Verlet" rests integrator=verlet
-ok "rests, RK4" rests integrator=rk4
-ok "rests, symplectic Euler" rests integrator=symplectic_euler
+ok "rests, implicit Euler" rests '`implicit_euler`, h = 4 ms' time.h=0.004
+ok "rests, BDF2" rests '`bdf2`, 1 ms' integrator=bdf2
+ok "rests, with Newton steps" rests '' newton.steps=4
+ok "rests, with sliders" rests '' time.h=0.004 'cloths[0].pins=[{vertices: [0], to: plane, normal: [1, 0, 0]}]'
+ok "rests, Verlet" rests '`verlet`, 1 ms' integrator=verlet
+ok "rests, RK4" rests '`rk4`, 1 ms' integrator=rk4
+ok "rests, symplectic Euler" rests '`symplectic_euler`, 1 ms' integrator=symplectic_euler
 carried='obstacles[0].plane.motion={times: [0, 1], translate: [[0, 0, 0], [0.3, 0.1, 0]]}'
-lifts() {
-    run rest.yaml --set "$carried" "$@" && near "inside" "$(less "$(last p.5.y)" 0.1)" "$(high 1)" 1e-4
+lifts() { # NAME OPTION...
+    name=$1
+    shift
+    run rest.yaml --set "$carried" "$@" && near "inside" "$(less "$(last p.5.y)" 0.1)" "$(high 1)" 1e-4 &&
+        row "the same on a plane that rises at 0.1 m/s, $name: height above it inside" "d − m g / k"
 }
-ok "rests on what rises, implicit Euler" lifts --set time.h=0.004
-ok "rests on what rises, RK4" lifts --set integrator=rk4
+ok "rests on what rises, implicit Euler" lifts '`implicit_euler`, 4 ms' --set time.h=0.004
+ok "rests on what rises, RK4" lifts '`rk4`, 1 ms' --set integrator=rk4
 
 # Two layers vibrate by sqrt(4 k / m) at most, m = 0.125 g: with k = 200 N/m that is 2530 rad/s, too fast for 1 ms.
 warns() { # INTEGRATOR STIFFNESS
@@ -55,17 +61,21 @@ pulled() { # TAN MORE...
     shift
     run rest.yaml --set contact.friction=0.5 --set "gravity=$pulled_g" "$@"
 }
-creeps() {
-    pulled 0.1 "$@" && near "creeps, m/s" "$(last p.5.vx)" "$(awk 'BEGIN { printf "%.15g", 0.2 * 0.01 * 9.81 * 0.1 / sqrt(1.01) / (16 * 5 * 0.001) }')" 1e-4
+creeps() { # NAME OPTION...
+    name=$1
+    shift
+    pulled 0.1 "$@" && near "creeps, m/s" "$(last p.5.vx)" "$(awk 'BEGIN { printf "%.15g", 0.2 * 0.01 * 9.81 * 0.1 / sqrt(1.01) / (16 * 5 * 0.001) }')" 1e-4 && row "on a slope of tan α = 0.1, μ = 0.5, 16 vertices, \`$name\`: creeps" "M g sin α / (16 k h)"
 }
-ok "creeps, implicit Euler" creeps
-ok "creeps, RK4" creeps --set integrator=rk4
-slides() {
+ok "creeps, implicit Euler" creeps implicit_euler
+ok "creeps, RK4" creeps rk4 --set integrator=rk4
+slides() { # NAME OPTION...
+    name=$1
+    shift
     pulled 0.6 "$@" && near "slides, m/s2" "$(rows 'c("time") >= 0.5 && !t { t = c("time"); v = c("p.5.vx") } END { printf "%.15g", (c("p.5.vx") - v) / (c("time") - t) }')" \
-        "$(awk 'BEGIN { printf "%.15g", 9.81 * (0.6 - 0.5) / sqrt(1.36) }')" 5e-3
+        "$(awk 'BEGIN { printf "%.15g", 9.81 * (0.6 - 0.5) / sqrt(1.36) }')" 5e-3 && row "on a slope of tan α = 0.6, $name: acceleration" "g (sin α − μ cos α)"
 }
-ok "slides, implicit Euler, 4 ms" slides --set time.h=0.004
-ok "slides, Verlet" slides --set integrator=verlet
+ok "slides, implicit Euler, 4 ms" slides '`implicit_euler`, 4 ms' --set time.h=0.004
+ok "slides, Verlet" slides '`verlet`, 1 ms' --set integrator=verlet
 is_carried() { run rest.yaml --set contact.friction=0.5 --set "$carried" --set time.h=0.004 && near "its speed" "$(last p.5.vx)" 0.3 1e-3; }
 ok "is carried along" is_carried
 
@@ -89,15 +99,17 @@ momentum() {
         function all(of, n, axis,   i) { for (i = 0; i < n * n; i++) sum += mass(n, i) * c(of "." i "." axis) }
         END { all("a", 8, axis); all("b", 9, axis); printf "%.15g", sum }' -v axis="$1"
 }
-met() { # the upper one came on the lower one, which took some of its motion, and both momenta are there
+met() { # NAME OPTION...: the upper one came on the lower one, which took some of its motion, and both momenta are there
+    name=$1
+    shift
     limited "$DUITE_CLOTH" meet.yaml --check-intersections --report report.json --quiet --threads 1 --output out "$@" || return 1
     below "the momentum down" "$(less "$(momentum vy)" -0.5)" 1e-12 && below "and back" "$(less -0.5 "$(momentum vy)")" 1e-12 &&
-        below "that along" "$(less "$(momentum vx)" 0.1)" 1e-12 && below "and back" "$(less 0.1 "$(momentum vx)")" 1e-12 &&
+        below "that along" "$(less "$(momentum vx)" 0.1)" 1e-12 && below "and back" "$(less 0.1 "$(momentum vx)")" 1e-12 && row "two sheets meet in free flight, \`$name\`: momentum, of a sheet's mass and 1 m/s" "kept" &&
         below "the middle of the lower one goes down" "$(last b.40.vy)" -0.1
 }
-ok "two sheets meet, implicit Euler" met --set time.h=0.001 --set 'solver={stop: {relative: 1e-14}}'
-ok "two sheets meet, symplectic Euler" met --set integrator=symplectic_euler
-ok "two sheets meet, RK4" met --set integrator=rk4
+ok "two sheets meet, implicit Euler" met implicit_euler --set time.h=0.001 --set 'solver={stop: {relative: 1e-14}}'
+ok "two sheets meet, symplectic Euler" met symplectic_euler --set integrator=symplectic_euler
+ok "two sheets meet, RK4" met rk4 --set integrator=rk4
 
 # The same, and a sheet on a ball that folds onto itself.
 cat > ball.yaml << END
@@ -127,3 +139,4 @@ ok "rests on a body that rises" lifts_on --set time.h=0.004
 cd "$OLDPWD" || exit 99
 ok "one hash: a sheet on a ball" ranks 3 tests/whole/same_hash "$scratch/ball.yaml" few 0 time.end=0.2
 ok "one hash: two sheets meet, RK4" ranks 3 tests/whole/same_hash "$scratch/meet.yaml" few 0 integrator=rk4 'probes=[]'
+ok "docs/accuracy.md has these rows" table

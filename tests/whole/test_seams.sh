@@ -92,7 +92,7 @@ scene "$panels" '{}' '' > phases.yaml
 cat >> phases.yaml << END
 phases:
   - {name: sew, set: {time.sewn: {distance: 0.001}, time.end: 1}}
-  - {name: wear, set: {'cloths[0].seams.state': welded, time.end: 0.1}}
+  - {name: wear, set: {'cloths[0].seams.state': welded, time.sewn: null, time.end: 0.1}}
 END
 phases() {
     run phases.yaml --output phases && test "$(value intersections)" = 0 && "$DUITE_VIEW" -i phases || return 1
@@ -115,8 +115,8 @@ cat >> order.yaml << END
 phases:
   - {name: side, set: {time.sewn: {distance: 0.001}, time.end: 1}}
   - name: rest
-    set: {'cloths[0].seams.state': pulled, 'cloths[0].seams.some[1].state': welded, time.sewn: {distance: 0.001}, time.end: 1}
-  - {name: wear, set: {'cloths[0].seams': {state: welded}, time.end: 0.1}}
+    set: {'cloths[0].seams.state': pulled, 'cloths[0].seams.some[1].state': welded}
+  - {name: wear, set: {'cloths[0].seams': {state: welded}, time.sewn: null, time.end: 0.1}}
 END
 order() {
     run order.yaml --output order && test "$(value intersections)" = 0 && "$DUITE_VIEW" -i order || return 1

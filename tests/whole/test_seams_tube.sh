@@ -26,7 +26,7 @@ probes: [{name: all, box: [[-1, -1, -1], [1, 1, 1]], values: [position, contact]
 time: {h: 0.01, end: 0.5, energy_growth: 0}
 phases:
   - {name: sew, set: {time.sewn: {distance: 0.0005}}}
-  - {name: rest, set: {'cloths[0].seams.state': welded}}
+  - {name: rest, set: {'cloths[0].seams.state': welded, time.sewn: null}}
 END
 sewn() { run tube.yaml --check-intersections --report report.json && grep '"ended": "sewn"' report.json && test "$(value intersections)" = 0; }
 ok "sewn to a tube around a cylinder, certified" sewn

@@ -1,8 +1,7 @@
 /* A frame places the vertices of the cloths; the time of the frame places those of bodies. A frame
  * counts as bad once, even if it is checked as doubles and as written. */
 #include "cloth/app/check/intersections.h"
-#include "cloth/app/check/intersections_parts.h"
-#include "cloth/app/check/intersections_soup.h"
+#include "cloth/app/check/intersections_state.h"
 
 #include "cloth/verify/orient.h"
 
@@ -45,18 +44,14 @@ enum { NAMED = 200 }; /* characters */
 /* "triangle 1 2 3 of cloth 'a'", by the numbers that the cloth's mesh has. */
 static void name_triangle(const struct intersections *all, uint32_t t, char text[NAMED])
 {
-    const bool cloth = t < all->soup.n_first;
-    const struct surface *list = cloth ? all->cloth : all->obstacle;
-    size_t i = 0;
-    while (t >= list[i + 1].triangle)
-        i++;
-    const uint32_t *corner = all->corner[t], before = list[i].point;
+    const uint32_t owner = contact_soup_owner(&all->soup, t), n_cloths = all->soup.n_cloths;
+    const uint32_t *corner = all->soup.corner[t], before = all->soup.surface[owner].point;
     const int n = snprintf(text, NAMED, "triangle %" PRIu32 " %" PRIu32 " %" PRIu32,
                            corner[0] - before + 1, corner[1] - before + 1, corner[2] - before + 1);
-    if (!cloth)
-        snprintf(text + n, NAMED - (size_t)n, " of obstacles[%zu]", i);
-    else if (list[i].name)
-        snprintf(text + n, NAMED - (size_t)n, " of cloth '%.100s'", list[i].name);
+    if (owner >= n_cloths)
+        snprintf(text + n, NAMED - (size_t)n, " of obstacles[%" PRIu32 "]", owner - n_cloths);
+    else if (all->name)
+        snprintf(text + n, NAMED - (size_t)n, " of cloth '%.100s'", all->name[owner]);
 }
 
 /* Counts one more; true if it is to be printed. */
@@ -88,14 +83,12 @@ static void say_entered(struct look *look, uint32_t triangle, size_t obstacle)
 static void say_inside(struct look *look, uint32_t point, size_t obstacle)
 {
     const struct intersections *all = look->all;
-    size_t i = 0;
     if (!is_said(look))
         return;
-    while (point >= all->cloth[i + 1].point)
-        i++;
+    const uint32_t cloth = contact_soup_cloth(&all->soup, point);
     say(look, "vertex %" PRIu32 "%s%.100s%s is inside obstacles[%zu] (vertices count from 1)",
-        point - all->cloth[i].point + 1, all->cloth[i].name ? " of cloth '" : "",
-        all->cloth[i].name ? all->cloth[i].name : "", all->cloth[i].name ? "'" : "", obstacle);
+        point - all->soup.surface[cloth].point + 1, all->name ? " of cloth '" : "",
+        all->name ? all->name[cloth] : "", all->name ? "'" : "", obstacle);
 }
 
 /* ---- Pairs that do not meet ---- */
@@ -103,18 +96,14 @@ static void say_inside(struct look *look, uint32_t point, size_t obstacle)
 /* A folder has all cloths in one mesh. */
 static uint32_t cloth_of(const struct intersections *all, uint32_t t)
 {
-    uint32_t i = 0;
-    if (all->apart->apart)
-        return contact_apart_cloth(all->apart, all->corner[t][0], 0);
-    while (t >= all->cloth[i + 1].triangle)
-        i++;
-    return i;
+    return all->apart->apart ? contact_apart_cloth(all->apart, all->soup.corner[t][0], 0)
+                             : contact_soup_owner(&all->soup, t);
 }
 
 /* True if a triangle of cloth and an obstacle are not to meet. */
 static bool misses(const struct intersections *all, uint32_t t, size_t obstacle)
 {
-    return contact_is_attached(all->apart, 3, all->corner[t], (uint32_t)obstacle) ||
+    return contact_is_attached(all->apart, 3, all->soup.corner[t], (uint32_t)obstacle) ||
            contact_are_apart(all->apart, cloth_of(all, t),
                              all->apart->n_cloths + (uint32_t)obstacle);
 }
@@ -122,13 +111,10 @@ static bool misses(const struct intersections *all, uint32_t t, size_t obstacle)
 static bool is_left_out(const struct intersections *all, const struct verify_pair *pair)
 {
     const uint32_t *t = pair->triangle, a = cloth_of(all, t[0]);
-    size_t i = 0;
-    if (t[1] < all->soup.n_first)
+    if (t[1] < all->checked.n_first)
         return (all->self_off && a == cloth_of(all, t[1])) ||
                contact_are_apart(all->apart, a, cloth_of(all, t[1]));
-    while (t[1] >= all->obstacle[i + 1].triangle)
-        i++;
-    return misses(all, t[0], i);
+    return misses(all, t[0], contact_soup_owner(&all->soup, t[1]) - all->soup.n_cloths);
 }
 
 /* ---- A frame ---- */
@@ -145,24 +131,25 @@ static void place_body(const struct look *look, size_t obstacle)
         contact_body_places(body, look->placed, all->place);
         from = all->place;
     }
+    const uint32_t first = all->soup.surface[all->soup.n_cloths + obstacle].point;
     for (uint32_t v = 0; body && v < body->n_vertices; v++) {
         phys_vec x = from[v];
         if (pose.moves)
             phys_pose_point(&pose.to, &x, &x);
         for (int c = 0; c < 3; c++)
-            all->x[all->obstacle[obstacle].point + v][c] = verify_coordinate(x[c]);
+            all->x[first + v][c] = verify_coordinate(x[c]);
     }
 }
 
 static void place_points(const struct look *look, const double *position)
 {
     const struct intersections *all = look->all;
-    for (uint32_t v = 0; v < all->cloth[all->n_cloths].point; v++)
+    for (uint32_t v = 0; v < contact_soup_cloths(&all->soup).point; v++)
         for (int c = 0; c < 3; c++) {
             const double x = position[3 * (size_t)v + (size_t)c];
             all->x[v][c] = verify_coordinate(look->written ? (double)(float)x : x);
         }
-    for (size_t i = 0; i < all->n_obstacles; i++)
+    for (size_t i = 0; i < all->soup.n_obstacles; i++)
         place_body(look, i);
 }
 
@@ -171,10 +158,10 @@ static int look_at_pairs(struct look *look, uint64_t *pairs, uint64_t *with_bodi
 {
     struct intersections *all = look->all;
     all->pairs.n = 0;
-    const int code = verify_pairs(&all->soup, &all->pairs, error);
+    const int code = verify_pairs(&all->checked, &all->pairs, error);
     const struct verify_pair *pair = all->pairs.items;
     for (size_t i = 0; i < all->pairs.n && !code; i++) {
-        const bool cloths = pair[i].triangle[1] < all->soup.n_first;
+        const bool cloths = pair[i].triangle[1] < all->checked.n_first;
         if (is_left_out(all, pair + i))
             continue;
         *pairs += cloths;
@@ -193,7 +180,7 @@ static int look_at_shape(struct look *look, size_t obstacle, uint64_t *entered,
     struct contact_pose pose;
     contact_pose_over(shape, all->keys, all->bodies, look->placed, look->placed, &pose);
     all->entered.n = 0;
-    const int code = verify_enter(&all->soup, shape, &pose, depth, &all->entered, error);
+    const int code = verify_enter(&all->checked, shape, &pose, depth, &all->entered, error);
     const uint32_t *triangle = all->entered.items;
     for (size_t i = 0; i < all->entered.n && !code; i++) {
         if (misses(all, triangle[i], obstacle))
@@ -221,8 +208,8 @@ static bool may_be_in(const struct intersections *all, uint32_t point, size_t ob
 static void look_inside(struct look *look, size_t obstacle, uint64_t *inside)
 {
     const struct intersections *all = look->all;
-    const struct surface *body = all->obstacle + obstacle;
-    const uint32_t n = all->cloth[all->n_cloths].point;
+    const struct contact_surface *body = all->soup.surface + all->soup.n_cloths + obstacle;
+    const uint32_t n = contact_soup_cloths(&all->soup).point;
     uint32_t guess = 0;
     memset(all->seen, 0, n);
     for (uint32_t point = 0; point < n; point++) {
@@ -231,7 +218,7 @@ static void look_inside(struct look *look, size_t obstacle, uint64_t *inside)
             may_be_in(all, point, obstacle, &guess))
             continue;
         all->seen[part] = 1;
-        if (!verify_inside(&all->soup, body[0].triangle, body[1].triangle, all->x[point]))
+        if (!verify_inside(&all->checked, body[0].triangle, body[1].triangle, all->x[point]))
             continue;
         *inside += 1;
         say_inside(look, point, obstacle);
@@ -269,7 +256,7 @@ int intersections_frame(struct intersections *intersections, uint64_t frame, dou
     uint64_t pairs = 0, with_shapes = 0;
     place_points(&look, position);
     int code = look_at_pairs(&look, &pairs, &with_shapes, error);
-    for (size_t i = 0; i < intersections->n_obstacles && !code; i++)
+    for (size_t i = 0; i < intersections->soup.n_obstacles && !code; i++)
         if (intersections->obstacles[i].body)
             look_inside(&look, i, &with_shapes);
         else

@@ -14,20 +14,17 @@
  * cloth/verify. Local functions, on one rank. */
 struct intersections;
 
-/* The arrays are read by intersections_open alone; shapes, keys and bodies outlive it all. */
+/* All but the soup and the names outlives the check. */
+struct contact_soup;
 struct intersections_setup {
-    const char *program; /* that messages begin with; NULL: nothing is printed */
-    size_t n_meshes;
-    const struct mesh *const *meshes;
-    const char *const *names; /* of the cloths that the meshes are; NULL: they are not known */
-    const uint32_t *same; /* of each vertex of all cloths together: the lowest that it is one with;
-                             NULL: none is welded */
-    size_t n_obstacles;
+    const char *program;       /* that messages begin with; NULL: nothing is printed */
+    struct contact_soup *soup; /* of all cloths and bodies; taken over, and left empty */
+    const char *const *names;  /* of its cloths; NULL: they are not known */
     const struct contact_shape *obstacles;
     const struct phys_key *keys; /* of their motions */
     const struct contact_bodies *bodies;
-    const struct contact_apart *apart; /* pairs that do not meet, also triangles of joined vertices;
-                                        * it outlives this all */
+    const struct contact_apart *apart; /* pairs that do not meet, also triangles of joined vertices
+                                        */
     bool self_off;                     /* nor does any cloth meet itself */
 };
 
@@ -51,11 +48,7 @@ struct intersections_found {
 int intersections_open(struct intersections **intersections,
                        const struct intersections_setup *setup, struct cloth_error *error);
 
-/* Gives each vertex of all cloths the lowest vertex that it is welded to. *same: to be freed in any
- * case. Error: CLOTH_E_MEMORY. */
 struct model;
-int intersections_same(const struct model *model, uint32_t **same, struct cloth_error *error);
-
 /* The same for a model, while it has its meshes. apart: pairs that do not meet. Both outlive it
  * all. program, self_off: as above. */
 int intersections_of(struct intersections **intersections, const struct model *model,

@@ -2,6 +2,7 @@
  * others are likely to: they count as one. */
 #include "cloth/app/check/intersections.h"
 #include "cloth/base/memory.h"
+#include "cloth/contact/soup.h"
 #include "cloth/output/output.h"
 
 #include <stdlib.h>
@@ -76,23 +77,27 @@ static int check_frames(const struct folder *folder, struct intersections *inter
     return code;
 }
 
-static int check_folder(const struct folder *folder, const char *program,
+static int check_folder(struct folder *folder, const char *program,
                         struct intersections_found *found, struct cloth_error *error)
 {
     const struct output_cache *cache = folder->cache;
     const struct mesh *mesh = &cache->mesh;
+    struct contact_soup soup = {0};
     const struct intersections_setup setup = {.program = program,
-                                              .n_meshes = 1,
-                                              .meshes = &mesh,
-                                              .same = folder->same,
-                                              .n_obstacles = cache->n_obstacles,
+                                              .soup = &soup,
                                               .obstacles = cache->obstacles,
                                               .keys = cache->keys,
                                               .bodies = &cache->bodies,
                                               .apart = &cache->apart};
     struct intersections *intersections = NULL;
     int code = find_same(folder, error);
+    if (!code) {
+        code = contact_soup_make(&soup, 1, &mesh, folder->same, (uint32_t)cache->n_obstacles,
+                                 cache->obstacles, &cache->bodies, error);
+        folder->same = NULL;
+    }
     code = code ? code : intersections_open(&intersections, &setup, error);
+    contact_soup_free(&soup);
     code = code ? code : check_frames(folder, intersections, error);
     if (!code)
         *found = intersections_found(intersections);
@@ -104,10 +109,10 @@ int intersections_of_folder(struct output_cache *cache, const char *program,
                             struct intersections_found *found, struct cloth_error *error)
 {
     const size_t n = cache->mesh.n_vertices;
-    const struct folder folder = {.cache = cache,
-                                  .position = cloth_alloc(n, 3 * sizeof(double), error),
-                                  .order = cloth_alloc(n, sizeof *folder.order, error),
-                                  .same = cloth_alloc(n, sizeof *folder.same, error)};
+    struct folder folder = {.cache = cache,
+                            .position = cloth_alloc(n, 3 * sizeof(double), error),
+                            .order = cloth_alloc(n, sizeof *folder.order, error),
+                            .same = cloth_alloc(n, sizeof *folder.same, error)};
     const int code = folder.position && folder.order && folder.same
                          ? check_folder(&folder, program, found, error)
                          : CLOTH_E_MEMORY;

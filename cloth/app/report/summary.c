@@ -1,8 +1,7 @@
 /* The report as JSON: everything in it comes from the run; nothing is measured. */
 #include "cloth/app/report/summary.h"
 
-#include "cloth/app/report/summary_numbers.h"
-#include "cloth/app/report/summary_seams.h"
+#include "cloth/app/report/summary_parts.h"
 #include "cloth/app/report/summary_time.h"
 #include "cloth/base/simd.h"
 #include "cloth/output/output.h"
@@ -11,6 +10,32 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+double summary_ratio(double a, double b)
+{
+    return b > 0 ? a / b : NAN;
+}
+
+double summary_hidden_fraction(const struct summary *summary)
+{
+    const duite_counters *counters = &summary->report->counters;
+    return 1 - summary_ratio(counters->exposed, counters->awaited);
+}
+
+double summary_iterations_mean(const struct summary *summary)
+{
+    const struct flow_report *report = summary->report;
+    bool implicit = model_is_implicit(summary->model);
+    return implicit ? summary_ratio((double)report->cg_iterations_total, (double)report->steps)
+                    : NAN;
+}
+
+double summary_solves_mean(const struct flow_report *report)
+{
+    const uint64_t solves =
+        report->steps + report->steps_halved + report->steps_retaken + report->contact_solves;
+    return summary_ratio((double)solves, (double)report->steps);
+}
 
 static void add_hash(struct output_report *json, const char *key, uint64_t hash)
 {

@@ -1,8 +1,7 @@
 /* Everything printed here comes from the report of the run; nothing is measured. */
 #include "cloth/app/report/summary.h"
 
-#include "cloth/app/report/summary_numbers.h"
-#include "cloth/app/report/summary_seams.h"
+#include "cloth/app/report/summary_parts.h"
 #include "cloth/app/report/summary_time.h"
 #include "cloth/base/simd.h"
 

@@ -1,5 +1,5 @@
 /* The seams of a scene and how far pulled ones are closed. */
-#include "cloth/app/report/summary_seams.h"
+#include "cloth/app/report/summary_parts.h"
 
 #include <inttypes.h>
 #include <math.h>

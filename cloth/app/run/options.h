@@ -5,6 +5,7 @@
 
 #include <duite.h>
 #include <stdbool.h>
+#include <stdio.h>
 
 /* The command line of duite-cloth, read and checked. */
 struct simulate_options {
@@ -28,5 +29,25 @@ struct simulate_options {
     bool check_intersections; /* of each frame */
     bool quiet;               /* neither progress nor summary */
 };
+
+/* Sets the defaults of options: the environment, else the built-in values. environment_check looks
+ * for errors after the options, which may replace a value. Local. */
+void environment_begin(struct simulate_options *run);
+
+/* Error: CLOTH_E_INPUT, which names the variable. Local. */
+int environment_check(const struct simulate_options *run, struct cloth_error *error);
+
+/* A help_filter of argp: replaces SCHEDULERS, MAPPINGS and BALANCERS in a text by the names of the
+ * policies. Local. */
+char *environment_help(int key, const char *text, void *input);
+
+/* The scenes that make install puts into share/duite/scenes. Local. */
+
+/* The path of the shipped scene of this file name, to be freed. NULL: the name has a folder, a file
+ * of this name is here, or no shipped scene has it. */
+char *shipped_scene(const char *name);
+
+/* Prints a line for each: its file name and its first line's text. Returns how many there are. */
+size_t shipped_print(FILE *file);
 
 #endif

@@ -4,7 +4,6 @@
 
 #include "cloth/app/run/keeper.h"
 #include "cloth/app/run/outputs_setup.h"
-#include "cloth/app/run/restart.h"
 #include "cloth/base/memory.h"
 #include "cloth/output/output.h"
 
@@ -41,7 +40,7 @@ static int open_system(struct outputs *to, const struct model *model, struct clo
     if (!model_is_implicit(model))
         return cloth_fail(error, CLOTH_E_INPUT,
                           "--save-system: an explicit integrator solves no system");
-    if (model->integrator != MODEL_IMPLICIT_EULER || model->newton_steps > 1)
+    if (!model_is_linear(model))
         return cloth_fail(error, CLOTH_E_INPUT,
                           "--save-system: a step has one system of its own by implicit_euler with "
                           "newton.steps 1 only");
@@ -124,7 +123,7 @@ static int open_keeper(struct outputs *to, const struct phases *phases, bool res
     to->phases = phases;
     if (!(options->checkpoint > 0))
         return CLOTH_OK;
-    to->settings = restart_settings(phases, error);
+    to->settings = phases_settings(phases, error);
     return to->settings ? keeper_open(&to->keeper, options->output, options->checkpoint,
                                       to->settings, to->settler, to->hdf5.frames, error)
                         : error->code;

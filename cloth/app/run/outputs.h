@@ -29,7 +29,7 @@ struct outputs {
     struct drape *drape;                 /* if the scene has that test */
     struct drape_found drapes;           /* then, at the end */
     struct keeper *keeper;               /* of checkpoints, if they are wanted; then also: */
-    char *settings;                      /* restart_settings */
+    char *settings;                      /* phases_settings */
     const struct phases *phases;
     const struct untangle_result *untangled;
 };

@@ -2,7 +2,6 @@
  */
 #include "cloth/app/run/phases.h"
 
-#include "cloth/app/run/phases_check.h"
 #include "cloth/base/memory.h"
 #include "cloth/base/sets.h"
 
@@ -11,40 +10,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int make_room(struct phases *phases, uint32_t n, struct cloth_error *error)
-{
-    phases->n = n;
-    phases->models = calloc(n, sizeof *phases->models);
-    phases->done = calloc(n, sizeof *phases->done);
-    return phases->models && phases->done
-               ? CLOTH_OK
-               : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the phases");
-}
-
 int phases_read(struct phases *phases, const char *path, size_t n_sets,
                 const struct scene_set *sets, struct cloth_error *error)
 {
-    struct model first;
-    int code = scene_read(&first, path, n_sets, sets, error);
-    phases->named = first.n_phases > 0;
-    if (!code)
-        code = make_room(phases, first.n_phases ? first.n_phases : 1, error);
-    if (code) {
-        model_free(&first);
+    int code = scene_read_phases(&phases->models, &phases->n, path, n_sets, sets, error);
+    if (code)
         return code;
-    }
-    phases->models[0] = first;
-    phases->n_vertices = model_first(&first, first.n_cloths);
-    for (uint32_t i = 1; i < phases->n && !code; i++) {
-        code = scene_read_phase(phases->models + i, path, i, n_sets, sets, error);
-        if (!code)
-            code = phases_check(&phases->models[0], phases->models + i, i, error);
-    }
-    for (uint32_t i = 0; i < phases->n && phases->named && !code; i++)
+    const struct model *first = phases->models;
+    phases->named = first->n_phases > 0;
+    phases->n_vertices = model_first(first, first->n_cloths);
+    for (uint32_t i = 1; i < phases->n && !code; i++)
+        code = phases_check(first, phases->models + i, i, error);
+    phases->done = code ? NULL : cloth_alloc(phases->n, sizeof *phases->done, error);
+    for (uint32_t i = 0; i < phases->n && phases->named && phases->done; i++)
         phases->done[i].name = phases->models[i].phases[i].name;
-    if (!code && phases->n > 1)
-        phases->end = cloth_alloc(model_first(&first, first.n_cloths), sizeof *phases->end, error);
-    return code ? code : error->code;
+    if (phases->done && phases->n > 1)
+        phases->end = cloth_alloc(phases->n_vertices, sizeof *phases->end, error);
+    return error->code;
 }
 
 int phases_share(struct phases *phases, struct cloth_error *error)
@@ -52,9 +34,14 @@ int phases_share(struct phases *phases, struct cloth_error *error)
     uint32_t of[3] = {phases->n, phases->named, phases->now};
     MPI_Bcast(of, 3, MPI_UINT32_T, 0, MPI_COMM_WORLD);
     MPI_Bcast(&phases->total, sizeof phases->total, MPI_BYTE, 0, MPI_COMM_WORLD);
+    phases->n = of[0];
     phases->named = of[1];
     phases->now = of[2];
-    return of[0] && !phases->models ? make_room(phases, of[0], error) : CLOTH_OK;
+    if (of[0] && !phases->models)
+        phases->models = cloth_alloc(of[0], sizeof *phases->models, error);
+    if (of[0] && !phases->done)
+        phases->done = cloth_alloc(of[0], sizeof *phases->done, error);
+    return error->code;
 }
 
 struct flow_before phases_before(const struct phases *phases)

@@ -34,6 +34,21 @@ struct phases {
 int phases_read(struct phases *phases, const char *path, size_t n_sets,
                 const struct scene_set *sets, struct cloth_error *error);
 
+/* Compares the model of a phase, by its number from 0, with the first one. One folder holds the
+ * frames of all phases, so they share cloths, vertices and triangles, obstacles and their shapes,
+ * frames a second, columns of probes, and forces of contact. Error: CLOTH_E_INPUT, which names the
+ * phase and the difference. Local. */
+int phases_check(const struct model *first, const struct model *model, uint32_t phase,
+                 struct cloth_error *error);
+
+/* The settings of all phases, to be freed: the version, then lines `key: value`, and `file PATH:
+ * its hash`, each with its phase before it. NULL: no memory, or a file cannot be read. */
+char *phases_settings(const struct phases *phases, struct cloth_error *error);
+/* Fails with the first line of the settings that differs from those in the file `path`, n bytes.
+ * Error: CLOTH_E_INPUT, CLOTH_E_MEMORY. */
+int phases_compare(const char *path, const char *now, const void *was, size_t n,
+                   struct cloth_error *error);
+
 /* Sends the number of phases, the next one, and the results of earlier ones from rank 0 to all.
  * Error: CLOTH_E_MEMORY. Collective; it is not agreed on errors yet. */
 int phases_share(struct phases *phases, struct cloth_error *error);

@@ -1,5 +1,5 @@
 /* Each comparison names its own fault. */
-#include "cloth/app/run/phases_check.h"
+#include "cloth/app/run/phases.h"
 
 #include "cloth/contact/body.h"
 

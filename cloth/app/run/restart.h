@@ -16,10 +16,6 @@ struct restart {
     struct untangle_result untangled;    /* of the run before */
 };
 
-/* The settings of all phases, to be freed: the version, then lines `key: value`, and `file PATH:
- * its hash`, each with its phase before it. NULL: no memory, or a file cannot be read. */
-char *restart_settings(const struct phases *phases, struct cloth_error *error);
-
 /* Reads the newest checkpoint of a folder of frames that is whole, and puts the phases where it was
  * written; a warning says why a newer one is not used. Errors: CLOTH_E_INPUT, there is none, or it
  * is of another scene or version, by the first key that differs; CLOTH_E_IO; CLOTH_E_MEMORY. */

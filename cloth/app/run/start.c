@@ -10,68 +10,54 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The cloths as they are untangled; all by vertex of all cloths, or by triangle. */
+/* The cloths as they are untangled; all by vertex of all cloths. */
 struct tangle {
-    uint32_t n, n_triangles;
-    uint32_t *same;
+    uint32_t n;
+    struct contact_soup soup;
     double (*start)[6];
     phys_vec *x;
     unsigned char *held, *held_point; /* by name; by the lowest name */
-    uint32_t (*corner)[3], *cloth, *layer;
-    struct contact_apart apart; /* as of the model and the flow */
+    uint32_t *layer;                  /* by cloth */
+    struct contact_apart apart;       /* as of the model and the flow */
 };
 
 static void free_tangle(struct tangle *tangle)
 {
-    free(tangle->same);
+    contact_soup_free(&tangle->soup);
     free(tangle->start);
     free(tangle->x);
     free(tangle->held);
     free(tangle->held_point);
-    free(tangle->corner);
-    free(tangle->cloth);
     free(tangle->layer);
 }
 
 static int make_room(struct tangle *to, const struct model *model, struct cloth_error *error)
 {
     to->n = model_first(model, model->n_cloths);
-    for (uint32_t c = 0; c < model->n_cloths; c++)
-        to->n_triangles += model->cloths[c].mesh.n_triangles;
     to->start = cloth_alloc(to->n, sizeof *to->start, error);
     to->x = aligned_alloc(sizeof *to->x, ((size_t)to->n + 1) * sizeof *to->x);
     to->held = cloth_alloc(to->n, 1, error);
     to->held_point = cloth_alloc(to->n, 1, error);
-    to->corner = cloth_alloc(to->n_triangles, sizeof *to->corner, error);
-    to->cloth = cloth_alloc(to->n_triangles, sizeof *to->cloth, error);
     to->layer = cloth_alloc(model->n_cloths, sizeof *to->layer, error);
     if (!to->x)
         cloth_fail(error, CLOTH_E_MEMORY, "out of memory for where the run starts");
-    return error->code ? error->code : intersections_same(model, &to->same, error);
+    return error->code ? error->code : model_soup(model, &to->soup, error);
 }
 
 static void take_cloths(const struct model *model, const struct flow *flow, struct tangle *to)
 {
-    uint32_t n = 0;
+    const uint32_t *same = to->soup.same;
     flow_starts(flow, to->start, to->held);
     to->apart = model->contact.apart;
     to->apart.attached = flow_attached(flow);
     to->apart.n_vertices = to->n;
     for (uint32_t v = 0; v < to->n; v++) {
-        const double *start = to->start[to->same[v]];
+        const double *start = to->start[same[v]];
         to->x[v] = (phys_vec){start[0], start[1], start[2], 0};
-        to->held_point[to->same[v]] |= to->held[v];
+        to->held_point[same[v]] |= to->held[v];
     }
-    for (uint32_t c = 0; c < model->n_cloths; c++) {
-        const uint32_t first = model_first(model, c);
+    for (uint32_t c = 0; c < model->n_cloths; c++)
         to->layer[c] = model->cloths[c].layer;
-        for (uint32_t t = 0; t < model->cloths[c].mesh.n_triangles; t++, n++) {
-            mesh_corners(&model->cloths[c].mesh, t, to->corner[n]);
-            to->cloth[n] = c;
-            for (int k = 0; k < 3; k++)
-                to->corner[n][k] = to->same[first + to->corner[n][k]];
-        }
-    }
 }
 
 /* ---- Progress ---- */
@@ -112,7 +98,7 @@ static int put_starts(struct model *model, struct tangle *of, struct cloth_error
         memcpy(start, of->start + first, n * sizeof *start);
         for (uint32_t v = 0; v < n; v++)
             for (int k = 0; k < 3; k++)
-                start[v][k] = of->x[of->same[first + v]][k];
+                start[v][k] = of->x[of->soup.same[first + v]][k];
         model_start_at(cloth, *start);
     }
     return CLOTH_OK;
@@ -181,7 +167,7 @@ static int name_pairs(const struct model *model, const struct tangle *of, struct
         return CLOTH_E_MEMORY;
     for (uint32_t v = 0; v < of->n; v++)
         for (size_t k = 0; k < 3; k++)
-            position[3 * (size_t)v + k] = of->x[of->same[v]][k];
+            position[3 * (size_t)v + k] = of->x[of->soup.same[v]][k];
     const int code = check(model, &of->apart, position, &found, error);
     free(position);
     return code;
@@ -191,17 +177,12 @@ static int make_free(struct model *model, struct flow **flow, int ranks, bool sa
                      struct tangle *tangle, struct untangle_result *result,
                      struct cloth_error *error)
 {
-    const struct untangle_cloths cloths = {.n_points = tangle->n,
-                                           .n_triangles = tangle->n_triangles,
-                                           .n_cloths = model->n_cloths,
-                                           .corner = (const uint32_t(*)[3])tangle->corner,
-                                           .cloth = tangle->cloth,
+    const struct untangle_cloths cloths = {.soup = &tangle->soup,
                                            .layer = tangle->layer,
                                            .held = tangle->held_point,
                                            .apart = &tangle->apart,
                                            .self_off = !model->contact.self,
                                            .thickness = model->contact.thickness,
-                                           .n_obstacles = model->n_obstacles,
                                            .obstacles = model->obstacles,
                                            .keys = model->keys,
                                            .bodies = &model->bodies};

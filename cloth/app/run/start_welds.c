@@ -15,6 +15,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double REACH = 10 * CONTACT_MARGIN; /* m: pairs farther apart all the way do not touch
                                                   */
@@ -24,9 +25,10 @@ enum { ALL_FEATURES = 63 };
 struct motion {
     const struct model *model;
     const struct contact_apart *apart;
-    uint32_t n, n_triangles;
-    phys_vec *x, *y; /* by vertex, m: before, and after */
-    uint32_t (*corner)[3], *id, *joined;
+    struct contact_soup soup;
+    uint32_t n, n_triangles; /* of its cloths */
+    phys_vec *x, *y;         /* by vertex, m: before, and after */
+    uint32_t *id, *joined;   /* joined: the soup's, with seams that are pulled */
     unsigned char *stands, *held;
     struct contact_skin skin;
     struct contact_side side;
@@ -45,14 +47,6 @@ static bool moves(const struct motion *motion, uint32_t v)
     for (int c = 0; c < 3; c++)
         differs = differs || motion->x[v][c] < motion->y[v][c] || motion->x[v][c] > motion->y[v][c];
     return differs;
-}
-
-static uint32_t cloth_of(const struct model *model, uint32_t vertex)
-{
-    uint32_t c = 0;
-    while (vertex - model_first(model, c) >= model->cloths[c].mesh.n_vertices)
-        c++;
-    return c;
 }
 
 static void fail(struct motion *motion, uint32_t n, const uint32_t *vertex)
@@ -93,11 +87,11 @@ static bool passes(enum contact_pair pair, const phys_vec x[4], const phys_vec y
 static bool meets(const struct motion *motion, uint32_t n, const uint32_t *vertex)
 {
     const struct model *model = motion->model;
-    const uint32_t cloth = cloth_of(model, vertex[0]);
+    const uint32_t cloth = contact_soup_cloth(&motion->soup, vertex[0]);
     if (motion->obstacle)
         return model_meets(model, cloth, model->n_cloths + motion->obstacle - 1) &&
                !contact_is_attached(motion->apart, n, vertex, motion->obstacle - 1);
-    return model_meets(model, cloth, cloth_of(model, vertex[n - 1]));
+    return model_meets(model, cloth, contact_soup_cloth(&motion->soup, vertex[n - 1]));
 }
 
 static void look_at(struct motion *motion, const struct contact_candidate *candidate)
@@ -163,7 +157,7 @@ static void look_at_solid(struct motion *motion, const struct contact_shape *sha
     struct contact_solid solid;
     contact_solid_make(shape, pose, &solid);
     for (uint32_t t = 0; t < motion->n_triangles; t++) {
-        const uint32_t *v = motion->corner[t];
+        const uint32_t *v = motion->soup.corner[t];
         const phys_vec x[3] = {motion->x[v[0]], motion->x[v[1]], motion->x[v[2]]};
         const phys_vec y[3] = {motion->y[v[0]], motion->y[v[1]], motion->y[v[2]]};
         const bool moving = moves(motion, v[0]) || moves(motion, v[1]) || moves(motion, v[2]);
@@ -195,18 +189,19 @@ static int look_at_obstacles(struct motion *motion, struct cloth_error *error)
 static int make_room(struct motion *motion, struct cloth_error *error)
 {
     const struct model *model = motion->model;
-    motion->n = model_first(model, model->n_cloths);
-    for (uint32_t c = 0; c < model->n_cloths; c++)
-        motion->n_triangles += model->cloths[c].mesh.n_triangles;
+    if (model_soup(model, &motion->soup, error))
+        return error->code;
+    motion->n = contact_soup_cloths(&motion->soup).point;
+    motion->n_triangles = contact_soup_cloths(&motion->soup).triangle;
+    motion->joined = motion->soup.same;
     motion->x = aligned_alloc(sizeof(phys_vec), (motion->n + (size_t)1) * sizeof *motion->x);
     motion->y = aligned_alloc(sizeof(phys_vec), (motion->n + (size_t)1) * sizeof *motion->y);
     if (!motion->x || !motion->y)
         cloth_fail(error, CLOTH_E_MEMORY, "out of memory for where seams are welded");
-    motion->corner = cloth_alloc(motion->n_triangles, sizeof *motion->corner, error);
     motion->stands = cloth_alloc(motion->n_triangles, 1, error);
     motion->id = cloth_alloc(motion->n, sizeof *motion->id, error);
     motion->held = cloth_alloc(motion->n, 1, error);
-    return error->code ? error->code : intersections_same(model, &motion->joined, error);
+    return error->code;
 }
 
 /* Returns true if anything moves. */
@@ -227,19 +222,6 @@ static bool take_places(struct motion *motion, const double (*before)[3], const 
     return any;
 }
 
-static void take_triangles(struct motion *motion)
-{
-    const struct model *model = motion->model;
-    uint32_t n = 0;
-    for (uint32_t c = 0; c < model->n_cloths; c++)
-        for (uint32_t t = 0; t < model->cloths[c].mesh.n_triangles; t++, n++) {
-            mesh_corners(&model->cloths[c].mesh, t, motion->corner[n]);
-            for (int k = 0; k < 3; k++)
-                motion->corner[n][k] += model_first(model, c);
-            motion->stands[n] = ALL_FEATURES;
-        }
-}
-
 static int make_skin(struct motion *motion, struct cloth_error *error)
 {
     const phys_vec none = {0};
@@ -249,7 +231,7 @@ static int make_skin(struct motion *motion, struct cloth_error *error)
                                         .n_vertices = 3 * motion->n_triangles};
     const struct contact_skin_source from = {.n_points = motion->n,
                                              .n_triangles = motion->n_triangles,
-                                             .corner = (const uint32_t(*)[3])motion->corner,
+                                             .corner = (const uint32_t(*)[3])motion->soup.corner,
                                              .stands = motion->stands,
                                              .id = motion->id,
                                              .joined = motion->joined,
@@ -274,7 +256,7 @@ static int refuse(const struct motion *motion, const char *scene, struct cloth_e
     char vertices[200] = "", with[60] = "the cloth";
     size_t used = 0;
     for (uint32_t k = 0; k < motion->n_vertices && used < sizeof vertices; k++) {
-        const uint32_t c = cloth_of(model, motion->vertex[k]);
+        const uint32_t c = contact_soup_cloth(&motion->soup, motion->vertex[k]);
         used += (size_t)snprintf(
             vertices + used, sizeof vertices - used, "%s%" PRIu32 " of '%.30s'", k ? ", " : "",
             motion->vertex[k] - model_first(model, c) + 1, model->cloths[c].name);
@@ -292,9 +274,8 @@ static void free_all(struct motion *motion)
 {
     free(motion->x);
     free(motion->y);
-    free(motion->corner);
+    contact_soup_free(&motion->soup);
     free(motion->id);
-    free(motion->joined);
     free(motion->stands);
     free(motion->held);
     free(motion->table);
@@ -312,7 +293,7 @@ static int certify(struct motion *motion, const struct flow *flow, const char *s
     free(after);
     if (!any)
         return code;
-    take_triangles(motion);
+    memset(motion->stands, ALL_FEATURES, motion->n_triangles);
     code = make_skin(motion, error);
     if (code)
         return code;

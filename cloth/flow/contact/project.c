@@ -1,5 +1,5 @@
-/* The filter that holds rows in the solve, and the projection out of obstacles after it. Sliders
- * filter their rows; the program's own filter follows. */
+/* The filter by which sliders hold rows in the solve, and the projection out of obstacles after it.
+ */
 #include "cloth/contact/meet.h"
 #include "cloth/flow/contact/image.h"
 #include "cloth/flow/contact/mode.h"
@@ -8,32 +8,10 @@
 
 /* ---- The filter of the solve ---- */
 
-FLOW_KERNEL(filter, FLOW_COLLIDE, struct flow_step_args, (R(table), R(x), R(v), W(filter)))
-
-/* The program's part. */
-static int own_rows(const duite_call *call, const struct flow_table *t,
-                    const struct filter_fields *on)
-{
-    const struct flow_filter *own = &flow_of(call)->filter;
-    const struct flow_rows rows = {.n = t->n,
-                                   .vertex = t->vertex,
-                                   .x = on->x,
-                                   .v = on->v,
-                                   .time = on->args->time,
-                                   .h = on->args->h,
-                                   .filter = on->filter};
-    if (!own->rows)
-        return duite_fail(call, FLOW_NO_FILTER,
-                          "the model has a filter of the program's own, but this rank was given no "
-                          "function; call flow_filter_by on every rank");
-    own->rows(own->context, &rows);
-    return 0;
-}
-
+FLOW_KERNEL(filter, FLOW_COLLIDE, struct flow_step_args, (R(table), W(filter)))
 static int filter_body(const duite_call *call, const struct filter_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
-    const struct model *model = flow_of(call)->model;
     phys_vec *filter = on->filter;
     struct flow_pins pins;
     struct flow_slider slider;
@@ -44,7 +22,7 @@ static int filter_body(const duite_call *call, const struct filter_fields *on)
         flow_pins_slider(&pins, i, &slider);
         filter[t->sliding[i][0]] = slider.filter;
     }
-    return model->own_filter ? own_rows(call, t, on) : 0;
+    return 0;
 }
 
 int flow_contact_filter(struct flow_state *state, struct flow_step_args args)

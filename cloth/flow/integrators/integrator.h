@@ -13,14 +13,17 @@ struct flow_integrator {
      * before a step. restore: makes that the state again; NULL: a copy back. */
     bool (*keeps)(const struct model *model);
     void (*restore)(struct flow_state *state);
+    /* Its fields: */
+    bool ends_forces; /* v0, of the half step; f may be that of the end of the step before */
+    bool in_stages;   /* x0, v0, where the step began; sum_x, sum_v */
+    bool two_steps;   /* last_x, last_v: the state a step before */
 };
 
 /* By enum model_integrator. */
-extern const struct flow_integrator flow_integrators[];
+extern const struct flow_integrator flow_integrators[MODEL_INTEGRATORS];
 
-/* Both ends of a step by implicit Euler or BDF2 (implicit.c), by either explicit Euler (euler.c),
- * velocity Verlet (verlet.c), the explicit midpoint method (midpoint.c), RK4 (runge.c). They return
- * what the runtime does. */
+/* Both ends of a step by implicit Euler or BDF2 (implicit.c), by either explicit Euler, velocity
+ * Verlet, RK4 (explicit.c). They return what the runtime does. */
 int flow_implicit_euler_begin(struct flow_state *state);
 int flow_implicit_euler_end(struct flow_state *state);
 bool flow_implicit_euler_keeps(const struct model *model);
@@ -30,7 +33,6 @@ bool flow_euler_keeps(const struct model *model);
 void flow_euler_restore(struct flow_state *state);
 int flow_verlet_begin(struct flow_state *state);
 int flow_verlet_end(struct flow_state *state);
-int flow_midpoint_end(struct flow_state *state);
 int flow_runge_end(struct flow_state *state);
 
 /* True if steps of a model keep the state before them (keeps). Local. */
@@ -64,5 +66,10 @@ bool flow_implicit_is_second(const struct flow_state *state);
 void flow_implicit_status(const struct flow_state *state, double status[FLOW_STATUS]);
 void flow_implicit_settle(struct flow_state *state, bool accepted,
                           const double status[FLOW_STATUS]);
+
+/* Warns, before a run, of steps that are too long: for the fastest vibration (explicit), for the
+ * solve (implicit), or for the push of the air. To flow->warning, on rank 0, when the source is
+ * made. Error: CLOTH_E_MEMORY. Local. (long_steps.c) */
+int flow_warn_of_steps(struct flow *flow, struct cloth_error *error);
 
 #endif

@@ -196,18 +196,8 @@ int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
 
 double flow_limit_of(const struct flow_limit *limit, enum model_integrator integrator)
 {
-    if (!(limit->omega > 0) || integrator >= MODEL_IMPLICIT_EULER)
-        return INFINITY;
-    switch (integrator) {
-    case MODEL_EXPLICIT_EULER:
-        return phys_limit_euler(limit->omega, limit->drag + limit->along);
-    case MODEL_SYMPLECTIC_EULER:
-        return phys_limit_symplectic(limit->omega, limit->drag + limit->along);
-    case MODEL_VERLET:
-        return phys_limit_verlet(limit->omega, limit->along);
-    case MODEL_MIDPOINT:
-        return phys_limit_midpoint(limit->omega, limit->drag + limit->along);
-    default:
-        return phys_limit_rk4(limit->omega, limit->drag + limit->along);
-    }
+    const struct model_scheme *scheme = model_schemes + integrator;
+    const double drag = scheme->drag_free ? 0 : limit->drag;
+    return limit->omega > 0 && scheme->limit ? scheme->limit(limit->omega, drag + limit->along)
+                                             : INFINITY;
 }

@@ -1,5 +1,5 @@
 /* A warned run is made all the same: the estimate is of the start alone. */
-#include "cloth/flow/integrators/long_steps.h"
+#include "cloth/flow/integrators/integrator.h"
 
 #include "cloth/base/memory.h"
 #include "cloth/flow/contact/mode.h"
@@ -18,32 +18,29 @@ static const char *place_of(const struct model *model)
     return model->h_place ? model->h_place : "h";
 }
 
-/* The part that a step of explicit Euler or the midpoint method adds to an undamped vibration.
- * turn: h w. */
-static double growth_of(enum model_integrator integrator, double turn)
+/* The part that a step of explicit Euler adds to an undamped vibration. turn: h w. */
+static double growth_of(double turn)
 {
-    const double squared = turn * turn;
-    const double more = integrator == MODEL_MIDPOINT ? squared * squared / 4 : squared;
-    return more / (1 + sqrt(1 + more));
+    return turn * turn / (1 + sqrt(1 + turn * turn));
 }
 
 /* An explicit step that lets vibrations grow is made all the same. */
 static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
 {
     const struct model *model = flow->model;
-    const char *name = model_integrator_name(model->integrator), *place = place_of(model);
+    const char *name = model_scheme(model)->name, *place = place_of(model);
     const double max = flow_limit_of(limit, model->integrator), turn = model->h * limit->omega;
-    const size_t size = sizeof flow->warning[4];
+    const size_t size = sizeof flow->warning[FLOW_WARN_STEP];
     if (!(max > 0))
-        snprintf(flow->warning[4], size,
+        snprintf(flow->warning[FLOW_WARN_STEP], size,
                  "%.200s: no step is short enough for %s without damping: the fastest vibration "
                  "(up to %g rad/s, at vertex %u of cloth '%.60s', counted from 1) can grow by %g "
                  "%% in each of %g s",
                  place, name, limit->omega, limit->vertex + 1, limit->cloth->name,
-                 100 * growth_of(model->integrator, turn), model->h);
+                 100 * growth_of(turn), model->h);
     else if (model->h > max)
         snprintf(
-            flow->warning[4], size,
+            flow->warning[FLOW_WARN_STEP], size,
             "%.200s: steps of %g s are beyond the limit of %s, %g s: the fastest vibration (up "
             "to %g rad/s, at vertex %u of cloth '%.60s', counted from 1) can grow in each",
             place, model->h, name, max, limit->omega, limit->vertex + 1, limit->cloth->name);
@@ -58,12 +55,12 @@ static void warn_of_contacts(struct flow *flow)
     const struct flow_limit limit = {.omega = sqrt(rate * spring.stiffness),
                                      .along = rate * spring.damping};
     const double max = flow_limit_of(&limit, model->integrator);
-    if (!flow->warning[4][0] && flow->vertex_mass > 0 && model->h > max)
-        snprintf(flow->warning[4], sizeof flow->warning[4],
+    if (!flow->warning[FLOW_WARN_STEP][0] && flow->vertex_mass > 0 && model->h > max)
+        snprintf(flow->warning[FLOW_WARN_STEP], sizeof flow->warning[FLOW_WARN_STEP],
                  "%.200s: steps of %g s are beyond what contacts of stiffness %g N/m and damping "
                  "%g allow %s, %g s: what they push can bounce ever harder",
                  place_of(model), model->h, spring.stiffness, model->contact.damping,
-                 model_integrator_name(model->integrator), max);
+                 model_scheme(model)->name, max);
 }
 
 static void warn_implicit(struct flow *flow, const struct flow_limit *limit)
@@ -71,7 +68,7 @@ static void warn_implicit(struct flow *flow, const struct flow_limit *limit)
     const struct model *model = flow->model;
     const double turn = model->h * limit->omega;
     if (turn > MAX_TURN)
-        snprintf(flow->warning[4], sizeof flow->warning[4],
+        snprintf(flow->warning[FLOW_WARN_STEP], sizeof flow->warning[FLOW_WARN_STEP],
                  "%.200s: in steps of %g s the cloth is %.1e times stiffer than its mass (vertex "
                  "%u of cloth '%.60s', counted from 1): solves can fail, and the run can take up "
                  "to 1024 times as "
@@ -107,8 +104,8 @@ static int find_density(const struct model *model, const struct model_cloth *clo
 /* Forces on a cloth that the matrix does not know: the first kind that has something to say. */
 static void warn_of_kinds(struct flow *flow, const struct element_sheet *sheet)
 {
-    char *text = flow->warning[5];
-    const size_t size = sizeof flow->warning[5];
+    char *text = flow->warning[FLOW_WARN_AIR];
+    const size_t size = sizeof flow->warning[FLOW_WARN_AIR];
     const size_t n = (size_t)snprintf(text, size, "%.200s: ", place_of(sheet->model));
     for (int i = 0; i < ELEMENT_KINDS && !text[n]; i++)
         if (element_kinds[i]->warn && element_kinds[i]->has(sheet->model, sheet->cloth))
@@ -120,7 +117,7 @@ static void warn_of_kinds(struct flow *flow, const struct element_sheet *sheet)
 static int warn_of_elements(struct flow *flow, struct cloth_error *error)
 {
     struct element_sheet sheet = {.model = flow->model};
-    for (uint32_t c = 0; c < flow->model->n_cloths && !flow->warning[5][0]; c++) {
+    for (uint32_t c = 0; c < flow->model->n_cloths && !flow->warning[FLOW_WARN_AIR][0]; c++) {
         sheet.cloth = flow->model->cloths + c;
         if (!element_parts(sheet.model, sheet.cloth))
             continue;

@@ -50,8 +50,8 @@ static int level_body(const duite_call *call, const struct level_fields *on)
     return 0;
 }
 
-/* Symplectic Euler moved x with v: v is the velocity half a step before x. With v at the time of x
- * the energy is off only by the square of h. */
+/* v of a staggered scheme is the velocity half a step before x. With v at the time of x the energy
+ * is off only by the square of h. */
 static int fork_level(struct flow_state *state, struct flow_step_args args)
 {
     const int code = flow_fork_each(state, &flow_kernel_force, &args);
@@ -60,7 +60,7 @@ static int fork_level(struct flow_state *state, struct flow_step_args args)
 
 int flow_energies(struct flow_state *state, struct flow_step_args args, enum flow_field_id sums)
 {
-    const bool apart = state->flow->model->integrator == MODEL_SYMPLECTIC_EULER;
+    const bool apart = model_scheme(state->flow->model)->staggered;
     const struct flow_as as[] = {{FLOW_FIELD_v, apart ? FLOW_FIELD_f : FLOW_FIELD_v},
                                  {FLOW_FIELD_energies, sums},
                                  {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}};

@@ -130,11 +130,6 @@ void flow_free(struct flow *flow)
     free(flow);
 }
 
-void flow_filter_by(struct flow *flow, struct flow_filter filter)
-{
-    flow->filter = filter;
-}
-
 void flow_start(const struct flow *flow, double *position)
 {
     const struct flow_particles *particles = &flow->source.particles;

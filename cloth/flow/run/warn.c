@@ -1,5 +1,5 @@
 /* Warnings about a model. Each kind has its place in flow->warning, and says at most one thing. */
-#include "cloth/flow/integrators/long_steps.h"
+#include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/state/state.h"
 
@@ -22,79 +22,13 @@ static void describe_unusual(char *text, size_t size, const char *what,
 
 static void warn(struct flow *flow, const struct flow_particles *particles)
 {
-    const size_t size = sizeof flow->warning[0];
-    describe_unusual(flow->warning[0], size, "vertices", &particles->unused,
+    const size_t size = sizeof flow->warning[FLOW_WARN_UNUSED];
+    describe_unusual(flow->warning[FLOW_WARN_UNUSED], size, "vertices", &particles->unused,
                      "they are kept and stay where they are");
-    describe_unusual(flow->warning[1], size, "pinned vertices", &particles->pinned,
+    describe_unusual(flow->warning[FLOW_WARN_PINNED], size, "pinned vertices", &particles->pinned,
                      "they stay where they are without a pin");
-    describe_unusual(flow->warning[2], size, "loads on vertices", &particles->loaded,
+    describe_unusual(flow->warning[FLOW_WARN_LOADED], size, "loads on vertices", &particles->loaded,
                      "they move nothing");
-}
-
-/* Names a key of a material that its cloth has no use for; NULL: there is none. A chain beside a
- * grid may share a material that shears. */
-static const char *idle_key(const struct model *model, const struct model_material *material,
-                            const struct model_cloth *cloth)
-{
-    bool triangles, edges;
-    model_parts(model, (uint32_t)(material - model->materials), &triangles, &edges);
-    if (material->ea > 0 && !edges)
-        return "ea is of edges without triangles";
-    if (material->limit_stiffness > 0 && !triangles && !edges)
-        return "strain_limit is of edges, and it has none";
-    if (material->correction.rounds && !triangles && !edges)
-        return "velocity_correction is of edges, and it has none";
-    if (material->stretch > 0 && !triangles)
-        return "stretch is of triangles and threads; edges without triangles have ea";
-    if ((material->bend > 0 || material->bending != MODEL_NO_BENDING) && !triangles)
-        return "bend and bending are of triangles and threads, which edges without triangles lack";
-    if (model_damping_bending(material) != material->damping_stiffness && material->bend <= 0 &&
-        material->bending == MODEL_NO_BENDING)
-        return "damping.bending is of bending and of bend springs, and it has neither";
-    if (material->model == MODEL_TRIANGLES)
-        return material->bend > 0 ? "bend is of springs; triangles have bending" : NULL;
-    if (material->poisson < 0 || material->poisson > 0)
-        return "poisson is of triangles; springs have no such ratio of their own";
-    if (material->uncorrected)
-        return "forces is of triangles";
-    return material->shear > 0 && !cloth->mesh.grid_nx && cloth->mesh.n_triangles
-               ? "shear is of the springs of grids, and of "
-                 "triangles; other meshes have no diagonals"
-               : NULL;
-}
-
-/* Diagonals that only such triangles hold fold without a force. */
-static void warn_of_shear(struct flow *flow)
-{
-    const struct model *model = flow->model;
-    for (uint32_t c = 0; c < model->n_cloths; c++)
-        for (uint32_t i = 0; i <= model->cloths[c].n_regions && !flow->warning[8][0]; i++) {
-            const struct model_cloth *cloth = model->cloths + c;
-            const struct model_material *material = model_material(model, cloth, i);
-            if (material->model == MODEL_TRIANGLES && !(material->shear > 0) &&
-                cloth->mesh.n_triangles)
-                snprintf(flow->warning[8], sizeof flow->warning[8],
-                         "%.200s%smaterial '%.60s' makes triangles of cloth '%.60s' that do not "
-                         "resist being sheared: its shear is 0",
-                         cloth->place ? cloth->place : "", cloth->place ? ": " : "",
-                         material->name ? material->name : "", cloth->name ? cloth->name : "");
-        }
-}
-
-static void warn_of_moduli(struct flow *flow)
-{
-    const struct model *model = flow->model;
-    for (uint32_t c = 0; c < model->n_cloths; c++)
-        for (uint32_t i = 0; i <= model->cloths[c].n_regions; i++) {
-            const struct model_cloth *cloth = model->cloths + c;
-            const struct model_material *material = model_material(model, cloth, i);
-            const char *key = idle_key(model, material, cloth);
-            if (key && !flow->warning[6][0])
-                snprintf(flow->warning[6], sizeof flow->warning[6],
-                         "%.200s%smaterial '%.60s' says what means nothing to cloth '%.60s': %s",
-                         cloth->place ? cloth->place : "", cloth->place ? ": " : "",
-                         material->name ? material->name : "", cloth->name ? cloth->name : "", key);
-        }
 }
 
 /* Files are often in centimetres or millimetres. Chains, which no garment is, may have any length.
@@ -102,13 +36,13 @@ static void warn_of_moduli(struct flow *flow)
 static void warn_of_extent(struct flow *flow)
 {
     const struct model *model = flow->model;
-    for (uint32_t c = 0; c < model->n_cloths && !flow->warning[7][0]; c++) {
+    for (uint32_t c = 0; c < model->n_cloths && !flow->warning[FLOW_WARN_EXTENT][0]; c++) {
         const struct model_cloth *cloth = model->cloths + c;
         double low[3], high[3];
         const double extent = mesh_box(&cloth->mesh, low, high);
         if (!cloth->mesh.n_triangles || (extent >= LEAST_EXTENT && extent <= MAX_EXTENT))
             continue;
-        snprintf(flow->warning[7], sizeof flow->warning[7],
+        snprintf(flow->warning[FLOW_WARN_EXTENT], sizeof flow->warning[FLOW_WARN_EXTENT],
                  "%.200s%scloth '%.60s' is %g m long in its largest extent, %s than %g m: is its "
                  "mesh in metres? transform.scale changes that (0.01 for centimetres)",
                  cloth->mesh_place ? cloth->mesh_place : "", cloth->mesh_place ? ": " : "",
@@ -147,17 +81,17 @@ static double find_deepest(const struct flow *flow, const struct contact_shape *
 static void warn_of_inside(struct flow *flow)
 {
     const struct model *model = flow->model;
-    const size_t size = sizeof flow->warning[9];
+    const size_t size = sizeof flow->warning[FLOW_WARN_INSIDE];
     uint32_t first = 0;
     for (uint32_t c = 0; c < model->n_cloths; first += model->cloths[c++].mesh.n_vertices)
-        for (uint32_t i = 0; i < model->n_obstacles && !flow->warning[9][0]; i++) {
+        for (uint32_t i = 0; i < model->n_obstacles && !flow->warning[FLOW_WARN_INSIDE][0]; i++) {
             const struct model_cloth *cloth = model->cloths + c;
             uint32_t deepest = 0;
             if (!model_meets(model, c, model->n_cloths + i))
                 continue;
             const double gap = find_deepest(flow, model->obstacles + i, cloth, first, &deepest);
             if (gap < -DEEP)
-                snprintf(flow->warning[9], size,
+                snprintf(flow->warning[FLOW_WARN_INSIDE], size,
                          "%.200s%scloth '%.60s' starts inside obstacles[%u], a %s: vertex %u is %g "
                          "m deep in it (vertices count from 1)%s",
                          cloth->place ? cloth->place : "", cloth->place ? ": " : "",
@@ -180,8 +114,8 @@ static void warn_of_windings(struct flow *flow, const struct model_cloth *cloth,
             first = edges->edge + e;
             n++;
         }
-    if (first && !flow->warning[10][0])
-        snprintf(flow->warning[10], sizeof flow->warning[10],
+    if (first && !flow->warning[FLOW_WARN_WINDING][0])
+        snprintf(flow->warning[FLOW_WARN_WINDING], sizeof flow->warning[FLOW_WARN_WINDING],
                  "%.200s%scloth '%.60s' has %u edges whose two triangles are wound against each "
                  "other, the first is between vertices %u and %u (counted from 1): which side is "
                  "its outside differs there; turn the faces of one side round",
@@ -265,8 +199,8 @@ static void warn_of_follow(struct flow *flow, const struct model_cloth *cloth, u
 {
     struct stretched most = {.by = 0.2}; /* a body's skin stretches by so much at its joints */
     find_stretched(flow, cloth, first, edges, &most);
-    if (most.edge && !flow->warning[11][0])
-        snprintf(flow->warning[11], sizeof flow->warning[11],
+    if (most.edge && !flow->warning[FLOW_WARN_FOLLOW][0])
+        snprintf(flow->warning[FLOW_WARN_FOLLOW], sizeof flow->warning[FLOW_WARN_FOLLOW],
                  "%.200s%spins that follow obstacles stretch cloth '%.60s' by %.0f %% at %.3g s: "
                  "the edge between vertices %u and %u (counted from 1); pin fewer of its vertices",
                  cloth->place ? cloth->place : "", cloth->place ? ": " : "",
@@ -300,8 +234,6 @@ int flow_warn(struct flow *flow, struct cloth_error *error)
 {
     warn_of_edges(flow);
     warn(flow, &flow->source.particles);
-    warn_of_moduli(flow);
-    warn_of_shear(flow);
     warn_of_extent(flow);
     warn_of_inside(flow);
     return flow_warn_of_steps(flow, error);

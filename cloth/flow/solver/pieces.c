@@ -7,7 +7,7 @@
 #include "cloth/flow/solver/solver.h"
 
 /* Sums over a piece: the lost momentum, the antisymmetric part, D, kg, and the number of rows that
- * a slider or the program's filter holds. */
+ * a slider holds. */
 enum { LOST, TURN = 3, MASS = 6, HELD };
 
 static bool is_held(const struct flow_table *t, uint32_t row)

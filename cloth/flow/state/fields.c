@@ -5,6 +5,7 @@
 #include "cloth/flow/contact/image.h"
 #include "cloth/flow/contact/mode.h"
 #include "cloth/flow/contact/skin.h"
+#include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/solver/solver.h"
 #include "cloth/flow/state/life.h"
@@ -299,31 +300,32 @@ static bool explicit_run(const struct flow_state *state, uint32_t block)
     return !implicit_run(state, block);
 }
 
-static bool runge(const struct flow_state *state, uint32_t block)
+static const struct flow_integrator *integrator_of(const struct flow_state *state)
 {
-    (void)block;
-    return state->flow->model->integrator == MODEL_RK4;
+    return flow_integrators + state->flow->model->integrator;
 }
 
-static bool multistage(const struct flow_state *state, uint32_t block)
+static bool in_stages(const struct flow_state *state, uint32_t block)
 {
-    return runge(state, block) || state->flow->model->integrator == MODEL_MIDPOINT;
+    (void)block;
+    return integrator_of(state)->in_stages;
 }
 
 static bool staged(const struct flow_state *state, uint32_t block)
 {
-    return multistage(state, block) || state->flow->model->integrator == MODEL_VERLET;
+    (void)block;
+    return integrator_of(state)->in_stages || integrator_of(state)->ends_forces;
 }
 
-static bool bdf2(const struct flow_state *state, uint32_t block)
+static bool two_steps(const struct flow_state *state, uint32_t block)
 {
     (void)block;
-    return state->flow->model->integrator == MODEL_BDF2;
+    return integrator_of(state)->two_steps;
 }
 
 static bool based(const struct flow_state *state, uint32_t block)
 {
-    return bdf2(state, block) ||
+    return two_steps(state, block) ||
            (implicit_run(state, block) && state->flow->model->newton_steps > 1);
 }
 

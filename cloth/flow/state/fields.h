@@ -37,7 +37,7 @@ enum {
     /* the state, and its rows for neighbours */                                                   \
     X(x,            ONE,     phys_vec,      4, rows,          always,       is_state)              \
     X(v,            ONE,     phys_vec,      4, rows,          always,       is_state)              \
-    X(f,            ONE,     phys_vec,      4, rows,          always,       is_state_of_verlet)    \
+    X(f,            ONE,     phys_vec,      4, rows,          always,       is_state_of_ends)      \
     X(halo_x,       ONE,     phys_vec,      4, halo,          always,       is_derived)            \
     X(halo_v,       ONE,     phys_vec,      4, halo,          always,       is_derived)            \
     X(table,        ONE,     unsigned char, 1, table_bytes,   always,       is_derived)            \
@@ -68,18 +68,18 @@ enum {
     X(edge_ends,    ONE,     phys_vec,      12, halo,         corrected,    is_work)               \
     X(edge_x,       BY_PASS, phys_vec,      4, halo,          corrected,    is_work)               \
     X(edge_calm,    ONE,     double,        2, one,           corrected,    is_work)               \
-    /* explicit integrators (explicit.h); x0, v0: where a step began, or Verlet's half step */     \
+    /* explicit integrators (explicit.c); x0, v0: where a step began, or Verlet's half step */     \
     X(spare_halo_x, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
     X(spare_halo_v, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
     X(v0,           ONE,     phys_vec,      4, rows,          staged,       is_work)               \
-    X(x0,           ONE,     phys_vec,      4, rows,          multistage,   is_work)               \
-    X(sum_x,        ONE,     phys_vec,      4, rows,          runge,        is_work)               \
-    X(sum_v,        ONE,     phys_vec,      4, rows,          runge,        is_work)               \
+    X(x0,           ONE,     phys_vec,      4, rows,          in_stages,    is_work)               \
+    X(sum_x,        ONE,     phys_vec,      4, rows,          in_stages,    is_work)               \
+    X(sum_v,        ONE,     phys_vec,      4, rows,          in_stages,    is_work)               \
     /* implicit integrators: struct phys_states */                                                 \
     X(base_x,       ONE,     phys_vec,      4, rows,          based,        is_work)               \
     X(base_v,       ONE,     phys_vec,      4, rows,          based,        is_work)               \
-    X(last_x,       ONE,     phys_vec,      4, rows,          bdf2,         is_state)              \
-    X(last_v,       ONE,     phys_vec,      4, rows,          bdf2,         is_state)              \
+    X(last_x,       ONE,     phys_vec,      4, rows,          two_steps,    is_state)              \
+    X(last_v,       ONE,     phys_vec,      4, rows,          two_steps,    is_state)              \
     /* contact: the box around the skin of the block over the step (pairs.c); the record of its    \
      * ties; its contacts in the step under way: struct contact_row (rows.c) */                    \
     X(root,         ONE,     double,        FLOW_ROOT, one,       meets,        is_work)               \

@@ -42,7 +42,6 @@ enum {
     FLOW_NO_MEMORY,
     FLOW_NOT_CONVERGED,
     FLOW_STRETCHED,
-    FLOW_NO_FILTER,
     FLOW_TANGLED,
     FLOW_PINCHED,
     FLOW_UNSEWN,
@@ -62,6 +61,20 @@ struct flow_unused {
 };
 
 #define FLOW_APART (-1.0)
+
+/* Warnings of a run, one of each kind. */
+enum {
+    FLOW_WARN_UNUSED, /* vertices, with their pins and loads */
+    FLOW_WARN_PINNED,
+    FLOW_WARN_LOADED,
+    FLOW_WARN_STEP, /* longer than the integrator takes */
+    FLOW_WARN_AIR,
+    FLOW_WARN_EXTENT,
+    FLOW_WARN_INSIDE,
+    FLOW_WARN_WINDING,
+    FLOW_WARN_FOLLOW,
+    FLOW_WARNINGS
+};
 
 /* Levels of groups; nodes of a group: four patches of four blocks. */
 enum { FLOW_MAX_LEVELS = 8, FLOW_MAX_NODES = 16 };
@@ -88,8 +101,7 @@ struct flow {
     const struct flow_tie *tie; /* n_ties */
 
     /* Rank 0 only. */
-    char warning[12][600]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli,
-                              extents, shear, starts inside, windings, followers; empty: none */
+    char warning[FLOW_WARNINGS][600]; /* empty: there is none */
     struct flow_source source; /* until the tables are distributed */
     uint32_t *vertex;          /* by place; from then on */
     uint32_t *cloth_first;     /* n_cloths of the model: the first vertex of each among all */
@@ -99,7 +111,6 @@ struct flow {
     struct flow_watched watched;
     char *header; /* of the table of probes; NULL: none */
 
-    struct flow_filter filter;   /* the program's; rows NULL: none */
     struct flow_checkpoint from; /* that the run goes on from; bytes NULL: none */
 
     /* The run under way. */

@@ -13,7 +13,7 @@
     X(keep_halo) X(skin_refit) X(skin_place) X(root) X(roots) X(meet) X(meet_self) X(meet_figure) X(meet_shape) X(touch) X(cut)                \
     X(tie_count) X(tie_contacts) X(tie_say) X(filter) X(constrain) X(collide)        \
     X(body_skin) X(body_refit) X(map_draw) X(map_draw_again)                                                                    \
-    X(euler) X(euler_next) X(verlet_first) X(verlet_second) X(midpoint) X(runge)                   \
+    X(euler) X(euler_next) X(verlet_first) X(verlet_second) X(runge)                               \
     X(edge_start) X(edge_begin) X(edge_round) X(edge_next) X(edge_end)                             \
     X(implicit) X(implicit_next) X(predict) X(correct) X(shift) X(residual)                    \
     X(system) X(system_of_forces) X(matrix) X(factor)                                              \

@@ -2,6 +2,7 @@
 #include "cloth/flow/state/life.h"
 
 #include "cloth/flow/contact/body.h"
+#include "cloth/flow/integrators/integrator.h"
 
 enum flow_life flow_is_state(const struct model *model)
 {
@@ -33,18 +34,18 @@ enum flow_life flow_is_derived_of_bodies(const struct model *model)
     return flow_bodies_move(model) ? FLOW_WORK : FLOW_DERIVED;
 }
 
-/* Verlet begins a step with the forces that ended the one before (verlet.c). */
-enum flow_life flow_is_state_of_verlet(const struct model *model)
+/* A step may begin with the forces that ended the one before. */
+enum flow_life flow_is_state_of_ends(const struct model *model)
 {
-    const bool stays = model->integrator == MODEL_VERLET && model_leaves_ends(model);
+    const bool stays = flow_integrators[model->integrator].ends_forces && model_leaves_ends(model);
     return stays ? FLOW_STATE_FIELD : FLOW_WORK;
 }
 
-/* A linear step of implicit Euler may begin its solve with dv of the step before. */
+/* A linear step may begin its solve with dv of the step before. */
 enum flow_life flow_is_state_of_guess(const struct model *model)
 {
-    const bool linear = model->integrator == MODEL_IMPLICIT_EULER && model->newton_steps <= 1;
-    return linear && model->guess != MODEL_GUESS_ZERO ? FLOW_STATE_FIELD : FLOW_WORK;
+    return model_is_linear(model) && model->guess != MODEL_GUESS_ZERO ? FLOW_STATE_FIELD
+                                                                      : FLOW_WORK;
 }
 
 /* A frame may show the end of the step before. */

@@ -9,7 +9,7 @@ enum flow_life flow_is_derived(const struct model *model);
 enum flow_life flow_is_work(const struct model *model);
 enum flow_life flow_is_derived_once(const struct model *model);
 enum flow_life flow_is_derived_of_bodies(const struct model *model);
-enum flow_life flow_is_state_of_verlet(const struct model *model);
+enum flow_life flow_is_state_of_ends(const struct model *model);
 enum flow_life flow_is_state_of_guess(const struct model *model);
 enum flow_life flow_is_state_of_frames(const struct model *model);
 

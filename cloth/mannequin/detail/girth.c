@@ -1,75 +1,36 @@
-/* Sections of the half: the plane's pieces in triangles are joined where they share an edge. */
+/* A girth is a loop of the half's section. */
 #include "cloth/base/memory.h"
 #include "cloth/base/sets.h"
 #include "cloth/mannequin/detail/surface.h"
 #include "cloth/mannequin/detail/vector.h"
+#include "cloth/mesh/slice.h"
 
 #include <stdlib.h>
 
-struct section {
-    const struct surface *surface;
-    const struct surface_edges *edges;
-    double point[3], normal[3];
-    double *height;   /* of a vertex over the plane */
-    uint32_t *parent; /* sets of edges that are joined */
-    double (*sum)[4]; /* by set: its length, the sum of its places weighted by length */
-};
-
-static uint32_t edge_of(const struct surface_edges *edges, uint32_t a, uint32_t b)
+/* By set: its length, and the sum of its places weighted by length. */
+static void sum_loops(const struct slice *slice, double (*sum)[4])
 {
-    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
-    uint32_t e = edges->first[low];
-    while (edges->edge[e].end[1] != high)
-        e++;
-    return e;
-}
-
-/* The two edges of a triangle that the plane crosses, and where; false: it crosses none. */
-static bool cross(const struct section *section, uint32_t t, uint32_t edge[2], double at[2][3])
-{
-    const uint32_t *v = section->surface->triangle[t];
-    int n = 0;
-    for (int k = 0; k < 3; k++) {
-        const uint32_t a = v[k], b = v[(k + 1) % 3];
-        const double p = section->height[a], q = section->height[b];
-        if ((p < 0) == (q < 0))
-            continue;
-        edge[n] = edge_of(section->edges, a, b);
+    for (uint32_t s = 0; s < slice->n; s++) {
+        const struct slice_segment *segment = slice->segment + s;
+        double *to = sum[cloth_sets_root(slice->set, s)];
         for (int c = 0; c < 3; c++)
-            at[n][c] = section->surface->x[a][c] +
-                       p / (p - q) * (section->surface->x[b][c] - section->surface->x[a][c]);
-        n++;
+            to[c] += 0.5 * segment->length * (segment->end[0].place[c] + segment->end[1].place[c]);
+        to[3] += segment->length;
     }
-    return n == 2;
 }
 
-static void measure(struct section *section)
-{
-    uint32_t edge[2];
-    double at[2][3];
-    for (uint32_t t = 0; t < section->surface->m; t++)
-        if (cross(section, t, edge, at))
-            cloth_sets_join(section->parent, edge[0], edge[1]);
-    for (uint32_t t = 0; t < section->surface->m; t++)
-        if (cross(section, t, edge, at)) {
-            double *sum = section->sum[cloth_sets_root(section->parent, edge[0])];
-            const double length = vector_distance(at[0], at[1]);
-            for (int c = 0; c < 3; c++)
-                sum[c] += 0.5 * length * (at[0][c] + at[1][c]);
-            sum[3] += length;
-        }
-}
-
-/* The length of the loop whose middle is nearest; one that is open goes on in the mirror image. */
-static double nearest(const struct section *section, bool half)
+/* The length of the loop whose middle is nearest to a point; one that is open goes on in the mirror
+ * image. */
+static double nearest_loop(const struct slice *slice, const double (*sums)[4],
+                           const double point[3], bool half)
 {
     double best = INFINITY, length = 0;
-    for (uint32_t e = 0; e < section->edges->n; e++) {
-        const double *sum = section->sum[e];
+    for (uint32_t s = 0; s < slice->n; s++) {
+        const double *sum = sums[s];
         if (!(sum[3] > 0))
             continue;
         const double middle[3] = {half ? 0 : sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]};
-        const double far = vector_distance(middle, section->point) + (half ? sum[0] / sum[3] : 0);
+        const double far = vector_distance(middle, point) + (half ? sum[0] / sum[3] : 0);
         if (far < best) {
             best = far;
             length = half ? 2 * sum[3] : sum[3];
@@ -81,24 +42,23 @@ static double nearest(const struct section *section, bool half)
 int surface_girth(const struct surface *surface, const struct figure *figure, uint32_t measured,
                   double *girth, struct cloth_error *error)
 {
-    struct surface_edges edges = {0};
-    struct section section = {.surface = surface, .edges = &edges};
-    int code = surface_edges_find(&edges, surface, error);
-    figure_section(figure, measured, section.point, section.normal);
-    section.height = cloth_alloc(surface->n, sizeof *section.height, error);
-    section.parent = cloth_alloc(edges.n, sizeof *section.parent, error);
-    section.sum = cloth_alloc(edges.n, sizeof *section.sum, error);
-    if (!code && section.height && section.parent && section.sum) {
-        const double level = vector_dot(section.point, section.normal);
-        for (uint32_t v = 0; v < surface->n; v++)
-            section.height[v] = vector_dot(surface->x[v], section.normal) - level;
-        cloth_sets_start(section.parent, edges.n);
-        measure(&section);
-        *girth = nearest(&section, measured < MANNEQUIN_THIGH);
+    double point[3], normal[3], (*sum)[4] = NULL;
+    double *height = cloth_alloc(surface->n, sizeof *height, error);
+    const struct slice_mesh mesh = {surface->m, (const uint32_t(*)[3])surface->triangle,
+                                    (const double(*)[3])surface->x, height};
+    struct slice slice = {0};
+    figure_section(figure, measured, point, normal);
+    const double level = vector_dot(point, normal);
+    for (uint32_t v = 0; v < surface->n && height; v++)
+        height[v] = vector_dot(surface->x[v], normal) - level;
+    if (height && !slice_make(&slice, &mesh, error))
+        sum = cloth_alloc(slice.n, sizeof *sum, error);
+    if (sum) {
+        sum_loops(&slice, sum);
+        *girth = nearest_loop(&slice, (const double(*)[4])sum, point, measured < MANNEQUIN_THIGH);
     }
-    free(section.height);
-    free(section.parent);
-    free(section.sum);
-    surface_edges_free(&edges);
+    free(sum);
+    free(height);
+    slice_free(&slice);
     return error->code;
 }

@@ -8,77 +8,46 @@
  * a value: meshes, motions, indices for names. They check what a table cannot: names, sizes,
  * indices, files. Their allocations belong to the model, also after an error. */
 
-/* The names of the phases: no two are the same. */
-int scene_build_phases(const struct model *model, struct cloth_error *error);
+/* A step of the whole scene. scene.c has their order, in which each relies on those before. */
+typedef int scene_build_step(struct model *model, struct scene_tree *tree,
+                             struct cloth_error *error);
 
-/* All but the cloths. */
-int scene_build_world(struct model *model, struct scene_tree *tree, struct cloth_error *error);
+/* The names of the phases, no two of which are the same; all but the cloths; the cloths, which name
+ * materials. */
+scene_build_step scene_build_phases, scene_build_world, scene_build_obstacles, scene_build_cloths;
 
-/* The obstacles; and, when there are cloths, that no two obstacles exclude each other around one.
- */
-int scene_build_obstacles(struct model *model, struct scene_tree *tree, struct cloth_error *error);
-int scene_build_check_obstacles(const struct model *model, const struct scene_tree *tree,
-                                struct cloth_error *error);
+/* No two obstacles exclude each other around a cloth. */
+scene_build_step scene_build_check_obstacles;
 
-/* The mode of contact where the scene does not say it; after the cloths. */
-void scene_build_contact(struct model *model, const struct scene_tree *tree);
+/* contact.pairs and contact.ignore, whose names are of materials, cloths, obstacles and groups; the
+ * mode of contact where the scene does not say it; whether the integrator supports the contact, and
+ * it is not too thin for the places of the cloths; whether there is anything to touch, which probes
+ * may ask. */
+scene_build_step scene_build_sides, scene_build_contact, scene_build_check_contact;
+scene_build_step scene_build_contact_idle;
 
-/* Finds out if there is anything to touch; after the probes, which may ask for forces of
- * contact. */
-void scene_build_contact_idle(struct model *model);
+/* What a run reports. */
+scene_build_step scene_build_probes, scene_build_hdf5, scene_build_drape;
 
-/* contact.pairs and contact.ignore, whose names are of materials, cloths, obstacles and groups;
- * after the cloths. */
-int scene_build_sides(struct model *model, const struct scene_tree *tree,
-                      struct cloth_error *error);
+/* Joints and welds; those of mesh.weld; those of seams; a warning of unjoined vertices at one
+ * place; edges that are shorter than contact.thickness; folds of sewn cloths. */
+scene_build_step scene_build_joints, scene_build_welds, scene_build_mesh_welds, scene_build_seams;
+scene_build_step scene_build_pieces, scene_build_short_edges, scene_build_folds;
 
-/* Checks that the integrator supports the contact, and that it is not too thin for the places of
- * the cloths. After the cloths. */
-int scene_build_check_contact(const struct model *model, const struct scene_tree *tree,
-                              struct cloth_error *error);
+/* Warnings: sewn cloths that are too small for a body, where it starts at rest; seams of one cloth
+ * that cross where it starts; values that are hardly ever meant; keys that do nothing, after all
+ * others, as the tree gets a default. */
+scene_build_step scene_build_girths, scene_build_warn_seams, scene_build_unusual, scene_build_needs;
 
-/* The cloths; after the world, since they name materials. */
-int scene_build_cloths(struct model *model, struct scene_tree *tree, struct cloth_error *error);
+/* Writes the settings of the model. */
+scene_build_step scene_build_settings;
 
-/* After the cloths, whose vertices they name. */
-int scene_build_probes(struct model *model, const struct scene_tree *tree,
-                       struct cloth_error *error);
-/* The fields of output.hdf5; after contact and probes. */
-int scene_build_hdf5(struct model *model, const struct scene_tree *tree, struct cloth_error *error);
-int scene_build_drape(struct model *model, const struct scene_tree *tree,
-                      struct cloth_error *error);
-int scene_build_joints(struct model *model, const struct scene_tree *tree,
-                       struct cloth_error *error);
-int scene_build_welds(struct model *model, const struct scene_tree *tree,
-                      struct cloth_error *error);
-
-/* The joins of mesh.weld; after the welds. */
-int scene_build_mesh_welds(struct model *model, const struct scene_tree *tree,
-                           struct cloth_error *error);
-/* Warns of unjoined vertices at one place; after all joints and welds. */
-int scene_build_pieces(struct model *model, const struct scene_tree *tree,
-                       struct cloth_error *error);
-/* Edges that are shorter than contact.thickness; after the seams. */
-int scene_build_short_edges(struct model *model, const struct scene_tree *tree,
-                            struct cloth_error *error);
 /* One more weld of the model, with room for n pairs of vertices of a cloth, but no place. NULL:
  * out of memory. */
 struct model_weld *scene_build_add_weld(struct model *model, double tolerance, uint32_t cloth,
                                         uint32_t n, struct cloth_error *error);
 /* The pair of a mesh that says its kind, of the cloth at a node. */
 yaml_node_pair_t scene_build_mesh_kind(const struct scene_tree *tree, int node);
-
-/* The seams of cloths, which become joints or welds of the model; after all others of these. */
-int scene_build_seams(struct model *model, const struct scene_tree *tree,
-                      struct cloth_error *error);
-
-/* Warns of sewn cloths that are too small for a body, where it starts at rest; after the seams. */
-int scene_build_girths(struct model *model, const struct scene_tree *tree,
-                       struct cloth_error *error);
-
-/* The folds of cloths, after their seams. */
-int scene_build_folds(struct model *model, const struct scene_tree *tree,
-                      struct cloth_error *error);
 
 /* Reads the seams of an OBJ mesh (docs/garments.md), for a mesh that has as many vertices and
  * triangles. Faults of the file are in `inner`. The seams belong to `seams`, also after an
@@ -91,20 +60,10 @@ int scene_read_seams(struct model_seams *seams, const struct mesh *mesh, const c
 int scene_build_cloth_of(uint32_t *cloth, const char *what, const struct model *model,
                          const struct scene_tree *tree, int node, struct cloth_error *error);
 
-/* Warnings of keys that do nothing in this scene; after all others. */
-int scene_build_idle(struct model *model, const struct scene_tree *tree, struct cloth_error *error);
-
-/* Warnings of values that are hardly ever meant. */
-int scene_build_unusual(struct model *model, const struct scene_tree *tree,
-                        struct cloth_error *error);
-
-/* Warns of seams of one cloth that cross where it starts; after the seams. */
-int scene_build_warn_seams(struct model *model, const struct scene_tree *tree,
-                           struct cloth_error *error);
-
-/* Writes the settings of the model. Error: CLOTH_E_MEMORY. */
-int scene_build_settings(struct model *model, const struct scene_tree *tree,
-                         struct cloth_error *error);
+/* The settings of a node, a line each: its path and its value. To be freed. NULL: CLOTH_E_MEMORY.
+ */
+char *scene_build_text(const struct scene_tree *tree, int node, const char *path,
+                       struct cloth_error *error);
 
 /* The material, by number, that the key material of a map names, for a cloth whose
  * mass_per_vertex is known. */
@@ -132,11 +91,21 @@ int scene_build_check_radius(const struct scene_tree *tree, int node, struct clo
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error);
 
-/* Refuses a vertex that stands twice in the list of the pick that the map `node` makes. seen: for
- * each vertex of the mesh, the number of the last pick that named it. number: of this pick, from 1.
- * what: "one load", and the remedy. */
-int scene_build_once(const struct model_pick *pick, const struct scene_tree *tree, int node,
-                     uint32_t *seen, uint32_t number, const char *what, struct cloth_error *error);
+/* The same, and refuses a vertex that stands twice in its list. what: "one load", and the remedy.
+ */
+int scene_build_pick_once(struct model_pick *pick, const struct scene_tree *tree, int node,
+                          const struct model_cloth *cloth, const char *what,
+                          struct cloth_error *error);
+
+/* The error `inner` of a file or part, at the node that names it: "what: sentence". Without one:
+ * code. */
+int scene_build_blame(int code, const struct cloth_error *inner, const char *what,
+                      const struct scene_tree *tree, int node, struct cloth_error *error);
+
+/* Checks n numbers of vertices, which the list at a node has. */
+int scene_build_check_vertices(const uint32_t *vertices, uint32_t n,
+                               const struct model_cloth *cloth, const struct scene_tree *tree,
+                               int list, struct cloth_error *error);
 
 /* The error that the mesh of the cloth has no vertex of this number. */
 int scene_build_no_vertex(uint32_t vertex, const struct model_cloth *cloth,
@@ -183,6 +152,15 @@ int scene_build_direction(double direction[3], const char *what, const struct sc
 /* The error that there is no `what` of this name; it lists the existing names. names: n strings. */
 int scene_build_no_such(const char *what, const char *name, const char *const *names, size_t n,
                         const struct scene_tree *tree, int node, struct cloth_error *error);
+
+/* The obstacle, by number, of a name; UINT32_MAX: there is none. The error that a node names none.
+ */
+uint32_t scene_build_obstacle_named(const struct model *model, const char *name);
+int scene_build_no_obstacle(const struct model *model, const struct scene_tree *tree, int node,
+                            struct cloth_error *error);
+
+/* Adds the names of obstacles behind the first n of a list. Returns how many there are then. */
+size_t scene_build_add_obstacles(const struct model *model, size_t n, const char **names);
 
 /* Adds the path of a file that is read to the model's. */
 int scene_build_file(struct model *model, const char *path, struct cloth_error *error);
@@ -240,6 +218,9 @@ int scene_build_warn(struct model *model, const struct scene_tree *tree, int nod
 
 /* n zeroed entries (at least one), or NULL with an error. */
 void *scene_build_array(size_t n, size_t size, struct cloth_error *error);
+/* A list of n entries, moved, with zeroed room for `more`; or NULL with an error: the list stays.
+ */
+void *scene_build_grow(void *list, size_t n, size_t more, size_t size, struct cloth_error *error);
 char *scene_build_copy(const char *text, struct cloth_error *error);
 /* The place of a node, for the model. */
 char *scene_build_place(const struct scene_tree *tree, int node, struct cloth_error *error);

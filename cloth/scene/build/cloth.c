@@ -19,13 +19,14 @@ int scene_build_no_vertex(uint32_t vertex, const struct model_cloth *cloth,
                            vertex, cloth->name, cloth->mesh.n_vertices, cloth->mesh.n_vertices - 1);
 }
 
-static int check_vertices(const struct model_pick *pick, const struct scene_tree *tree, int list,
-                          const struct model_cloth *cloth, struct cloth_error *error)
+int scene_build_check_vertices(const uint32_t *vertices, uint32_t n,
+                               const struct model_cloth *cloth, const struct scene_tree *tree,
+                               int list, struct cloth_error *error)
 {
-    for (uint32_t i = 0; i < pick->n_vertices; i++)
-        if (pick->vertices[i] >= cloth->mesh.n_vertices)
-            return scene_build_no_vertex(pick->vertices[i], cloth, tree,
-                                         scene_tree_item(tree, list, i), error);
+    for (uint32_t i = 0; i < n; i++)
+        if (vertices[i] >= cloth->mesh.n_vertices)
+            return scene_build_no_vertex(vertices[i], cloth, tree, scene_tree_item(tree, list, i),
+                                         error);
     return CLOTH_OK;
 }
 
@@ -105,24 +106,29 @@ int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int
     if (group)
         return pick_group(pick, tree, group, cloth, error);
     if (pick->kind == MODEL_PICK_VERTICES)
-        return check_vertices(pick, tree, scene_tree_get(tree, node, "vertices"), cloth, error);
+        return scene_build_check_vertices(pick->vertices, pick->n_vertices, cloth, tree,
+                                          scene_tree_get(tree, node, "vertices"), error);
     if (pick->kind == MODEL_PICK_BOX)
         return build_box(pick->box, tree, scene_tree_get(tree, node, "box"), cloth, error);
     return CLOTH_OK;
 }
 
-int scene_build_once(const struct model_pick *pick, const struct scene_tree *tree, int node,
-                     uint32_t *seen, uint32_t number, const char *what, struct cloth_error *error)
+int scene_build_pick_once(struct model_pick *pick, const struct scene_tree *tree, int node,
+                          const struct model_cloth *cloth, const char *what,
+                          struct cloth_error *error)
 {
     const int list = scene_tree_get(tree, node, "vertices");
-    for (uint32_t i = 0; i < pick->n_vertices; i++) {
-        const uint32_t vertex = pick->vertices[i];
-        if (seen[vertex] == number)
-            return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
-                                   "vertex %u stands twice in %s", vertex, what);
-        seen[vertex] = number;
-    }
-    return CLOTH_OK;
+    int code = scene_build_pick(pick, tree, node, cloth, error);
+    if (code || pick->n_vertices < 2 || !list)
+        return code;
+    unsigned char *seen = scene_build_array(cloth->mesh.n_vertices, 1, error);
+    code = seen ? CLOTH_OK : error->code;
+    for (uint32_t i = 0; i < pick->n_vertices && !code; i++)
+        if (seen[pick->vertices[i]]++)
+            code = scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
+                                   "vertex %u stands twice in %s", pick->vertices[i], what);
+    free(seen);
+    return code;
 }
 
 static int build_pins(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,

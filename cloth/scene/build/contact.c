@@ -39,15 +39,17 @@ static bool has_edges_to_stop(const struct model *model)
     return has && model->n_obstacles;
 }
 
-void scene_build_contact(struct model *model, const struct scene_tree *tree)
+int scene_build_contact(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     const int contact = scene_tree_get(tree, 1, "contact");
+    (void)error;
     if (scene_tree_get(tree, contact, "mode"))
-        return;
+        return CLOTH_OK;
     model->contact.assumed = true;
     if (model_is_implicit(model) && has_surfaces(model) && !has_edges_to_stop(model) &&
         !model_has_maps(model))
         model->contact.mode = MODEL_CONTACT_BEST;
+    return CLOTH_OK;
 }
 
 /* ---- Scenes without contact ---- */
@@ -62,9 +64,12 @@ static bool meets_anything(const struct model *model, uint32_t cloth)
     return meets;
 }
 
-void scene_build_contact_idle(struct model *model)
+int scene_build_contact_idle(struct model *model, struct scene_tree *tree,
+                             struct cloth_error *error)
 {
     bool idle = true;
+    (void)tree;
+    (void)error;
     for (uint32_t c = 0; c < model->n_cloths; c++)
         idle = idle && !meets_anything(model, c);
     for (uint32_t i = 0; i < model->n_probes; i++) {
@@ -72,12 +77,13 @@ void scene_build_contact_idle(struct model *model)
         idle = idle && !probe->by_obstacle && !probe->contact && !probe->contact_total;
     }
     model->contact.idle = idle;
+    return CLOTH_OK;
 }
 
 /* ---- Its needs ---- */
 
 /* The largest coordinate of a vertex where it starts, m. */
-static double farthest(const struct model *model)
+static double farthest_coordinate(const struct model *model)
 {
     double far = 0;
     for (uint32_t c = 0; c < model->n_cloths; c++) {
@@ -94,7 +100,7 @@ static double farthest(const struct model *model)
 static int check_thickness(const struct model *model, const struct scene_tree *tree, int node,
                            struct cloth_error *error)
 {
-    const double far = farthest(model);
+    const double far = farthest_coordinate(model);
     const double least = (MARGIN + 2 * sqrt(3) * far / 16777216) / OPEN;
     if (model->contact.thickness >= least)
         return CLOTH_OK;
@@ -122,7 +128,7 @@ static int check_bodies(const struct model *model, const struct scene_tree *tree
                            model_contact_is[model->contact.mode].no_maps);
 }
 
-int scene_build_check_contact(const struct model *model, const struct scene_tree *tree,
+int scene_build_check_contact(struct model *model, struct scene_tree *tree,
                               struct cloth_error *error)
 {
     const int contact = scene_tree_get(tree, 1, "contact");
@@ -133,7 +139,7 @@ int scene_build_check_contact(const struct model *model, const struct scene_tree
                                "contact.mode is %s, which implicit_euler and bdf2 can do: "
                                "explicit steps (integrator: %s) solve no system that knows of "
                                "contact; repulsion or project is expected",
-                               model_contact_name(model), model_integrator_name(model->integrator));
+                               model_contact_name(model), model_scheme(model)->name);
     const int code = is->no_maps ? check_bodies(model, tree, error) : CLOTH_OK;
     return code || !is->promise.apart
                ? code

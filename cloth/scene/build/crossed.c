@@ -154,8 +154,7 @@ static int warn_of_seams(struct model *model, const struct model_cloth *cloth,
     return code;
 }
 
-int scene_build_warn_seams(struct model *model, const struct scene_tree *tree,
-                           struct cloth_error *error)
+int scene_build_warn_seams(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     const int list = scene_tree_get(tree, 1, "cloths");
     int code = CLOTH_OK;

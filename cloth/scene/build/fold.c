@@ -15,10 +15,8 @@ static int check_path(const struct model_cloth *cloth, const struct model_fold *
         return scene_tree_fail(tree, list, error,
                                "a fold has one vertex; the vertices along it, two at least, are "
                                "expected");
-    for (uint32_t i = 0; i < fold->n; i++)
-        if (fold->vertices[i] >= cloth->mesh.n_vertices)
-            return scene_build_no_vertex(fold->vertices[i], cloth, tree,
-                                         scene_tree_item(tree, list, i), error);
+    if (scene_build_check_vertices(fold->vertices, fold->n, cloth, tree, list, error))
+        return error->code;
     for (uint32_t i = 1; i < fold->n; i++)
         if (!mesh_edges_get(edges, fold->vertices[i - 1], fold->vertices[i]))
             return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
@@ -103,7 +101,7 @@ static int build_folds(struct model *model, struct model_cloth *cloth,
     return code ? code : warn_of_open(model, cloth, tree, list, error);
 }
 
-int scene_build_folds(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+int scene_build_folds(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     const int list = scene_tree_get(tree, 1, "cloths");
     int code = CLOTH_OK;

@@ -16,14 +16,6 @@ struct reading {
     struct cloth_error *error;
 };
 
-/* The error of a file, at the node that names it. */
-static int blame(const struct reading *r, int node, const struct cloth_error *inner)
-{
-    if (inner->code == CLOTH_E_MEMORY)
-        return cloth_fail(r->error, inner->code, "%s: %s", r->tree->path, inner->text);
-    return scene_tree_fail(r->tree, node, r->error, "frames: %s", inner->text);
-}
-
 static int read_pc2(const struct reading *r, int node, uint32_t *n, double **place)
 {
     struct cloth_error inner = {0};
@@ -31,11 +23,11 @@ static int read_pc2(const struct reading *r, int node, uint32_t *n, double **pla
     const int code =
         path ? mesh_read_pc2(path, r->mesh->n_vertices, n, place, &inner) : r->error->code;
     free(path);
-    return inner.code ? blame(r, node, &inner) : code;
+    return scene_build_blame(code, &inner, "frames", r->tree, node, r->error);
 }
 
 /* Checks that a frame's mesh has the vertices and faces of the body's. */
-static int check_frame(const struct reading *r, int node, const struct mesh *frame)
+static int check_body_frame(const struct reading *r, int node, const struct mesh *frame)
 {
     const struct mesh *mesh = r->mesh;
     const char *name = scene_tree_scalar(r->tree, node);
@@ -62,10 +54,9 @@ static int read_obj(const struct reading *r, int node, double *place)
     struct mesh frame = {0};
     int code =
         scene_build_obj(r->model, &frame, mesh_read_surface, r->tree, node, r->error, &inner);
-    if (inner.code)
-        code = blame(r, node, &inner);
+    code = scene_build_blame(code, &inner, "frames", r->tree, node, r->error);
     if (!code)
-        code = check_frame(r, node, &frame);
+        code = check_body_frame(r, node, &frame);
     if (!code)
         memcpy(place, frame.position, 3 * (size_t)frame.n_vertices * sizeof *place);
     mesh_free(&frame);

@@ -26,8 +26,8 @@ static int take_body(struct girth_mesh *mesh, const struct contact_body *body,
     return CLOTH_OK;
 }
 
-static int compare(struct girth_worst *worst, const struct model_cloth *cloth,
-                   const struct contact_body *body, struct cloth_error *error)
+static int compare_girths(struct girth_worst *worst, const struct model_cloth *cloth,
+                          const struct contact_body *body, struct cloth_error *error)
 {
     const struct girth_mesh garment = {cloth->mesh.n_triangles,
                                        (const double(*)[3])cloth->mesh.position,
@@ -62,7 +62,7 @@ static int warn_of_girth(struct model *model, uint32_t cloth, uint32_t obstacle,
     const int list = scene_tree_get(tree, 1, "cloths");
     const char *name = model->obstacle_names ? model->obstacle_names[obstacle] : NULL;
     struct girth_worst worst;
-    const int code = compare(&worst, &model->cloths[cloth], body, error);
+    const int code = compare_girths(&worst, &model->cloths[cloth], body, error);
     if (code || !girth_too_small(&worst))
         return code;
     return scene_build_warn(model, tree, scene_tree_item(tree, list, cloth), error,
@@ -71,8 +71,7 @@ static int warn_of_girth(struct model *model, uint32_t cloth, uint32_t obstacle,
                             name ? " " : "", name ? name : "", worst.y, worst.garment, worst.body);
 }
 
-int scene_build_girths(struct model *model, const struct scene_tree *tree,
-                       struct cloth_error *error)
+int scene_build_girths(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     int code = CLOTH_OK;
     for (uint32_t i = 0; i < model->n_cloths; i++)

@@ -55,9 +55,9 @@ static int take_edge(struct model_end *end, const struct scene_tree *tree, int n
 }
 
 /* Checks that the mesh has the edges. all: those of the cloth. */
-static int check_edges(const struct model_end *end, const struct model *model,
-                       const struct mesh_edges *all, const struct scene_tree *tree, int node,
-                       struct cloth_error *error)
+static int check_end_edges(const struct model_end *end, const struct model *model,
+                           const struct mesh_edges *all, const struct scene_tree *tree, int node,
+                           struct cloth_error *error)
 {
     const int one = scene_tree_get(tree, node, "edge");
     const int list = scene_tree_get(tree, node, "edges");
@@ -123,7 +123,7 @@ static int build_edges(struct model_end *end, const struct model *model, struct 
     if (!all[end->cloth].edge)
         code = mesh_edges_find(all + end->cloth, &model->cloths[end->cloth].mesh, error);
     if (!code)
-        code = check_edges(end, model, all + end->cloth, tree, node, error);
+        code = check_end_edges(end, model, all + end->cloth, tree, node, error);
     return code ? code : build_at(end, tree, node, error);
 }
 
@@ -188,8 +188,7 @@ static void free_edges(struct mesh_edges *edges, uint32_t n)
     free(edges);
 }
 
-int scene_build_joints(struct model *model, const struct scene_tree *tree,
-                       struct cloth_error *error)
+int scene_build_joints(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     const int list = scene_tree_get(tree, 1, "joints");
     struct mesh_edges *edges = scene_build_array(model->n_cloths, sizeof *edges, error);
@@ -205,7 +204,7 @@ int scene_build_joints(struct model *model, const struct scene_tree *tree,
     return code;
 }
 
-int scene_build_welds(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+int scene_build_welds(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     const int list = scene_tree_get(tree, 1, "welds");
     int code = CLOTH_OK;
@@ -219,14 +218,12 @@ struct model_weld *scene_build_add_weld(struct model *model, double tolerance, u
                                         uint32_t n, struct cloth_error *error)
 {
     struct model_weld *grown =
-        realloc(model->welds, (model->n_welds + (size_t)1) * sizeof *model->welds);
-    if (!grown) {
-        cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+        scene_build_grow(model->welds, model->n_welds, 1, sizeof *grown, error);
+    if (!grown)
         return NULL;
-    }
     model->welds = grown;
     struct model_weld *weld = grown + model->n_welds++;
-    *weld = (struct model_weld){.tolerance = tolerance};
+    weld->tolerance = tolerance;
     bool made = true;
     for (int k = 0; k < 2; k++) {
         weld->pairs.end[k].cloth = cloth;

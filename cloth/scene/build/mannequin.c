@@ -1,5 +1,6 @@
 /* A body that is a figure: its mesh, and its frames if it moves. */
 #include "cloth/scene/build/build.h"
+#include "cloth/scene/build/made.h"
 #include "cloth/scene/schema/check.h"
 
 #include <math.h>
@@ -68,8 +69,7 @@ static int check_figure(const struct scene_figure *figure, const struct scene_tr
 struct building {
     double end; /* s: of the run */
     struct scene_figure figure;
-    struct mannequin_rig rig;
-    struct mesh *mesh;
+    const struct scene_made_part *made;
     const struct mesh_transform *transform;
     const struct scene_tree *tree;
     int node; /* of the figure */
@@ -81,7 +81,7 @@ static int build_frames(const struct building *building, struct contact_frames *
                         double **place)
 {
     const struct scene_figure *figure = &building->figure;
-    const size_t stride = 3 * (size_t)building->mesh->n_vertices;
+    const size_t stride = 3 * (size_t)building->made->mesh.n_vertices;
     const double n = ceil(building->end * figure->fps) + 2;
     const double bytes = n * (double)stride * sizeof **place;
     if (!(bytes <= MOST_BYTES))
@@ -93,28 +93,32 @@ static int build_frames(const struct building *building, struct contact_frames *
     *place = scene_build_array(frames->n, stride * sizeof **place, building->error);
     for (uint32_t k = 0; *place && k < frames->n; k++) {
         double angle[MANNEQUIN_ANGLES], *x = *place + k * stride;
-        struct mesh moved = {.n_vertices = building->mesh->n_vertices, .position = x};
+        struct mesh moved = {.n_vertices = building->made->mesh.n_vertices, .position = x};
         if (figure->n_poses)
             mannequin_pose_at(figure->poses, figure->n_poses, k / figure->fps, angle);
         else
             mannequin_walk_at(&figure->walk, k / figure->fps, angle);
-        mannequin_place(&building->rig, building->mesh, angle, (double(*)[3])(void *)x);
+        mannequin_place(&building->made->rig, &building->made->mesh, angle,
+                        (double(*)[3])(void *)x);
         mesh_apply(&moved, building->transform);
     }
     frames->place = (const double(*)[3])(void *)*place;
     return *place ? CLOTH_OK : building->error->code;
 }
 
-static int make_mesh(struct building *building)
+static int make_figure(struct building *building)
 {
     struct cloth_error inner = {0};
-    const int code = mannequin_make_rigged(building->mesh, &building->rig,
-                                           &building->figure.mannequin, NULL, &inner);
-    if (code == CLOTH_E_MEMORY)
-        return cloth_fail(building->error, code, "%s: %s", building->tree->path, inner.text);
-    return code ? scene_tree_fail(building->tree, building->node, building->error, "mannequin: %s",
-                                  inner.text)
-                : CLOTH_OK;
+    const struct mannequin *asked = &building->figure.mannequin;
+    struct scene_made_part *of =
+        scene_made_part(building->tree->made, asked, sizeof *asked, building->error);
+    building->made = of;
+    if (!of || of->is_made)
+        return of ? CLOTH_OK : building->error->code;
+    const int code = mannequin_make_rigged(&of->mesh, &of->rig, asked, NULL, &inner);
+    of->is_made = !code;
+    return scene_build_blame(code, &inner, "mannequin", building->tree, building->node,
+                             building->error);
 }
 
 int scene_build_mannequin(const struct model *model, struct mesh *mesh,
@@ -123,19 +127,22 @@ int scene_build_mannequin(const struct model *model, struct mesh *mesh,
                           struct cloth_error *error)
 {
     struct building building = {.end = model->end,
-                                .mesh = mesh,
                                 .transform = transform,
                                 .tree = tree,
                                 .node = scene_tree_get(tree, body, "mannequin"),
                                 .error = error};
     int code = scene_fill(&building.figure, &scene_mannequin, tree, building.node, error);
     code = code ? code : check_figure(&building.figure, tree, body, error);
-    code = code ? code : make_mesh(&building);
+    code = code ? code : make_figure(&building);
     if (!code && (building.figure.n_poses || scene_tree_get(tree, building.node, "walk")))
         code = build_frames(&building, frames, place);
+    if (!code) {
+        const struct mesh *of = &building.made->mesh;
+        code = mesh_inline(mesh, of->n_vertices, of->position, 0, NULL, of->n_triangles,
+                           of->triangle, error);
+    }
     if (!code)
         mesh_apply(mesh, transform);
-    mannequin_rig_free(&building.rig);
     free(building.figure.poses);
     return code;
 }

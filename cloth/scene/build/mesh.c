@@ -101,10 +101,11 @@ static char *path_beside(const char *scene, const char *name, struct cloth_error
 int scene_build_file(struct model *model, const char *path, struct cloth_error *error)
 {
     char *copy = scene_build_copy(path, error);
-    char **all = copy ? realloc(model->files, (model->n_files + 1) * sizeof *all) : NULL;
+    char **all =
+        copy ? scene_build_grow(model->files, model->n_files, 1, sizeof *all, error) : NULL;
     if (!all) {
         free(copy);
-        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+        return error->code;
     }
     model->files = all;
     all[model->n_files++] = copy;
@@ -203,10 +204,7 @@ int scene_build_mesh(struct model *model, struct model_cloth *cloth, struct scen
         code = scene_build_pattern(model, cloth, tree, kind.value, error, &inner);
     else
         code = build_inline(mesh, tree, kind.value, error, &inner);
-    if (inner.code == CLOTH_E_MEMORY)
-        return cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text);
-    if (inner.code)
-        return scene_tree_fail(tree, kind.value, error, "mesh: %s", inner.text);
+    code = scene_build_blame(code, &inner, "mesh", tree, kind.value, error);
     if (code)
         return code;
     mesh_apply(mesh, &transform);

@@ -8,16 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Makes room for n more keys. */
-static int grow_keys(struct model *model, size_t n, struct cloth_error *error)
-{
-    struct phys_key *keys = realloc(model->keys, (model->n_keys + n) * sizeof *keys);
-    if (!keys)
-        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
-    model->keys = keys;
-    return CLOTH_OK;
-}
-
 static int build_times(struct phys_key *keys, const struct scene_tree *tree, int list, size_t n,
                        struct cloth_error *error)
 {
@@ -43,24 +33,40 @@ static int check_length(const struct scene_tree *tree, int list, const char *wha
                            what, scene_tree_length(tree, list), n);
 }
 
+/* Makes n numbers of length 1; false: all are zero. */
+static bool make_unit(double *value, size_t n)
+{
+    double square = 0, largest = 0;
+    for (size_t i = 0; i < n; i++)
+        largest = fmax(largest, fabs(value[i]));
+    if (largest <= 0)
+        return false;
+    for (size_t i = 0; i < n; i++) {
+        value[i] /= largest; /* so that the squares neither overflow nor vanish */
+        square += value[i] * value[i];
+    }
+    for (size_t i = 0; i < n; i++)
+        value[i] /= sqrt(square);
+    return true;
+}
+
 int scene_build_rotation(double rotate[4], const char *what, const struct scene_tree *tree,
                          int node, struct cloth_error *error)
 {
-    double square = 0, largest = 0;
     scene_tree_vector(tree, node, 4, rotate);
-    for (int i = 0; i < 4; i++)
-        largest = fmax(largest, fabs(rotate[i]));
-    if (largest <= 0)
-        return scene_tree_fail(tree, node, error,
-                               "%s is zero; a quaternion [w, x, y, z] that is not is expected",
-                               what);
-    for (int i = 0; i < 4; i++) {
-        rotate[i] /= largest; /* so that the squares neither overflow nor vanish */
-        square += rotate[i] * rotate[i];
-    }
-    for (int i = 0; i < 4; i++)
-        rotate[i] /= sqrt(square);
-    return CLOTH_OK;
+    if (make_unit(rotate, 4))
+        return CLOTH_OK;
+    return scene_tree_fail(tree, node, error,
+                           "%s is zero; a quaternion [w, x, y, z] that is not is expected", what);
+}
+
+int scene_build_direction(double direction[3], const char *what, const struct scene_tree *tree,
+                          int node, struct cloth_error *error)
+{
+    scene_tree_vector(tree, node, 3, direction);
+    if (make_unit(direction, 3))
+        return CLOTH_OK;
+    return scene_tree_fail(tree, node, error, "%s is zero; a direction is expected", what);
 }
 
 /* Halfway between opposite quaternions there is no rotation. */
@@ -105,15 +111,16 @@ int scene_build_motion(struct model *model, struct model_motion *motion,
     const int translate = scene_tree_get(tree, node, "translate");
     const int rotate = scene_tree_get(tree, node, "rotate");
     const size_t n = scene_tree_length(tree, times);
-    int code = grow_keys(model, n, error);
-    if (code)
-        return code;
-    struct phys_key *keys = model->keys + model->n_keys;
+    struct phys_key *keys = scene_build_grow(model->keys, model->n_keys, n, sizeof *keys, error);
+    if (!keys)
+        return error->code;
+    model->keys = keys;
+    keys += model->n_keys;
     *motion = (struct model_motion){.first = model->n_keys, .n = (uint32_t)n};
     scene_tree_vector(tree, scene_tree_get(tree, node, "about"), 3, motion->about);
     for (size_t i = 0; i < n; i++)
         keys[i] = (struct phys_key){.rotate = {1, 0, 0, 0}};
-    code = build_times(keys, tree, times, n, error);
+    int code = build_times(keys, tree, times, n, error);
     if (!code)
         code = check_length(tree, translate, "translate", n, error);
     if (!code)
@@ -134,9 +141,9 @@ static int build_pin_motion(struct model *model, const struct scene_tree *tree, 
                             struct cloth_error *error)
 {
     struct model_motion *motions =
-        realloc(model->motions, (model->n_motions + 1) * sizeof *motions);
+        scene_build_grow(model->motions, model->n_motions, 1, sizeof *motions, error);
     if (!motions)
-        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+        return error->code;
     model->motions = motions;
     struct model_motion *motion = motions + model->n_motions;
     const int code = scene_build_motion(model, motion, tree, node, error);
@@ -144,24 +151,6 @@ static int build_pin_motion(struct model *model, const struct scene_tree *tree, 
         return code;
     model->n_motions++;
     return check_begin(model->keys + motion->first, motion->n, motion->about, tree, node, error);
-}
-
-int scene_build_direction(double direction[3], const char *what, const struct scene_tree *tree,
-                          int node, struct cloth_error *error)
-{
-    double largest = 0, square = 0;
-    scene_tree_vector(tree, node, 3, direction);
-    for (int i = 0; i < 3; i++)
-        largest = fmax(largest, fabs(direction[i]));
-    if (largest <= 0)
-        return scene_tree_fail(tree, node, error, "%s is zero; a direction is expected", what);
-    for (int i = 0; i < 3; i++) {
-        direction[i] /= largest; /* so that the squares neither overflow nor vanish */
-        square += direction[i] * direction[i];
-    }
-    for (int i = 0; i < 3; i++)
-        direction[i] /= sqrt(square);
-    return CLOTH_OK;
 }
 
 /* A slider has one of these, a point neither. */
@@ -193,9 +182,9 @@ static int build_slider(struct model *model, struct model_pin *pin, enum scene_c
 {
     const bool line = hold == SCENE_LINE;
     struct model_slider *sliders =
-        realloc(model->sliders, (model->n_sliders + 1) * sizeof *sliders);
+        scene_build_grow(model->sliders, model->n_sliders, 1, sizeof *sliders, error);
     if (!sliders)
-        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+        return error->code;
     model->sliders = sliders;
     struct model_slider *slider = sliders + model->n_sliders;
     *slider = (struct model_slider){.kind = line ? MODEL_LINE : MODEL_PLANE, .motion = pin->motion};
@@ -211,34 +200,17 @@ static int build_follow(struct model *model, const struct scene_tree *tree, int 
                         struct cloth_error *error)
 {
     const int node = scene_tree_get(tree, pin, "follow");
-    const char *name = scene_tree_scalar(tree, node);
-    const char **names = scene_build_array(model->n_obstacles, sizeof *names, error);
+    const uint32_t obstacle = scene_build_obstacle_named(model, scene_tree_scalar(tree, node));
     struct model_motion *motions =
-        realloc(model->motions, (model->n_motions + 1) * sizeof *motions);
-    size_t n_names = 0;
-    uint32_t found = 0;
-    model->motions = motions ? motions : model->motions;
-    for (uint32_t i = 0; i < model->n_obstacles && names; i++) {
-        const char *own = model->obstacle_names[i];
-        if (own)
-            names[n_names++] = own;
-        if (own && !strcmp(own, name))
-            found = i + 1;
-    }
-    int code = names ? CLOTH_OK : error->code;
-    if (!code && !motions)
-        code = cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
-    if (!code && !found && !n_names)
-        code = scene_tree_fail(tree, node, error, "there is no obstacle '%.60s': none has a name",
-                               name);
-    else if (!code && !found)
-        code = scene_build_no_such("obstacle", name, names, n_names, tree, node, error);
-    free(names);
-    if (code)
-        return code;
-    const struct contact_shape *shape = model->obstacles + found - 1;
+        scene_build_grow(model->motions, model->n_motions, 1, sizeof *motions, error);
+    if (!motions)
+        return error->code;
+    model->motions = motions;
+    if (obstacle == UINT32_MAX)
+        return scene_build_no_obstacle(model, tree, node, error);
+    const struct contact_shape *shape = model->obstacles + obstacle;
     struct model_motion *motion = motions + model->n_motions++;
-    *motion = (struct model_motion){.first = shape->first, .n = shape->n, .follow = found};
+    *motion = (struct model_motion){.first = shape->first, .n = shape->n, .follow = obstacle + 1};
     memcpy(motion->about, shape->about, sizeof motion->about);
     return CLOTH_OK;
 }

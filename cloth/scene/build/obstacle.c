@@ -91,11 +91,8 @@ static int build_body_file(struct model *model, struct mesh *mesh,
 {
     struct cloth_error inner = {0};
     const int file = scene_tree_get(tree, node, "obj");
-    const int code = scene_build_obj(model, mesh, mesh_read_surface, tree, file, error, &inner);
-    if (inner.code == CLOTH_E_MEMORY)
-        return cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text);
-    if (inner.code)
-        return scene_tree_fail(tree, file, error, "body: %s", inner.text);
+    int code = scene_build_obj(model, mesh, mesh_read_surface, tree, file, error, &inner);
+    code = scene_build_blame(code, &inner, "body", tree, file, error);
     if (code)
         return code;
     mesh_apply(mesh, transform);
@@ -161,17 +158,15 @@ static int build_body(struct model *model, struct contact_shape *shape, struct s
     struct mesh mesh = {0};
     struct contact_frames frames;
     double *place = NULL;
+    char what[220];
     const int source = source_of(tree, node);
     bool turned = false;
     int code = build_body_mesh(model, &mesh, &frames, &place, tree, node, error);
     if (!code)
         code = contact_bodies_add_frames(&model->bodies, &mesh, frames.n ? &frames : NULL, &turned,
                                          &inner);
-    if (inner.code)
-        code = inner.code == CLOTH_E_MEMORY
-                   ? cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text)
-                   : scene_tree_fail(tree, source, error, "body: %.200s: %s",
-                                     source_name(tree, node), inner.text);
+    snprintf(what, sizeof what, "body: %.200s", source_name(tree, node));
+    code = scene_build_blame(code, &inner, what, tree, source, error);
     if (!code)
         code = warn_of_body(model, tree, source, turned, error);
     if (!code)
@@ -206,18 +201,17 @@ static int build_shape(struct model *model, struct contact_shape *shape, struct 
 }
 
 /* So that contact.pairs and contact.ignore can say it. */
-static int build_name(struct model *model, uint32_t i, const struct scene_tree *tree, int obstacle,
-                      struct cloth_error *error)
+static int name_obstacle(struct model *model, uint32_t i, const struct scene_tree *tree,
+                         int obstacle, struct cloth_error *error)
 {
     const int shape = scene_tree_pair(tree, obstacle, 0).value;
     const int node = scene_tree_get(tree, shape, "name");
     const char *name = scene_tree_text(tree, shape, "name");
     if (!node)
         return CLOTH_OK;
-    for (uint32_t k = 0; k < i; k++)
-        if (model->obstacle_names[k] && !strcmp(model->obstacle_names[k], name))
-            return scene_tree_fail(tree, node, error,
-                                   "a second obstacle is named '%.60s'; names must differ", name);
+    if (scene_build_obstacle_named(model, name) != UINT32_MAX)
+        return scene_tree_fail(tree, node, error,
+                               "a second obstacle is named '%.60s'; names must differ", name);
     for (uint32_t k = 0; k < model->n_materials; k++)
         if (!strcmp(model->materials[k].name, name))
             return scene_tree_fail(tree, node, error,
@@ -242,7 +236,7 @@ int scene_build_obstacles(struct model *model, struct scene_tree *tree, struct c
         const int node = scene_tree_item(tree, list, i);
         code = build_shape(model, model->obstacles + i, tree, node, error);
         if (!code)
-            code = build_name(model, (uint32_t)i, tree, node, error);
+            code = name_obstacle(model, (uint32_t)i, tree, node, error);
     }
     return code;
 }
@@ -263,7 +257,7 @@ static bool is_still_plane(const struct contact_shape *shape)
 }
 
 /* The height of a point above a plane, towards its free side. */
-static double height(const struct contact_shape *plane, const double x[3])
+static double height_above(const struct contact_shape *plane, const double x[3])
 {
     double sum = 0;
     for (int i = 0; i < 3; i++)
@@ -272,7 +266,7 @@ static double height(const struct contact_shape *plane, const double x[3])
 }
 
 /* The middle of the box around a mesh, and how far from it the corners of the box are. */
-static double surround(const struct mesh *mesh, double middle[3])
+static double surround_mesh(const struct mesh *mesh, double middle[3])
 {
     double square = 0, low[3], high[3];
     mesh_box(mesh, low, high);
@@ -285,8 +279,8 @@ static double surround(const struct mesh *mesh, double middle[3])
 
 /* True if no point within `radius` of the middle is on the free sides of both planes: the sum of
  * both heights is below 0 there. It grows only along the sum of the normals. */
-static bool exclude(const struct contact_shape *a, const struct contact_shape *b,
-                    const double middle[3], double radius)
+static bool planes_exclude(const struct contact_shape *a, const struct contact_shape *b,
+                           const double middle[3], double radius)
 {
     const double *na = normal_of(a), *nb = normal_of(b);
     double cosine = 0, square = 0;
@@ -294,7 +288,8 @@ static bool exclude(const struct contact_shape *a, const struct contact_shape *b
         cosine += na[i] * nb[i];
         square += (na[i] + nb[i]) * (na[i] + nb[i]);
     }
-    return cosine < 0 && height(a, middle) + height(b, middle) + radius * sqrt(square) < -TOUCH;
+    return cosine < 0 &&
+           height_above(a, middle) + height_above(b, middle) + radius * sqrt(square) < -TOUCH;
 }
 
 static int check_pair(const struct model *model, const struct scene_tree *tree, uint32_t a,
@@ -303,8 +298,8 @@ static int check_pair(const struct model *model, const struct scene_tree *tree, 
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct model_cloth *cloth = model->cloths + c;
         double middle[3];
-        const double radius = surround(&cloth->mesh, middle);
-        if (exclude(model->obstacles + a, model->obstacles + b, middle, radius))
+        const double radius = surround_mesh(&cloth->mesh, middle);
+        if (planes_exclude(model->obstacles + a, model->obstacles + b, middle, radius))
             return scene_tree_fail(
                 tree, scene_tree_item(tree, scene_tree_get(tree, 1, "obstacles"), b), error,
                 "obstacles[%u] and obstacles[%u] face each other and overlap: around cloth '%.60s' "
@@ -314,7 +309,7 @@ static int check_pair(const struct model *model, const struct scene_tree *tree, 
     return CLOTH_OK;
 }
 
-int scene_build_check_obstacles(const struct model *model, const struct scene_tree *tree,
+int scene_build_check_obstacles(struct model *model, struct scene_tree *tree,
                                 struct cloth_error *error)
 {
     int code = CLOTH_OK;

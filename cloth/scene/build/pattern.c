@@ -1,6 +1,7 @@
 /* A cloth's mesh from a sewing pattern, or an own garment: its panels, meshed, where the pattern
  * places them. Faults of a pattern are in `inner`, without the place in the scene. */
 #include "cloth/scene/build/build.h"
+#include "cloth/scene/build/made.h"
 
 #include "cloth/garment/garment.h"
 #include "cloth/garment/own/own.h"
@@ -79,17 +80,10 @@ static int check_fineness(const struct scene_pattern *asked, const struct scene_
                                     error);
 }
 
-static int read_file(struct model *model, struct garment_pattern *pattern,
-                     const struct scene_tree *tree, int node, struct cloth_error *error,
-                     struct cloth_error *inner)
+static int read_pattern_file(struct garment_pattern *pattern, const char *path,
+                             struct cloth_error *inner)
 {
-    char *path = scene_build_path(model, tree, scene_tree_get(tree, node, "file"), error);
-    char text[200];
-    int code = path ? scene_read_pattern(pattern, path, inner) : error->code;
-    if (!code && garment_pattern_unusual(pattern, text, sizeof text))
-        code = scene_build_warn(model, tree, scene_tree_get(tree, node, "file"), error,
-                                "mesh: %.200s: %s", path, text);
-    free(path);
+    const int code = scene_read_pattern(pattern, path, inner);
     return code == CLOTH_E_IO ? CLOTH_E_INPUT : code; /* a scene that names no readable file */
 }
 
@@ -144,14 +138,15 @@ static int make_own(struct garment_pattern *pattern, const struct scene_pattern 
     return code ? code : garment_own_make(pattern, own, value, inner);
 }
 
-static int take_pattern(struct model *model, struct garment_pattern *pattern,
-                        const struct scene_pattern *asked, const struct scene_tree *tree, int node,
+/* path: NULL for an own garment. */
+static int take_pattern(struct garment_pattern *pattern, const struct scene_pattern *asked,
+                        const char *path, const struct scene_tree *tree, int node,
                         struct cloth_error *error, struct cloth_error *inner)
 {
-    if (asked->garment)
+    if (!path)
         return make_own(pattern, asked, tree, node, error, inner);
     const int code = refuse_measures(tree, node, error);
-    return code ? code : read_file(model, pattern, tree, node, error, inner);
+    return code ? code : read_pattern_file(pattern, path, inner);
 }
 
 static void free_asked(struct scene_pattern *asked)
@@ -163,25 +158,50 @@ static void free_asked(struct scene_pattern *asked)
     free(asked->size);
 }
 
-int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
+static int make_garment(struct scene_made_part *to, const char *path, struct scene_tree *tree,
                         int node, struct cloth_error *error, struct cloth_error *inner)
 {
     struct scene_pattern asked = {0};
-    struct garment_pattern pattern = {0};
-    struct garment garment = {0};
     int code = scene_fill(&asked, &scene_pattern, tree, node, error);
     code = code ? code : check_fineness(&asked, tree, node, error);
-    code = code ? code : take_pattern(model, &pattern, &asked, tree, node, error, inner);
+    code = code ? code : take_pattern(&to->pattern, &asked, path, tree, node, error, inner);
     const struct garment_fineness fineness = {asked.edge, asked.vertices};
     if (!code && asked.edge > 0)
         code = scene_build_check_memory(
-            (uint64_t)fmin(garment_vertices(&pattern, asked.edge), 1e18), "the pattern is to have",
-            tree, scene_tree_get(tree, node, "edge"), error);
-    code = code ? code : garment_make(&garment, &pattern, &fineness, inner);
-    code = code ? code : take_mesh(&cloth->mesh, &garment, &pattern, inner);
-    code = code ? code : take_seams(&cloth->seams, &garment, &pattern, error);
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
+            (uint64_t)fmin(garment_vertices(&to->pattern, asked.edge), 1e18),
+            "the pattern is to have", tree, scene_tree_get(tree, node, "edge"), error);
+    code = code ? code : garment_make(&to->garment, &to->pattern, &fineness, inner);
+    to->is_made = !code;
     free_asked(&asked);
+    return code;
+}
+
+static int warn_of_file(struct model *model, const struct garment_pattern *pattern,
+                        const char *path, const struct scene_tree *tree, int file,
+                        struct cloth_error *error)
+{
+    char text[200];
+    return garment_pattern_unusual(pattern, text, sizeof text)
+               ? scene_build_warn(model, tree, file, error, "mesh: %.200s: %s", path, text)
+               : CLOTH_OK;
+}
+
+int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
+                        int node, struct cloth_error *error, struct cloth_error *inner)
+{
+    const int file = scene_tree_get(tree, node, "file");
+    char *path = file ? scene_build_path(model, tree, file, error) : NULL;
+    char *key = scene_build_text(tree, node, "mesh.pattern", error);
+    struct scene_made_part *of =
+        key && !error->code ? scene_made_part(tree->made, key, strlen(key), error) : NULL;
+    int code = of ? CLOTH_OK : error->code;
+    if (!code && !of->is_made)
+        code = make_garment(of, path, tree, node, error, inner);
+    if (!code && path)
+        code = warn_of_file(model, &of->pattern, path, tree, file, error);
+    code = code ? code : take_mesh(&cloth->mesh, &of->garment, &of->pattern, inner);
+    code = code ? code : take_seams(&cloth->seams, &of->garment, &of->pattern, error);
+    free(key);
+    free(path);
     return code;
 }

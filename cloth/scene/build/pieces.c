@@ -37,8 +37,7 @@ static int weld_cloth(struct model *model, uint32_t c, const struct scene_tree *
     return code ? code : error->code;
 }
 
-int scene_build_mesh_welds(struct model *model, const struct scene_tree *tree,
-                           struct cloth_error *error)
+int scene_build_mesh_welds(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     const int list = scene_tree_get(tree, 1, "cloths");
     int code = CLOTH_OK;
@@ -52,7 +51,7 @@ int scene_build_mesh_welds(struct model *model, const struct scene_tree *tree,
 
 /* ---- Unjoined pieces ---- */
 
-static void join_pairs(uint32_t *set, uint32_t c, const struct model_pairs *pairs)
+static void join_welded_pairs(uint32_t *set, uint32_t c, const struct model_pairs *pairs)
 {
     const struct model_end *a = pairs->end, *b = pairs->end + 1;
     for (uint32_t i = 0; i < a->n && a->cloth == c && b->cloth == c && b->vertices; i++)
@@ -64,9 +63,9 @@ static void join_all(uint32_t *set, const struct model *model, uint32_t c)
 {
     cloth_sets_start(set, model->cloths[c].mesh.n_vertices);
     for (uint32_t w = 0; w < model->n_welds; w++)
-        join_pairs(set, c, &model->welds[w].pairs);
+        join_welded_pairs(set, c, &model->welds[w].pairs);
     for (uint32_t j = 0; j < model->n_joints; j++)
-        join_pairs(set, c, &model->joints[j].pairs);
+        join_welded_pairs(set, c, &model->joints[j].pairs);
 }
 
 /* Marks the ends of edges that have no second triangle. */
@@ -124,8 +123,7 @@ static int look_at_cloth(struct model *model, uint32_t c, uint32_t *set, uint32_
                             cloth->name, pieces, pieces == 1 ? "" : "s", cloth->n_unjoined);
 }
 
-int scene_build_pieces(struct model *model, const struct scene_tree *tree,
-                       struct cloth_error *error)
+int scene_build_pieces(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     const int list = scene_tree_get(tree, 1, "cloths");
     int code = CLOTH_OK;

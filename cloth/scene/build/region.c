@@ -24,8 +24,8 @@ static bool has_edge(const struct model_cloth *cloth, uint64_t bit)
     return false;
 }
 
-static int mark(struct model_cloth *cloth, struct scene_tree *tree, int node, uint64_t bit,
-                struct cloth_error *error)
+static int mark_region(struct model_cloth *cloth, struct scene_tree *tree, int node, uint64_t bit,
+                       struct cloth_error *error)
 {
     struct model_pick pick = {0};
     int code = scene_fill(&pick, &scene_region, tree, node, error);
@@ -256,7 +256,7 @@ int scene_build_parts(struct model_cloth *cloth, struct model *model, struct sce
         const int region = scene_tree_item(tree, regions, i);
         code = add_material(cloth, model, "region", tree, region, error);
         if (!code)
-            code = mark(cloth, tree, region, UINT64_C(1) << (cloth->n_regions - 1), error);
+            code = mark_region(cloth, tree, region, UINT64_C(1) << (cloth->n_regions - 1), error);
     }
     if (!code)
         code = warn_of_panels(model, cloth, tree, panels, error);

@@ -59,18 +59,6 @@ static int find_firsts(const struct model_seams *seams, enum model_seams_state s
 
 /* ---- Joints and welds ---- */
 
-/* One more entry of a list of the model's; zeroed. NULL: out of memory. */
-static void *one_more(void **list, uint32_t *n, size_t size, struct cloth_error *error)
-{
-    char *grown = realloc(*list, (*n + (size_t)1) * size);
-    if (!grown) {
-        cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
-        return NULL;
-    }
-    *list = grown;
-    return memset(grown + size * (*n)++, 0, size);
-}
-
 /* The pairs of a seam that join. joins: of each of its pairs. */
 static int fill_pairs(struct model_pairs *to, uint32_t cloth, const struct model_seam *seam,
                       const unsigned char *joins, const struct scene_tree *tree, int node,
@@ -92,11 +80,12 @@ static int add_joint(struct model *model, uint32_t cloth, uint32_t seam, const u
                      const struct scene_tree *tree, int node, struct cloth_error *error)
 {
     const struct model_seam *of = model->cloths[cloth].seams.seam + seam;
-    void *list = model->joints;
-    struct model_joint *joint = one_more(&list, &model->n_joints, sizeof *joint, error);
-    model->joints = list;
+    struct model_joint *joint =
+        scene_build_grow(model->joints, model->n_joints, 1, sizeof *joint, error);
     if (!joint)
         return error->code;
+    model->joints = joint;
+    joint += model->n_joints++;
     model->n_pulled++;
     joint->stiffness = of->sewing.stiffness;
     joint->damping = of->sewing.damping;
@@ -108,17 +97,19 @@ static int add_weld(struct model *model, uint32_t cloth, uint32_t seam, const un
                     const struct scene_tree *tree, int node, struct cloth_error *error)
 {
     const struct model_seam *of = model->cloths[cloth].seams.seam + seam;
-    void *list = model->welds;
-    struct model_weld *weld = one_more(&list, &model->n_welds, sizeof *weld, error);
-    model->welds = list;
+    struct model_weld *weld =
+        scene_build_grow(model->welds, model->n_welds, 1, sizeof *weld, error);
     if (!weld)
         return error->code;
+    model->welds = weld;
+    weld += model->n_welds++;
     weld->tolerance = of->sewing.tolerance;
     weld->pairs.seam = seam + 1;
     return fill_pairs(&weld->pairs, cloth, of, joins, tree, node, error);
 }
 
-static void join_pairs(const struct model *model, const struct model_pairs *pairs, uint32_t *set)
+static void join_seam_pairs(const struct model *model, const struct model_pairs *pairs,
+                            uint32_t *set)
 {
     const struct model_end *end = pairs->end;
     for (uint32_t i = 0; i < end[0].n; i++)
@@ -136,7 +127,7 @@ static uint32_t *find_roots(const struct model *model, struct cloth_error *error
         return NULL;
     cloth_sets_start(root, n);
     for (uint32_t w = 0; w < model->n_welds; w++)
-        join_pairs(model, &model->welds[w].pairs, root);
+        join_seam_pairs(model, &model->welds[w].pairs, root);
     for (uint32_t v = 0; v < n; v++)
         root[v] = cloth_sets_root(root, v);
     return root;
@@ -164,8 +155,8 @@ static int sew_state(struct model *model, uint32_t cloth, enum model_seams_state
 }
 
 /* Welds come first: vertices that they make one are not pulled. */
-static int sew(struct model *model, uint32_t cloth, const struct scene_tree *tree, int node,
-               struct cloth_error *error)
+static int sew_cloth(struct model *model, uint32_t cloth, const struct scene_tree *tree, int node,
+                     struct cloth_error *error)
 {
     const struct model_seams *seams = &model->cloths[cloth].seams;
     size_t n = 0;
@@ -177,7 +168,7 @@ static int sew(struct model *model, uint32_t cloth, const struct scene_tree *tre
 
 /* ---- The keys ---- */
 
-static void reverse(struct model_seam *seam)
+static void reverse_seam(struct model_seam *seam)
 {
     for (uint32_t i = 0, k = seam->n_pairs - 1; i < k; i++, k--) {
         const uint32_t vertex = seam->pair[i][1];
@@ -213,7 +204,7 @@ static int reverse_some(struct model_cloth *cloth, const struct scene_tree *tree
                 return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
                                        "seam %u stands twice in seams.reversed",
                                        seams->reversed[i]);
-        reverse(seams->seam + seams->reversed[i]);
+        reverse_seam(seams->seam + seams->reversed[i]);
     }
     return code;
 }
@@ -319,17 +310,15 @@ static int warn_of_unsure(struct model *model, const struct model_cloth *cloth,
         n, cloth->name, numbers);
 }
 
-static int read_file(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,
-                     int node, struct cloth_error *error)
+static int read_seams_file(struct model *model, struct model_cloth *cloth,
+                           const struct scene_tree *tree, int node, struct cloth_error *error)
 {
     struct cloth_error inner = {0};
     char *path = scene_build_path(model, tree, node, error);
     const int code =
         path ? scene_read_seams(&cloth->seams, &cloth->mesh, path, &inner) : error->code;
     free(path);
-    if (inner.code == CLOTH_E_MEMORY)
-        return cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text);
-    return inner.code ? scene_tree_fail(tree, node, error, "seams: %s", inner.text) : code;
+    return scene_build_blame(code, &inner, "seams", tree, node, error);
 }
 
 static int find_seams(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,
@@ -343,7 +332,7 @@ static int find_seams(struct model *model, struct model_cloth *cloth, const stru
                                "seams.file is of OBJ meshes; the seams of a pattern are its "
                                "stitches");
     if (file)
-        return read_file(model, cloth, tree, file, error);
+        return read_seams_file(model, cloth, tree, file, error);
     if (pattern)
         return CLOTH_OK;
     return scene_tree_fail(tree, node, error,
@@ -362,7 +351,7 @@ static int find_joined(struct model *model, struct cloth_error *error)
         return error->code;
     for (uint32_t j = 0; j < model->n_joints; j++)
         if (model->joints[j].pairs.seam)
-            join_pairs(model, &model->joints[j].pairs, joined);
+            join_seam_pairs(model, &model->joints[j].pairs, joined);
     const uint32_t n = model_first(model, model->n_cloths);
     for (uint32_t v = 0; v < n; v++)
         joined[v] = cloth_sets_root(joined, v);
@@ -380,10 +369,10 @@ static int build_seams(struct model *model, uint32_t i, const struct scene_tree 
     code = code ? code : reverse_some(cloth, tree, node, error);
     code = code ? code : take_sewing(cloth, tree, node, error);
     code = code ? code : warn_of_unsure(model, cloth, tree, node, error);
-    return code ? code : sew(model, i, tree, node, error);
+    return code ? code : sew_cloth(model, i, tree, node, error);
 }
 
-int scene_build_seams(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+int scene_build_seams(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     const int list = scene_tree_get(tree, 1, "cloths");
     int code = CLOTH_OK;
@@ -393,6 +382,7 @@ int scene_build_seams(struct model *model, const struct scene_tree *tree, struct
         return scene_tree_fail(tree, scene_tree_get(tree, scene_tree_get(tree, 1, "time"), "sewn"),
                                error,
                                "time.sewn waits for pulled seams, and the scene has none: a cloth "
-                               "with seams: {state: pulled} is expected");
+                               "with seams: {state: pulled} is expected, or time.sewn: null in a "
+                               "phase that has welded them");
     return code ? code : find_joined(model, error);
 }

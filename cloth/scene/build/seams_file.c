@@ -26,7 +26,8 @@ static int read_count(const struct pattern_reader *reader, int node, const char 
                          expected);
 }
 
-static int read_side(const struct pattern_reader *reader, struct model_seam *seam, int k, int node)
+static int read_seam_side(const struct pattern_reader *reader, struct model_seam *seam, int k,
+                          int node)
 {
     int value[PATTERN_KEYS];
     const int code = pattern_map(reader, node, "a side", SIDE_KEYS, value);
@@ -66,7 +67,8 @@ static int read_seam(const struct pattern_reader *reader, struct model_seam *sea
         return pattern_wrong(reader, node, "a seam has to have both sides and pairs");
     code = code ? code : pattern_list(reader, value[SIDES], "sides", 2, 2);
     for (int k = 0; k < 2 && !code; k++)
-        code = read_side(reader, seam, k, scene_tree_item(reader->tree, value[SIDES], (size_t)k));
+        code =
+            read_seam_side(reader, seam, k, scene_tree_item(reader->tree, value[SIDES], (size_t)k));
     if (!code && value[REVERSED])
         code = pattern_flag(reader, value[REVERSED], "reversed", &seam->reversed);
     if (!code && value[DISTANCES])
@@ -74,8 +76,8 @@ static int read_seam(const struct pattern_reader *reader, struct model_seam *sea
     return code ? code : read_pairs(reader, seam, mesh, value[PAIRS]);
 }
 
-static int read_file(const struct pattern_reader *reader, struct model_seams *seams,
-                     const struct mesh *mesh)
+static int read_seams_tree(const struct pattern_reader *reader, struct model_seams *seams,
+                           const struct mesh *mesh)
 {
     int value[PATTERN_KEYS];
     uint32_t schema = 0;
@@ -107,7 +109,7 @@ int scene_read_seams(struct model_seams *seams, const struct mesh *mesh, const c
     struct scene_tree tree;
     const struct pattern_reader reader = {.tree = &tree, .error = inner, .edge = -1, .stitch = -1};
     int code = scene_tree_load(&tree, path, &WORDS, inner);
-    code = code ? code : read_file(&reader, seams, mesh);
+    code = code ? code : read_seams_tree(&reader, seams, mesh);
     scene_tree_free(&tree);
     return code;
 }

@@ -50,14 +50,14 @@ static void put_node(FILE *file, const struct scene_tree *tree, int node, const 
     }
 }
 
-static int compare(const void *a, const void *b)
+static int compare_lines(const void *a, const void *b)
 {
     const char *const *left = a, *const *right = b;
     return strcmp(*left, *right);
 }
 
 /* Lines in the order of their keys: a set puts a key at the end of its map. */
-static int sort(const char *text, char **sorted, struct cloth_error *error)
+static int sort_lines(const char *text, char **sorted, struct cloth_error *error)
 {
     size_t n = 0, size;
     char *copy = strdup(text), **line = NULL, *rest = copy;
@@ -68,7 +68,7 @@ static int sort(const char *text, char **sorted, struct cloth_error *error)
     for (size_t i = 0; file && i < n; i++)
         line[i] = strsep(&rest, "\n");
     if (file)
-        qsort(line, n, sizeof *line, compare);
+        qsort(line, n, sizeof *line, compare_lines);
     for (size_t i = 0; file && i < n; i++)
         fprintf(file, "%s\n", line[i]);
     const int bad = !file || ferror(file);
@@ -78,18 +78,26 @@ static int sort(const char *text, char **sorted, struct cloth_error *error)
     return bad || closed ? cloth_fail(error, CLOTH_E_MEMORY, "no memory for the settings") : 0;
 }
 
-int scene_build_settings(struct model *model, const struct scene_tree *tree,
-                         struct cloth_error *error)
+char *scene_build_text(const struct scene_tree *tree, int node, const char *path,
+                       struct cloth_error *error)
 {
     char *text = NULL;
     size_t size;
     FILE *file = open_memstream(&text, &size);
-    if (!file)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the settings of the scene");
-    put_node(file, tree, 1, "");
-    const int bad = ferror(file) != 0, closed = fclose(file);
-    const int code = bad || closed ? cloth_fail(error, CLOTH_E_MEMORY, "no memory for the settings")
-                                   : sort(text, &model->settings, error);
+    if (file)
+        put_node(file, tree, node, path);
+    const int bad = !file || ferror(file), closed = file ? fclose(file) : 0;
+    if (!bad && !closed)
+        return text;
+    free(text);
+    cloth_fail(error, CLOTH_E_MEMORY, "no memory for the settings of the scene");
+    return NULL;
+}
+
+int scene_build_settings(struct model *model, struct scene_tree *tree, struct cloth_error *error)
+{
+    char *text = scene_build_text(tree, 1, "", error);
+    const int code = text ? sort_lines(text, &model->settings, error) : CLOTH_E_MEMORY;
     free(text);
     return code;
 }

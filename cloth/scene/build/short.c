@@ -64,8 +64,8 @@ static void find_extent(struct shorts *shorts)
 }
 
 /* Enters the sets into the model's `apart`. first: number of the cloth's first vertex. */
-static int join(struct model *model, const struct shorts *shorts, uint32_t first,
-                struct cloth_error *error)
+static int join_shorts(struct model *model, const struct shorts *shorts, uint32_t first,
+                       struct cloth_error *error)
 {
     struct contact_apart *apart = &model->contact.apart;
     const uint32_t n = model_first(model, model->n_cloths);
@@ -93,7 +93,7 @@ static int take_cloth(struct model *model, uint32_t c, struct shorts *shorts,
     find_extent(shorts);
     if (shorts->most > MOST_EXTENT * shorts->thickness)
         return CLOTH_OK; /* flow_thickness_check refuses */
-    const int code = join(model, shorts, model_first(model, c), error);
+    const int code = join_shorts(model, shorts, model_first(model, c), error);
     const struct mesh_edge *edge = shorts->shortest;
     return code ? code
                 : scene_build_warn(
@@ -118,8 +118,7 @@ static bool has_short(const struct shorts *shorts)
     return false;
 }
 
-int scene_build_short_edges(struct model *model, const struct scene_tree *tree,
-                            struct cloth_error *error)
+int scene_build_short_edges(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     int code = CLOTH_OK;
     for (uint32_t c = 0; c < model->n_cloths && model_seeks(model) && !code; c++) {

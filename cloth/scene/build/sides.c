@@ -1,21 +1,48 @@
-/* Sides of contacts by their names. contact.pairs gives two of them a coefficient: materials and
- * obstacles. contact.ignore keeps two from meeting: cloths, obstacles and groups of both. A name of
- * several is all of them. */
+/* Obstacles and sides of contacts by their names. contact.pairs gives two of them a coefficient:
+ * materials and obstacles. contact.ignore keeps two from meeting: cloths, obstacles and groups of
+ * both. A name of several is all of them. */
 #include "cloth/scene/build/build.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- Coefficients ---- */
+/* ---- Obstacles ---- */
 
-/* Adds the names of obstacles behind the first n of a list. Returns how many there are then. */
-static size_t add_obstacles(const struct model *model, size_t n, const char **names)
+uint32_t scene_build_obstacle_named(const struct model *model, const char *name)
+{
+    for (uint32_t i = 0; i < model->n_obstacles; i++)
+        if (model->obstacle_names[i] && !strcmp(model->obstacle_names[i], name))
+            return i;
+    return UINT32_MAX;
+}
+
+size_t scene_build_add_obstacles(const struct model *model, size_t n, const char **names)
 {
     for (uint32_t i = 0; i < model->n_obstacles; i++)
         if (model->obstacle_names[i])
             names[n++] = model->obstacle_names[i];
     return n;
 }
+
+int scene_build_no_obstacle(const struct model *model, const struct scene_tree *tree, int node,
+                            struct cloth_error *error)
+{
+    const char *name = scene_tree_scalar(tree, node);
+    const char **names = scene_build_array(model->n_obstacles, sizeof *names, error);
+    if (!names)
+        return error->code;
+    const size_t n = scene_build_add_obstacles(model, 0, names);
+    const int code =
+        n ? scene_build_no_such("obstacle", name, names, n, tree, node, error)
+          : scene_tree_fail(tree, node, error,
+                            "there is no obstacle '%.60s'; there are %u, counted from 0, "
+                            "and none has a name",
+                            name, model->n_obstacles);
+    free(names);
+    return code;
+}
+
+/* ---- Coefficients ---- */
 
 static int no_surface(const struct model *model, const char *name, const struct scene_tree *tree,
                       int node, struct cloth_error *error)
@@ -26,7 +53,7 @@ static int no_surface(const struct model *model, const char *name, const struct 
         return error->code;
     for (uint32_t i = 0; i < model->n_materials; i++)
         names[i] = model->materials[i].name;
-    const size_t n = add_obstacles(model, model->n_materials, names);
+    const size_t n = scene_build_add_obstacles(model, model->n_materials, names);
     const int code = scene_build_no_such("material or obstacle", name, names, n, tree, node, error);
     free(names);
     return code;
@@ -41,12 +68,9 @@ static int find_surface(const struct model *model, uint32_t *number, const struc
             *number = i;
             return CLOTH_OK;
         }
-    for (uint32_t i = 0; i < model->n_obstacles; i++)
-        if (model->obstacle_names[i] && !strcmp(model->obstacle_names[i], name)) {
-            *number = model->n_materials + i;
-            return CLOTH_OK;
-        }
-    return no_surface(model, name, tree, node, error);
+    const uint32_t obstacle = scene_build_obstacle_named(model, name);
+    *number = model->n_materials + obstacle;
+    return obstacle != UINT32_MAX ? CLOTH_OK : no_surface(model, name, tree, node, error);
 }
 
 static bool is_of(const struct model_rub *pair, const uint32_t of[2])
@@ -132,7 +156,7 @@ static int check_side(const struct model *model, const struct scene_tree *tree, 
         return error->code;
     for (uint32_t i = 0; i < model->n_cloths; i++)
         names[i] = model->cloths[i].name;
-    size_t n = add_obstacles(model, model->n_cloths, names);
+    size_t n = scene_build_add_obstacles(model, model->n_cloths, names);
     for (uint32_t i = 0; i < n_sides; i++)
         n = add_groups(tree, groups_of(model, tree, i), n, names);
     const int code =
@@ -142,7 +166,7 @@ static int check_side(const struct model *model, const struct scene_tree *tree, 
 }
 
 /* Marks a cloth and another side, both ways. Returns false if neither is a cloth. */
-static bool mark(struct contact_apart *all, uint32_t a, uint32_t b)
+static bool mark_apart(struct contact_apart *all, uint32_t a, uint32_t b)
 {
     const size_t n_sides = (size_t)all->n_cloths + all->n_obstacles;
     if (a < all->n_cloths)
@@ -152,8 +176,8 @@ static bool mark(struct contact_apart *all, uint32_t a, uint32_t b)
     return a < all->n_cloths || b < all->n_cloths;
 }
 
-static int ignore(struct model *model, const struct scene_tree *tree, int node,
-                  struct cloth_error *error)
+static int ignore_pair(struct model *model, const struct scene_tree *tree, int node,
+                       struct cloth_error *error)
 {
     const uint32_t n_sides = model->n_cloths + model->n_obstacles;
     const int name[2] = {scene_tree_item(tree, node, 0), scene_tree_item(tree, node, 1)};
@@ -165,7 +189,7 @@ static int ignore(struct model *model, const struct scene_tree *tree, int node,
         for (uint32_t b = 0; b < n_sides; b++)
             if (is_side(model, tree, a, scene_tree_scalar(tree, name[0])) &&
                 is_side(model, tree, b, scene_tree_scalar(tree, name[1])))
-                any |= mark(&model->contact.apart, a, b);
+                any |= mark_apart(&model->contact.apart, a, b);
     if (code || any)
         return code;
     return scene_build_warn(model, tree, node, error,
@@ -187,7 +211,7 @@ static int build_apart(struct model *model, bool ignores, struct cloth_error *er
     return all->end && (all->apart || !ignores) ? CLOTH_OK : error->code;
 }
 
-int scene_build_sides(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+int scene_build_sides(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     const int contact = scene_tree_get(tree, 1, "contact");
     const int pairs = scene_tree_get(tree, contact, "pairs");
@@ -199,6 +223,6 @@ int scene_build_sides(struct model *model, const struct scene_tree *tree, struct
     if (!code)
         code = build_apart(model, n_ignored, error);
     for (size_t i = 0; i < n_ignored && !code; i++)
-        code = ignore(model, tree, scene_tree_item(tree, ignored, i), error);
+        code = ignore_pair(model, tree, scene_tree_item(tree, ignored, i), error);
     return code;
 }

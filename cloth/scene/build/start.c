@@ -1,58 +1,198 @@
-/* Starts of vertices that differ from the shape of the mesh, and their additional masses. */
+/* How a cloth starts: where vertices differ from the shape of the mesh, and their additional
+ * masses; and a cloth that starts where an earlier run left it, in a frame of its folder. One file
+ * there has the frames of all cloths; cloth.obj has their names and numbers of vertices. It starts
+ * at rest there but for its own velocity; lengths at rest stay those of the mesh. */
+#include "cloth/base/file.h"
 #include "cloth/scene/build/build.h"
+#include "cloth/scene/schema/check.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* seen, number: as of scene_build_once, here and below. */
-static int build_mass(struct model_mass *mass, const struct scene_tree *tree, int node,
-                      const struct model_cloth *cloth, uint32_t *seen, uint32_t number,
+/* A folder, its files, and the vertices of the cloth among those of all. */
+struct folder {
+    const char *path;
+    char *obj, *pc2;
+    uint32_t first, n, n_all; /* of the cloth; of all */
+    bool found;
+};
+
+/* ---- Its cloths ---- */
+
+/* The text behind `o `, without the end of the line; NULL: the line is another one. */
+static const char *name_of(char *line)
+{
+    line[strcspn(line, "\r\n")] = '\0';
+    return line[0] == 'o' && line[1] == ' ' ? line + 2 : NULL;
+}
+
+/* Counts vertices up to the name, then those behind it, up to the next name. */
+static void scan_cloths(FILE *file, const char *wanted, struct folder *folder)
+{
+    char *line = NULL;
+    size_t room = 0;
+    bool here = false;
+    while (getline(&line, &room, file) >= 0) {
+        const char *name = name_of(line);
+        if (name) {
+            here = !folder->found && !strcmp(name, wanted);
+            folder->first = here ? folder->n_all : folder->first;
+            folder->found = folder->found || here;
+        }
+        const bool vertex = line[0] == 'v' && line[1] == ' ';
+        folder->n += here && vertex;
+        folder->n_all += vertex;
+    }
+    free(line);
+}
+
+static int find_cloth(struct folder *folder, const char *wanted, const struct model_cloth *cloth,
+                      const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    FILE *file = cloth_file_open(folder->obj);
+    if (!file)
+        return scene_tree_fail(tree, scene_tree_get(tree, node, "frames"), error,
+                               "from: cannot read %.300s: %s", folder->obj, cloth_file_why());
+    scan_cloths(file, wanted, folder);
+    const bool failed = ferror(file);
+    fclose(file);
+    const int name = scene_tree_get(tree, node, "cloth");
+    if (failed)
+        return scene_tree_fail(tree, node, error, "from: cannot read %.300s", folder->obj);
+    if (!folder->found)
+        return scene_tree_fail(tree, name ? name : node, error,
+                               "from: %.300s has no cloth '%.60s'; from.cloth names another one",
+                               folder->obj, wanted);
+    if (folder->n != cloth->mesh.n_vertices)
+        return scene_tree_fail(tree, name ? name : node, error,
+                               "from: cloth '%.60s' has %u vertices in %.300s, but %u here; the "
+                               "same mesh is expected",
+                               wanted, folder->n, folder->obj, cloth->mesh.n_vertices);
+    return CLOTH_OK;
+}
+
+/* ---- Its frames ---- */
+
+static int check_from_frame(const struct scene_settled *from, uint32_t n_frames,
+                            const struct folder *folder, const struct scene_tree *tree, int node,
+                            struct cloth_error *error)
+{
+    if (from->frame == SCENE_LAST_FRAME ||
+        (from->frame < n_frames && from->frame == floor(from->frame)))
+        return CLOTH_OK;
+    return scene_tree_fail(tree, scene_tree_get(tree, node, "frame"), error,
+                           "from.frame is %g, but %.300s has the frames 0 to %u; one of them, or "
+                           "last, is expected",
+                           from->frame, folder->path, n_frames - 1);
+}
+
+/* The number of a frame as files count; one that does not fit becomes a number that no file has. */
+static uint32_t frame_of(const struct scene_settled *from)
+{
+    return from->frame == SCENE_LAST_FRAME ? MESH_LAST_FRAME
+           : from->frame < MESH_LAST_FRAME ? (uint32_t)from->frame
+                                           : MESH_LAST_FRAME - 1;
+}
+
+/* place: of all vertices in the frame, m. */
+static int take_places(struct model_cloth *cloth, const struct folder *folder, const double *place,
+                       const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    const uint32_t n = cloth->mesh.n_vertices;
+    cloth->start = scene_build_array(n, 6 * sizeof *cloth->start, error);
+    for (uint32_t v = 0; v < n && cloth->start; v++)
+        for (size_t c = 0; c < 3; c++) {
+            const double x = place[3 * ((size_t)folder->first + v) + c];
+            if (!isfinite(x))
+                return scene_tree_fail(
+                    tree, node, error,
+                    "from: vertex %u of the frame in %.300s is nowhere (vertices count from 1)",
+                    v + 1, folder->pc2);
+            cloth->start[6 * (size_t)v + c] = x;
+            cloth->start[6 * (size_t)v + 3 + c] = cloth->velocity[c];
+        }
+    return cloth->start ? CLOTH_OK : error->code;
+}
+
+static int take_frame(struct model_cloth *cloth, const struct scene_settled *from,
+                      const struct folder *folder, const struct scene_tree *tree, int node,
                       struct cloth_error *error)
 {
-    const int code = scene_build_pick(&mass->pick, tree, node, cloth, error);
-    return code ? code : scene_build_once(&mass->pick, tree, node, seen, number, "one mass", error);
-}
-
-static int build_masses(struct model_cloth *cloth, const struct scene_tree *tree, int list,
-                        uint32_t *seen, struct cloth_error *error)
-{
-    int code = CLOTH_OK;
-    for (uint32_t i = 0; i < cloth->n_masses && !code; i++)
-        code = build_mass(cloth->masses + i, tree, scene_tree_item(tree, list, i), cloth, seen,
-                          i + 1, error);
-    return code;
-}
-
-static int build_start(struct model_start *start, const struct scene_tree *tree, int node,
-                       const struct model_cloth *cloth, uint32_t *seen, uint32_t number,
-                       struct cloth_error *error)
-{
-    int code = scene_build_check_turn(&start->transform, tree, node, error);
+    struct cloth_error inner = {0};
+    uint32_t n_frames = 0;
+    double *places = NULL;
+    int code =
+        mesh_read_pc2_frame(folder->pc2, folder->n_all, frame_of(from), &n_frames, &places, &inner);
+    code =
+        scene_build_blame(code, &inner, "from", tree, scene_tree_get(tree, node, "frames"), error);
     if (!code)
-        code = scene_build_pick(&start->pick, tree, node, cloth, error);
-    return code ? code
-                : scene_build_once(&start->pick, tree, node, seen, number, "one start", error);
-}
-
-static int build_starts(struct model_cloth *cloth, const struct scene_tree *tree, int list,
-                        uint32_t *seen, struct cloth_error *error)
-{
-    int code = CLOTH_OK;
-    for (uint32_t i = 0; i < cloth->n_starts && !code; i++)
-        code = build_start(cloth->starts + i, tree, scene_tree_item(tree, list, i), cloth, seen,
-                           cloth->n_masses + i + 1, error);
+        code = check_from_frame(from, n_frames, folder, tree, node, error);
+    if (!code)
+        code = take_places(cloth, folder, places, tree, node, error);
+    free(places);
     return code;
 }
+
+/* ---- All of it ---- */
+
+static char *join_path(const char *folder, const char *name, struct cloth_error *error)
+{
+    const size_t size = strlen(folder) + strlen(name) + 2;
+    char *path = scene_build_array(size, 1, error);
+    if (path)
+        snprintf(path, size, "%s/%s", folder, name);
+    return path;
+}
+
+int scene_build_settled(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
+                        int owner, struct cloth_error *error)
+{
+    const int node = scene_tree_get(tree, owner, "from");
+    struct scene_settled from = {0};
+    if (!node)
+        return CLOTH_OK;
+    int code = scene_fill(&from, &scene_settled, tree, node, error);
+    char *path =
+        code ? NULL : scene_build_path(model, tree, scene_tree_get(tree, node, "frames"), error);
+    struct folder folder = {.path = path,
+                            .obj = path ? join_path(path, "cloth.obj", error) : NULL,
+                            .pc2 = path ? join_path(path, "cloth.pc2", error) : NULL};
+    if (!code && (!folder.obj || !folder.pc2))
+        code = error->code;
+    if (!code)
+        code = scene_build_file(model, folder.obj, error);
+    if (!code)
+        code = scene_build_file(model, folder.pc2, error);
+    if (!code)
+        code = find_cloth(&folder, from.cloth ? from.cloth : cloth->name, cloth, tree, node, error);
+    if (!code)
+        code = take_frame(cloth, &from, &folder, tree, node, error);
+    free(folder.obj);
+    free(folder.pc2);
+    free(path);
+    free(from.cloth);
+    return code;
+}
+
+/* ---- Masses and starts ---- */
 
 int scene_build_starts(struct model_cloth *cloth, const struct scene_tree *tree, int node,
                        struct cloth_error *error)
 {
     const int masses = scene_tree_get(tree, node, "masses");
     const int starts = scene_tree_get(tree, node, "start");
-    const bool any = cloth->n_masses || cloth->n_starts;
-    uint32_t *seen = scene_build_array(any ? cloth->mesh.n_vertices : 0, sizeof *seen, error);
-    int code = seen ? build_masses(cloth, tree, masses, seen, error) : error->code;
-    if (!code)
-        code = build_starts(cloth, tree, starts, seen, error);
-    free(seen);
+    int code = CLOTH_OK;
+    for (uint32_t i = 0; i < cloth->n_masses && !code; i++)
+        code = scene_build_pick_once(&cloth->masses[i].pick, tree, scene_tree_item(tree, masses, i),
+                                     cloth, "one mass", error);
+    for (uint32_t i = 0; i < cloth->n_starts && !code; i++) {
+        const int item = scene_tree_item(tree, starts, i);
+        code = scene_build_check_turn(&cloth->starts[i].transform, tree, item, error);
+        if (!code)
+            code = scene_build_pick_once(&cloth->starts[i].pick, tree, item, cloth, "one start",
+                                         error);
+    }
     return code;
 }

@@ -1,9 +1,10 @@
-/* Checks of materials, time, air and solver beyond the rule of one key. */
+/* Checks of materials, time, air, solver and phases beyond the rule of one key. */
 #include "cloth/scene/build/build.h"
 
 #include "cloth/physics/triangle.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +25,17 @@ void *scene_build_array(size_t n, size_t size, struct cloth_error *error)
     return array;
 }
 
+void *scene_build_grow(void *list, size_t n, size_t more, size_t size, struct cloth_error *error)
+{
+    char *grown = realloc(list, (n + more) * size);
+    if (!grown) {
+        out_of_memory(error);
+        return NULL;
+    }
+    memset(grown + n * size, 0, more * size);
+    return grown;
+}
+
 char *scene_build_copy(const char *text, struct cloth_error *error)
 {
     size_t size = strlen(text) + 1;
@@ -41,8 +53,37 @@ char *scene_build_place(const struct scene_tree *tree, int node, struct cloth_er
     return place;
 }
 
+int scene_build_warn(struct model *model, const struct scene_tree *tree, int node,
+                     struct cloth_error *error, const char *format, ...)
+{
+    char text[500], *place = scene_build_place(tree, node, error);
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    const size_t size = place ? strlen(place) + strlen(text) + 3 : 0;
+    char *warning = place ? scene_build_array(size, 1, error) : NULL;
+    char **all = scene_build_grow(model->warnings, model->n_warnings, 1, sizeof *all, error);
+    model->warnings = all ? all : model->warnings;
+    if (warning && all) {
+        snprintf(warning, size, "%s: %s", place, text);
+        all[model->n_warnings++] = warning;
+    } else
+        free(warning);
+    free(place);
+    return error->code;
+}
+
+int scene_build_blame(int code, const struct cloth_error *inner, const char *what,
+                      const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    if (inner->code == CLOTH_E_MEMORY)
+        return cloth_fail(error, inner->code, "%s: %s", tree->path, inner->text);
+    return inner->code ? scene_tree_fail(tree, node, error, "%s: %s", what, inner->text) : code;
+}
+
 /* The scene's name, else the file's without folder and ending. */
-static int build_name(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+static int name_scene(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
 {
     const char *slash = strrchr(tree->path, '/');
     if (model->name)
@@ -111,7 +152,7 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
 {
     const int time = scene_tree_get(tree, 1, "time"), end = scene_tree_get(tree, time, "end");
     int fps = scene_tree_get(tree, time, "fps");
-    if (scene_tree_node(tree, fps)->start_mark.index == SCENE_BY_DEFAULT) {
+    if (!scene_tree_is_given(tree, fps)) {
         fps = end;
         free(model->fps_place);
         model->fps_place = scene_build_place(tree, fps, error);
@@ -157,7 +198,7 @@ static void build_count(struct model *model, const struct scene_tree *tree)
 int scene_build_world(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     build_count(model, tree);
-    int code = build_name(model, tree, error);
+    int code = name_scene(model, tree, error);
     if (!code)
         code = build_time(model, tree, error);
     if (!code)
@@ -165,4 +206,18 @@ int scene_build_world(struct model *model, struct scene_tree *tree, struct cloth
     if (!code)
         code = build_materials(model, tree, error);
     return code ? code : scene_build_obstacles(model, tree, error);
+}
+
+/* Messages and reports know phases by their names. */
+int scene_build_phases(struct model *model, struct scene_tree *tree, struct cloth_error *error)
+{
+    (void)tree;
+    for (uint32_t i = 0; i < model->n_phases; i++)
+        for (uint32_t k = 0; k < i; k++)
+            if (!strcmp(model->phases[i].name, model->phases[k].name))
+                return model_fail(model->phases[i].place, error,
+                                  "phases[%u].name is '%.60s', as that of phases[%u]; each phase "
+                                  "has a name of its own",
+                                  i, model->phases[i].name, k);
+    return CLOTH_OK;
 }

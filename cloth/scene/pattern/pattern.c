@@ -1,7 +1,124 @@
 /* A file of patterns: its properties first, since they say how to read the rest. Keys for
  * variations of a pattern (parameters, constraints) are ignored. */
 #include "cloth/scene/pattern.h"
+#include "cloth/base/memory.h"
 #include "cloth/scene/pattern/reader.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Stitches ---- */
+
+/* They name panels, which are looked up in a sorted list; making it finds names that stand twice.
+ */
+enum { STITCHES = 1 << 18 };
+
+struct name {
+    const char *text;
+    uint32_t panel;
+};
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(((const struct name *)a)->text, ((const struct name *)b)->text);
+}
+
+static int sort_names(const struct pattern_reader *reader, int node, struct name *names)
+{
+    const struct garment_pattern *pattern = reader->pattern;
+    for (uint32_t p = 0; p < pattern->n_panels; p++)
+        names[p] = (struct name){pattern->panel[p].name, p};
+    qsort(names, pattern->n_panels, sizeof *names, compare_names);
+    for (uint32_t p = 1; p < pattern->n_panels; p++)
+        if (!strcmp(names[p - 1].text, names[p].text))
+            return pattern_wrong(reader, node, "two panels have the name '%s'", names[p].text);
+    return CLOTH_OK;
+}
+
+static int read_stitch_side(const struct pattern_reader *reader, const struct name *names,
+                            struct garment_side *side, int node)
+{
+    static const char *const keys[PATTERN_KEYS] = {"panel", "edge"};
+    const struct garment_pattern *pattern = reader->pattern;
+    int value[PATTERN_KEYS];
+    int code = pattern_map(reader, node, "a side", keys, value);
+    if (code)
+        return code;
+    if (!value[0] || !value[1])
+        return pattern_wrong(reader, node, "a side has to have both panel and edge");
+    char *text = pattern_name(reader, value[0]);
+    if (!text)
+        return reader->error->code;
+    const struct name key = {text, 0};
+    const struct name *found =
+        bsearch(&key, names, pattern->n_panels, sizeof *names, compare_names);
+    if (!found)
+        code = pattern_wrong(reader, value[0], "there is no panel '%s'", text);
+    free(text);
+    if (code)
+        return code;
+    side->panel = found->panel;
+    char what[260];
+    snprintf(what, sizeof what, "the edge of panel '%s'", found->text);
+    return pattern_index(reader, value[1], what, pattern->panel[side->panel].n_edges, "edges",
+                         &side->edge);
+}
+
+/* A list of two sides, perhaps with a word; or a map of from and to. */
+static int read_stitch(const struct pattern_reader *reader, const struct name *names,
+                       struct garment_stitch *stitch, int node)
+{
+    static const char *const keys[PATTERN_KEYS] = {"from", "to"};
+    int side[PATTERN_KEYS];
+    int code = CLOTH_OK;
+    if (scene_tree_is(reader->tree, node, YAML_MAPPING_NODE)) {
+        code = pattern_map(reader, node, "a stitch", keys, side);
+        if (!code && !(side[0] && side[1]))
+            return pattern_wrong(reader, node, "a stitch has to have both from and to");
+    } else {
+        code = pattern_list(reader, node, "a stitch", 2, 3);
+        for (size_t k = 0; k < 2 && !code; k++)
+            side[k] = scene_tree_item(reader->tree, node, k);
+        const int word = !code && scene_tree_length(reader->tree, node) == 3
+                             ? scene_tree_item(reader->tree, node, 2)
+                             : 0;
+        const char *text = word ? scene_tree_scalar(reader->tree, word) : NULL;
+        stitch->right_wrong = word;
+        if (word && (!text || strcmp(text, "right_wrong") != 0))
+            return pattern_wrong(reader, word,
+                                 "a stitch is two sides, and perhaps the word right_wrong");
+    }
+    for (int k = 0; k < 2 && !code; k++)
+        code = read_stitch_side(reader, names, &stitch->side[k], side[k]);
+    return code;
+}
+
+/* node 0: there are none. panels: the node of the panels, which are read before. */
+static int read_stitches(struct pattern_reader *reader, int node, int panels)
+{
+    struct garment_pattern *pattern = reader->pattern;
+    int code = node ? pattern_list(reader, node, "stitches", 0, STITCHES) : CLOTH_OK;
+    if (code)
+        return code;
+    const size_t n = scene_tree_length(reader->tree, node);
+    struct name *names = cloth_alloc(pattern->n_panels, sizeof *names, reader->error);
+    pattern->stitch = cloth_alloc(n, sizeof *pattern->stitch, reader->error);
+    if (!names || !pattern->stitch)
+        code = CLOTH_E_MEMORY;
+    else
+        code = sort_names(reader, panels, names);
+    for (size_t s = 0; s < n && !code; s++) {
+        reader->stitch = (int64_t)s;
+        code =
+            read_stitch(reader, names, &pattern->stitch[s], scene_tree_item(reader->tree, node, s));
+        pattern->n_stitches += !code;
+    }
+    reader->stitch = -1;
+    free(names);
+    return code;
+}
+
+/* ---- The file ---- */
 
 static const struct scene_words WORDS = {.noun = "pattern",
                                          .form = "JSON",
@@ -40,7 +157,7 @@ static int read_properties(struct pattern_reader *reader, int node)
     return code;
 }
 
-static int read_file(struct pattern_reader *reader)
+static int read_pattern_tree(struct pattern_reader *reader)
 {
     int file[PATTERN_KEYS], pattern[PATTERN_KEYS];
     int code = pattern_map(reader, 1, "the file", FILE_KEYS, file);
@@ -53,7 +170,7 @@ static int read_file(struct pattern_reader *reader)
     if (!code && !pattern[0])
         return pattern_wrong(reader, file[0], "pattern has no panels");
     code = code ? code : pattern_read_panels(reader, pattern[0]);
-    return code ? code : pattern_read_stitches(reader, pattern[1], pattern[0]);
+    return code ? code : read_stitches(reader, pattern[1], pattern[0]);
 }
 
 int scene_read_pattern(struct garment_pattern *pattern, const char *path, struct cloth_error *error)
@@ -64,7 +181,7 @@ int scene_read_pattern(struct garment_pattern *pattern, const char *path, struct
         .tree = &tree, .pattern = pattern, .error = &own, .edge = -1, .stitch = -1};
     *pattern = (struct garment_pattern){0};
     int code = scene_tree_load(&tree, path, &WORDS, &own);
-    code = code ? code : read_file(&reader);
+    code = code ? code : read_pattern_tree(&reader);
     scene_tree_free(&tree);
     if (code)
         return cloth_fail(error, code, "%s", own.text);

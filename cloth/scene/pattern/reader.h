@@ -49,8 +49,6 @@ int pattern_word(const struct pattern_reader *reader, int node, const char *what
 /* The parts of the file. */
 int pattern_read_panels(struct pattern_reader *reader, int node);
 int pattern_read_edges(struct pattern_reader *reader, struct garment_panel *panel, int node);
-/* node 0: there are none. panels: the node of the panels, which are read before. */
-int pattern_read_stitches(struct pattern_reader *reader, int node, int panels);
 
 /* The name of a panel from a node, as patterns keep it: to be freed; NULL after an error. */
 char *pattern_name(const struct pattern_reader *reader, int node);

@@ -30,31 +30,12 @@ int pattern_wrong(const struct pattern_reader *reader, int node, const char *for
     return scene_tree_fail(reader->tree, node, reader->error, "%s%s%s", where, n ? ": " : "", text);
 }
 
-/* The text of a node, short and on one line. */
-static const char *found(const struct pattern_reader *reader, int node, char *text, size_t size)
-{
-    const char *scalar = scene_tree_scalar(reader->tree, node);
-    if (!scalar) {
-        const bool list = scene_tree_is(reader->tree, node, YAML_SEQUENCE_NODE);
-        snprintf(text, size, "a %s of %zu", list ? "list" : "map",
-                 scene_tree_length(reader->tree, node));
-        return text;
-    }
-    const bool plain =
-        scene_tree_node(reader->tree, node)->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
-    snprintf(text, size, plain ? "%.60s" : "\"%.60s\"", scalar);
-    for (char *c = text; *c; c++)
-        if ((unsigned char)*c < 32 || *c == 127)
-            *c = ' ';
-    return text;
-}
-
-static int expected(const struct pattern_reader *reader, int node, const char *what,
-                    const char *kind)
+static int fail_expected(const struct pattern_reader *reader, int node, const char *what,
+                         const char *kind)
 {
     char text[100];
     return pattern_wrong(reader, node, "%s is %s; it has to be %s", what,
-                         found(reader, node, text, sizeof text), kind);
+                         scene_tree_found(reader->tree, node, "\"", text, sizeof text), kind);
 }
 
 static int key_number(const char *name, const char *const keys[PATTERN_KEYS])
@@ -65,15 +46,15 @@ static int key_number(const char *name, const char *const keys[PATTERN_KEYS])
     return -1;
 }
 
-static int unknown(const struct pattern_reader *reader, int node, const char *what,
-                   const char *const keys[PATTERN_KEYS])
+static int fail_unknown_key(const struct pattern_reader *reader, int node, const char *what,
+                            const char *const keys[PATTERN_KEYS])
 {
     char text[100], known[200] = "";
     size_t n = 0;
     for (int k = 0; k < PATTERN_KEYS && keys[k] && n < sizeof known; k++)
         n += (size_t)snprintf(known + n, sizeof known - n, "%s%s", k ? ", " : "", keys[k]);
-    found(reader, node, text, sizeof text);
-    return pattern_wrong(reader, node, "unknown key %s in %s, which may have %s", text, what,
+    return pattern_wrong(reader, node, "unknown key %s in %s, which may have %s",
+                         scene_tree_found(reader->tree, node, "\"", text, sizeof text), what,
                          known);
 }
 
@@ -82,12 +63,12 @@ int pattern_map(const struct pattern_reader *reader, int node, const char *what,
 {
     memset(value, 0, PATTERN_KEYS * sizeof *value);
     if (!scene_tree_is(reader->tree, node, YAML_MAPPING_NODE))
-        return expected(reader, node, what, "a map");
+        return fail_expected(reader, node, what, "a map");
     for (size_t i = 0; i < scene_tree_length(reader->tree, node); i++) {
         const yaml_node_pair_t pair = scene_tree_pair(reader->tree, node, i);
         const int k = key_number(scene_tree_scalar(reader->tree, pair.key), keys);
         if (k < 0)
-            return unknown(reader, pair.key, what, keys);
+            return fail_unknown_key(reader, pair.key, what, keys);
         if (value[k])
             return pattern_wrong(reader, pair.key, "%s has the key %s twice", what, keys[k]);
         value[k] = pair.value;
@@ -100,7 +81,7 @@ int pattern_list(const struct pattern_reader *reader, int node, const char *what
 {
     const size_t n = scene_tree_length(reader->tree, node);
     if (!scene_tree_is(reader->tree, node, YAML_SEQUENCE_NODE))
-        return expected(reader, node, what, "a list");
+        return fail_expected(reader, node, what, "a list");
     if (n < least || n > most)
         return pattern_wrong(reader, node, "%s has %zu entries; it has to have %zu%s%.0zu", what, n,
                              least, least == most ? "" : " to ", least == most ? 0 : most);
@@ -117,7 +98,7 @@ int pattern_number(const struct pattern_reader *reader, int node, const char *wh
 {
     if (!is_plain(reader, node) ||
         !scene_scalar_number(scene_tree_scalar(reader->tree, node), value) || fabs(*value) > MOST)
-        return expected(reader, node, what, "a number of at most 1e9");
+        return fail_expected(reader, node, what, "a number of at most 1e9");
     return CLOTH_OK;
 }
 
@@ -135,7 +116,7 @@ int pattern_index(const struct pattern_reader *reader, int node, const char *wha
 {
     if (!is_plain(reader, node) ||
         !scene_scalar_integer(scene_tree_scalar(reader->tree, node), value))
-        return expected(reader, node, what, "a whole number from 0 on");
+        return fail_expected(reader, node, what, "a whole number from 0 on");
     if (*value >= below)
         return pattern_wrong(reader, node, "%s is %u, but there are %u %s, counted from 0", what,
                              *value, below, things);
@@ -147,7 +128,7 @@ int pattern_flag(const struct pattern_reader *reader, int node, const char *what
     const char *text = is_plain(reader, node) ? scene_tree_scalar(reader->tree, node) : "";
     *value = !strcmp(text, "true") || !strcmp(text, "1");
     if (!*value && strcmp(text, "false") != 0 && strcmp(text, "0") != 0)
-        return expected(reader, node, what, "true or false, or 1 or 0");
+        return fail_expected(reader, node, what, "true or false, or 1 or 0");
     return CLOTH_OK;
 }
 
@@ -160,7 +141,7 @@ int pattern_word(const struct pattern_reader *reader, int node, const char *what
     if (*second || (text && !strcmp(text, words[0])))
         return CLOTH_OK;
     snprintf(kind, sizeof kind, "\"%s\" or \"%s\"", words[0], words[1]);
-    return expected(reader, node, what, kind);
+    return fail_expected(reader, node, what, kind);
 }
 
 /* One word of an OBJ file is the name of a group. */
@@ -168,7 +149,7 @@ char *pattern_name(const struct pattern_reader *reader, int node)
 {
     const char *text = scene_tree_scalar(reader->tree, node);
     if (!text || !*text || strlen(text) > NAME) {
-        expected(reader, node, "the name of a panel", "a text of 1 to 200 bytes");
+        fail_expected(reader, node, "the name of a panel", "a text of 1 to 200 bytes");
         return NULL;
     }
     char *name = cloth_alloc(strlen(text) + 1, 1, reader->error);

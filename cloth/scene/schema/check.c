@@ -1,176 +1,75 @@
 /* The walk of a document along the rules, which checks, adds defaults and fills structures in one.
- * Its depth is the schema's. Errors are reported by `wrong` or `unknown`, so they have one form.
- * `base` is the structure that the fields of a rule belong to; NULL: nothing is filled. */
+ * Its depth is the schema's. `base` is the structure that the fields of a rule belong to; NULL:
+ * nothing is filled. */
 #include "cloth/scene/schema/check.h"
-#include "cloth/scene/schema/choice.h"
+#include "cloth/scene/schema/faults.h"
 #include "cloth/scene/schema/store.h"
 #include "cloth/scene/yaml/edit.h"
 #include "cloth/scene/yaml/scalar.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 
-/* The place of the walk: a chain up to the root, for the names of keys in sentences. */
-struct place {
-    const struct place *up;
-    const char *key; /* NULL: entry `index` of a list */
-    size_t index;
-};
+static int check_node(struct scene_walk *walk, const struct scene_place *at,
+                      const struct scene_rule *rule, int node, void *base);
 
-struct walk {
-    struct scene_tree *tree;
-    struct cloth_error *error;
-};
+/* ---- Choices ---- */
 
-static int check(struct walk *walk, const struct place *at, const struct scene_rule *rule, int node,
-                 void *base);
-
-/* Writes "cloths[0].mesh"; the root is "the scene". */
-static size_t path_of(const struct place *at, char *text, size_t size)
+/* The last set that gave a key or anything below it, from 1; 0: none did. The caller's sets come
+ * after the phase's, whose keys are nodes in their order. */
+static size_t set_of_pair(const struct scene_tree *tree, yaml_node_pair_t pair)
 {
-    if (!at->up)
-        return (size_t)snprintf(text, size, "the scene");
-    size_t used = at->up->up ? path_of(at->up, text, size) : 0;
-    if (used >= size)
-        return used;
-    if (at->key)
-        used += (size_t)snprintf(text + used, size - used, "%s%s", used ? "." : "", at->key);
-    else
-        used += (size_t)snprintf(text + used, size - used, "[%zu]", at->index);
-    return used;
+    const yaml_mark_t mark = scene_tree_node(tree, pair.key)->start_mark;
+    if (mark.index == SCENE_BY_PHASE)
+        return mark.line;
+    const size_t phases = INT_MAX; /* more than there are nodes */
+    return mark.index == SCENE_BY_SET ? phases + mark.line + 1 : 0;
 }
 
-/* The text of a node, short and on one line. */
-static const char *found(const struct walk *walk, int node, char *text, size_t size)
+static bool is_choice(const struct scene_tree *tree, const struct scene_rule *keys, bool all,
+                      yaml_node_pair_t pair)
 {
-    bool list = scene_tree_is(walk->tree, node, YAML_SEQUENCE_NODE);
-    size_t n = scene_tree_length(walk->tree, node);
-    if (list || scene_tree_is(walk->tree, node, YAML_MAPPING_NODE)) {
-        snprintf(text, size, n ? "a %s of %zu" : "an empty %s", list ? "list" : "map", n);
-        return text;
+    const char *name = scene_tree_scalar(tree, pair.key);
+    while (name && keys->key && strcmp(keys->key, name) != 0)
+        keys++;
+    return name && keys->key && (all || keys->choice);
+}
+
+/* Among several keys of a map that exclude each other the last one that a set gave stays: a choice
+ * replaces a choice. Two that the file gives, or one set, both stay, which the check refuses. all:
+ * the keys exclude each other all; else those that are choices. A map that a set changed belongs to
+ * this place alone (edit.h), so keys may be taken from it. */
+static void settle_choice(struct scene_tree *tree, int map, const struct scene_rule *keys, bool all)
+{
+    size_t last = 0;
+    for (size_t i = 0; i < scene_tree_length(tree, map); i++) {
+        const yaml_node_pair_t pair = scene_tree_pair(tree, map, i);
+        const size_t set = set_of_pair(tree, pair);
+        if (is_choice(tree, keys, all, pair) && set > last)
+            last = set;
     }
-    if (scene_tree_empty(walk->tree, node))
-        return "empty";
-    bool plain = scene_tree_node(walk->tree, node)->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
-    snprintf(text, size, plain ? "%.60s" : "the text '%.60s'", scene_tree_scalar(walk->tree, node));
-    for (char *c = text; *c; c++)
-        if ((unsigned char)*c < 32 || *c == 127)
-            *c = ' ';
-    return text;
+    for (size_t i = scene_tree_length(tree, map); i > 0; i--) {
+        const yaml_node_pair_t pair = scene_tree_pair(tree, map, i - 1);
+        if (is_choice(tree, keys, all, pair) && set_of_pair(tree, pair) < last)
+            scene_edit_remove(tree, map, i - 1);
+    }
 }
 
-/* Values that are gone, and their replacements. key: the key that had them. */
-static const struct {
-    const char *key, *value, *now;
-} outdated[] = {
-    {"contact", "project", "write contact: {mode: project}"},
-    {"contact", "filter", "it is gone; contact: {mode: certified} or {mode: project} is there"},
-    {"mode", "filter", "it is gone; certified knows of contact in the solve, too"}};
-
-static const char *more_of(const struct walk *walk, const struct place *at, int node)
-{
-    const char *value = scene_tree_scalar(walk->tree, node);
-    for (size_t i = 0; at->key && value && i < sizeof outdated / sizeof *outdated; i++)
-        if (!strcmp(outdated[i].key, at->key) && !strcmp(outdated[i].value, value))
-            return outdated[i].now;
-    return value && scene_scalar_has_comma(value) ? SCENE_NO_COMMA : NULL;
-}
-
-static int wrong(struct walk *walk, const struct place *at, const struct scene_rule *rule, int node)
-{
-    char path[200], is[100], expected[300];
-    const char *now = more_of(walk, at, node);
-    path_of(at, path, sizeof path);
-    return scene_tree_fail(walk->tree, node, walk->error, "%s is %s; %s is expected%s%s", path,
-                           found(walk, node, is, sizeof is),
-                           scene_rule_expected(rule, expected, sizeof expected), now ? ": " : "",
-                           now ? now : "");
-}
-
-static const struct scene_rule *rule_of(const struct scene_rule *keys, const char *name)
-{
-    for (const struct scene_rule *key = keys; key->key; key++)
-        if (!strcmp(key->key, name))
-            return key;
-    return NULL;
-}
-
-enum { MAX_KEYS = 32 }; /* of a map, in sentences */
-
-/* Keys that are gone, and their replacements. map: the key of the map, or of the list of maps, that
- * had them. */
-static const struct {
-    const char *map, *key, *now;
-} gone[] = {{"solver", "form", "conjugate gradients have one form, with one sum an iteration"},
-            {"loads", "course", "its name is curve"},
-            {"air", "course", "its name is curve"},
-            {"cloths", "cost",
-             "uneven work to try balancers on is of duite-bench ranks (migrate) and duite-compare "
-             "(irregular)"}};
-
-/* NULL: the key never was. */
-static const char *gone_of(const struct place *at, const char *key)
-{
-    const char *map = at->key || !at->up ? at->key : at->up->key;
-    for (size_t i = 0; map && i < sizeof gone / sizeof *gone; i++)
-        if (!strcmp(gone[i].map, map) && !strcmp(gone[i].key, key))
-            return gone[i].now;
-    return NULL;
-}
-
-static int unknown(struct walk *walk, const struct place *at, const struct scene_rule *keys,
-                   int node)
-{
-    const char *names[MAX_KEYS];
-    size_t n = 0;
-    for (const struct scene_rule *key = keys; key->key && n < MAX_KEYS; key++)
-        names[n++] = key->key;
-    char path[200], is[100], allowed[400];
-    path_of(at, path, sizeof path);
-    const char *word = scene_tree_scalar(walk->tree, node);
-    const char *now = word ? gone_of(at, word) : NULL;
-    if (now)
-        return scene_tree_fail(walk->tree, node, walk->error, "%s is no longer a key of %s: %s",
-                               word, path, now);
-    return scene_tree_fail(
-        walk->tree, node, walk->error, "%s is not a key of %s%s", found(walk, node, is, sizeof is),
-        path, scene_allowed_words(word ? word : "", names, n, allowed, sizeof allowed));
-}
-
-static bool is_default(const struct walk *walk, int node)
-{
-    return scene_tree_node(walk->tree, node)->start_mark.index == SCENE_BY_DEFAULT;
-}
-
-/* {density: 0,2} is {density: 0, 2: } to YAML. Pair i is the second of these. */
-static int check_comma(struct walk *walk, const struct place *at, int map, size_t i)
-{
-    char path[200], number[100];
-    const struct scene_tree *tree = walk->tree;
-    const yaml_node_pair_t pair = scene_tree_pair(tree, map, i);
-    const yaml_node_pair_t before = scene_tree_pair(tree, map, i - 1);
-    const char *whole = scene_tree_scalar(tree, before.value);
-    snprintf(number, sizeof number, "%.40s,%.40s", whole ? whole : "",
-             scene_tree_scalar(tree, pair.key));
-    if (!scene_tree_empty(tree, pair.value) || !scene_scalar_has_comma(number))
-        return CLOTH_OK;
-    path_of(&(struct place){at, scene_tree_scalar(tree, before.key), 0}, path, sizeof path);
-    return scene_tree_fail(walk->tree, before.value, walk->error, "%s is %s; %s", path, number,
-                           SCENE_NO_COMMA);
-}
+/* ---- The walk ---- */
 
 /* Keys of a map are texts, each there once. */
-static int check_names(struct walk *walk, const struct place *at, int map)
+static int check_names(struct scene_walk *walk, const struct scene_place *at, int map)
 {
     char path[200], is[100];
     for (size_t i = 0; i < scene_tree_length(walk->tree, map); i++) {
         int key = scene_tree_pair(walk->tree, map, i).key;
         const char *name = scene_tree_scalar(walk->tree, key);
-        path_of(at, path, sizeof path);
+        scene_place_path(at, path, sizeof path);
         if (!name || !*name)
             return scene_tree_fail(walk->tree, key, walk->error,
                                    "a key of %s is %s; a text is expected", path,
-                                   found(walk, key, is, sizeof is));
+                                   scene_tree_found(walk->tree, key, SCENE_QUOTES, is, sizeof is));
         for (size_t j = 0; j < i; j++) {
             const int other = scene_tree_pair(walk->tree, map, j).key;
             if (!strcmp(name, scene_tree_scalar(walk->tree, other)))
@@ -182,17 +81,19 @@ static int check_names(struct walk *walk, const struct place *at, int map)
 }
 
 /* Checks the values of a map whose keys are the rules `keys`. */
-static int check_values(struct walk *walk, const struct place *at, const struct scene_rule *keys,
-                        int map, void *base)
+static int check_values(struct scene_walk *walk, const struct scene_place *at,
+                        const struct scene_rule *keys, int map, void *base)
 {
     for (size_t i = 0; i < scene_tree_length(walk->tree, map); i++) {
         yaml_node_pair_t pair = scene_tree_pair(walk->tree, map, i);
-        const struct scene_rule *rule = rule_of(keys, scene_tree_scalar(walk->tree, pair.key));
-        if (!rule && is_default(walk, pair.key))
+        const struct scene_rule *rule =
+            scene_rule_of(keys, scene_tree_scalar(walk->tree, pair.key));
+        if (!rule && !scene_tree_is_given(walk->tree, pair.key))
             continue; /* of another key that shares this map by an alias */
         if (!rule)
-            return unknown(walk, at, keys, pair.key);
-        int code = check(walk, &(struct place){at, rule->key, 0}, rule, pair.value, base);
+            return scene_fault_key(walk, at, keys, pair.key);
+        int code =
+            check_node(walk, &(struct scene_place){at, rule->key, 0}, rule, pair.value, base);
         if (code)
             return code;
     }
@@ -200,22 +101,23 @@ static int check_values(struct walk *walk, const struct place *at, const struct 
 }
 
 /* A default is walked like a value of the file, since a map may have defaults of its own. */
-static int add_default(struct walk *walk, const struct place *here, const struct scene_rule *rule,
-                       int map, void *base)
+static int add_default(struct scene_walk *walk, const struct scene_place *here,
+                       const struct scene_rule *rule, int map, void *base)
 {
     int code = scene_edit_default(walk->tree, map, rule->key, rule->fallback, walk->error);
-    return code ? code : check(walk, here, rule, scene_tree_get(walk->tree, map, rule->key), base);
+    return code ? code
+                : check_node(walk, here, rule, scene_tree_get(walk->tree, map, rule->key), base);
 }
 
-static int add_missing(struct walk *walk, const struct place *at, const struct scene_rule *keys,
-                       int map, void *base)
+static int add_missing(struct scene_walk *walk, const struct scene_place *at,
+                       const struct scene_rule *keys, int map, void *base)
 {
     char path[200], expected[300];
     for (const struct scene_rule *rule = keys; rule->key; rule++) {
-        struct place here = {at, rule->key, 0};
+        struct scene_place here = {at, rule->key, 0};
         if (scene_tree_get(walk->tree, map, rule->key))
             continue;
-        path_of(&here, path, sizeof path);
+        scene_place_path(&here, path, sizeof path);
         if (rule->required)
             return scene_tree_fail(walk->tree, map, walk->error, "%s is missing; %s is expected",
                                    path, scene_rule_expected(rule, expected, sizeof expected));
@@ -227,12 +129,12 @@ static int add_missing(struct walk *walk, const struct place *at, const struct s
 }
 
 /* Exactly one of a map's keys that are choices must be there. */
-static int check_choice(struct walk *walk, const struct place *at, const struct scene_rule *keys,
-                        int map)
+static int check_choice(struct scene_walk *walk, const struct scene_place *at,
+                        const struct scene_rule *keys, int map)
 {
-    const char *names[MAX_KEYS], *first = NULL;
+    const char *names[SCENE_MAX_KEYS], *first = NULL;
     size_t n = 0;
-    for (const struct scene_rule *key = keys; key->key && n < MAX_KEYS; key++)
+    for (const struct scene_rule *key = keys; key->key && n < SCENE_MAX_KEYS; key++)
         if (key->choice)
             names[n++] = key->key;
     char path[200], allowed[300] = "";
@@ -240,11 +142,11 @@ static int check_choice(struct walk *walk, const struct place *at, const struct 
         const size_t used = strlen(allowed);
         snprintf(allowed + used, sizeof allowed - used, "%s%s", i ? " or " : "", names[i]);
     }
-    path_of(at, path, sizeof path);
+    scene_place_path(at, path, sizeof path);
     for (size_t i = 0; i < scene_tree_length(walk->tree, map); i++) {
         const int key = scene_tree_pair(walk->tree, map, i).key;
         const char *name = scene_tree_scalar(walk->tree, key);
-        const struct scene_rule *rule = rule_of(keys, name);
+        const struct scene_rule *rule = scene_rule_of(keys, name);
         if (!rule || !rule->choice)
             continue;
         if (first)
@@ -260,13 +162,13 @@ static int check_choice(struct walk *walk, const struct place *at, const struct 
 }
 
 /* base: the structure that the map fills, here and in the next one. */
-static int check_map(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                     int node, void *base)
+static int check_map(struct scene_walk *walk, const struct scene_place *at,
+                     const struct scene_rule *rule, int node, void *base)
 {
     int code = check_names(walk, at, node);
     for (size_t i = 1; !code && i < scene_tree_length(walk->tree, node); i++)
-        code = check_comma(walk, at, node, i);
-    scene_choice_settle(walk->tree, node, rule->inside, false);
+        code = scene_check_comma(walk, at, node, i);
+    settle_choice(walk->tree, node, rule->inside, false);
     if (!code)
         code = check_values(walk, at, rule->inside, node, base);
     if (!code)
@@ -274,25 +176,25 @@ static int check_map(struct walk *walk, const struct place *at, const struct sce
     return code ? code : add_missing(walk, at, rule->inside, node, base);
 }
 
-static int check_one_of(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                        int node, void *base)
+static int check_one_of(struct scene_walk *walk, const struct scene_place *at,
+                        const struct scene_rule *rule, int node, void *base)
 {
     int code = check_names(walk, at, node);
-    scene_choice_settle(walk->tree, node, rule->inside, true);
+    settle_choice(walk->tree, node, rule->inside, true);
     if (!code)
         code = check_values(walk, at, rule->inside, node, base);
     size_t n = scene_tree_length(walk->tree, node);
     if (code || n == 1)
         return code;
     char path[200], expected[300];
-    path_of(at, path, sizeof path);
+    scene_place_path(at, path, sizeof path);
     int where = n ? scene_tree_pair(walk->tree, node, 1).key : node;
     return scene_tree_fail(walk->tree, where, walk->error, "%s has %zu keys; %s is expected", path,
                            n, scene_rule_expected(rule, expected, sizeof expected));
 }
 
 /* Room for the entries of a list or named map; NULL: nothing is filled, or an error. */
-static char *items_of(struct walk *walk, const struct scene_rule *rule, int node, void *base,
+static char *items_of(struct scene_walk *walk, const struct scene_rule *rule, int node, void *base,
                       size_t *step)
 {
     const size_t n = scene_tree_length(walk->tree, node);
@@ -300,12 +202,12 @@ static char *items_of(struct walk *walk, const struct scene_rule *rule, int node
     return base ? scene_store_items(base, rule, n, step, walk->error) : NULL;
 }
 
-static int check_named(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                       int node, void *base)
+static int check_named(struct scene_walk *walk, const struct scene_place *at,
+                       const struct scene_rule *rule, int node, void *base)
 {
     int code = check_names(walk, at, node);
     if (!code && !scene_tree_length(walk->tree, node))
-        return wrong(walk, at, rule, node);
+        return scene_fault_value(walk, at, rule, node);
     size_t step;
     char *items = code ? NULL : items_of(walk, rule, node, base, &step);
     code = walk->error->code;
@@ -315,25 +217,26 @@ static int check_named(struct walk *walk, const struct place *at, const struct s
         void *item = items ? items + i * step : NULL;
         code = item ? scene_store_name(item, rule, name, walk->error) : CLOTH_OK;
         if (!code)
-            code = check(walk, &(struct place){at, name, 0}, rule->inside, pair.value, item);
+            code = check_node(walk, &(struct scene_place){at, name, 0}, rule->inside, pair.value,
+                              item);
     }
     return code;
 }
 
-static int check_list(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                      int node, void *base)
+static int check_list(struct scene_walk *walk, const struct scene_place *at,
+                      const struct scene_rule *rule, int node, void *base)
 {
     size_t n = scene_tree_length(walk->tree, node), step;
     if ((rule->length && n != rule->length) || (rule->filled && !n) ||
         (rule->max > 0 && (double)n > rule->max))
-        return wrong(walk, at, rule, node);
+        return scene_fault_value(walk, at, rule, node);
     char *items = items_of(walk, rule, node, base, &step);
     int code = walk->error->code;
     struct scene_rule inside = *rule->inside;
     inside.unit = rule->unit; /* the unit of a list is that of its numbers */
     for (size_t i = 0; !code && i < n; i++)
-        code = check(walk, &(struct place){at, NULL, i}, &inside,
-                     scene_tree_item(walk->tree, node, i), items ? items + i * step : NULL);
+        code = check_node(walk, &(struct scene_place){at, NULL, i}, &inside,
+                          scene_tree_item(walk->tree, node, i), items ? items + i * step : NULL);
     return code;
 }
 
@@ -357,15 +260,15 @@ static bool integer_fits(const struct scene_rule *rule, const char *text)
            (rule->max <= 0 || value <= rule->max);
 }
 
-static bool is_word(const struct scene_rule *rule, const char *text)
+static bool is_word_of(const struct scene_rule *rule, const char *text)
 {
     bool known;
     scene_word_value(rule->words, text, &known);
     return known;
 }
 
-static int check_scalar(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                        int node, void *base)
+static int check_scalar(struct scene_walk *walk, const struct scene_place *at,
+                        const struct scene_rule *rule, int node, void *base)
 {
     const yaml_node_t *scalar = scene_tree_node(walk->tree, node);
     const char *text = scene_tree_scalar(walk->tree, node);
@@ -374,14 +277,14 @@ static int check_scalar(struct walk *walk, const struct place *at, const struct 
         fits = *text && !scene_tree_empty(walk->tree, node) &&
                strlen(text) == scalar->data.scalar.length;
     else if (rule->type == SCENE_CHOICE)
-        fits = is_word(rule, text);
+        fits = is_word_of(rule, text);
     else if (rule->type == SCENE_INTEGER)
         fits = plain && integer_fits(rule, text);
     else
         fits = (plain && number_fits(rule, text)) ||
-               (rule->type == SCENE_NUMBER_OR_WORD && is_word(rule, text));
+               (rule->type == SCENE_NUMBER_OR_WORD && is_word_of(rule, text));
     if (!fits)
-        return wrong(walk, at, rule, node);
+        return scene_fault_value(walk, at, rule, node);
     return base ? scene_store_scalar(base, rule, text, walk->error) : CLOTH_OK;
 }
 
@@ -399,14 +302,14 @@ static void *structure_of(const struct scene_rule *rule, void *base)
     return base && !rule->apart ? (char *)base + rule->field.offset : NULL;
 }
 
-static int check(struct walk *walk, const struct place *at, const struct scene_rule *rule, int node,
-                 void *base)
+static int check_node(struct scene_walk *walk, const struct scene_place *at,
+                      const struct scene_rule *rule, int node, void *base)
 {
     char path[200];
     const yaml_node_t *here = scene_tree_node(walk->tree, node);
     bool list = here->type == YAML_SEQUENCE_NODE, map = here->type == YAML_MAPPING_NODE;
     if (has_own_tag(here)) {
-        path_of(at, path, sizeof path);
+        scene_place_path(at, path, sizeof path);
         return scene_tree_fail(walk->tree, node, walk->error,
                                "%s has the tag %.60s; a value without a tag is expected", path,
                                (const char *)here->tag);
@@ -427,23 +330,24 @@ static int check(struct walk *walk, const struct place *at, const struct scene_r
         return check_list(walk, at, rule, node, base);
     if (!list && !map && rule->type >= SCENE_NUMBER)
         return check_scalar(walk, at, rule, node, base);
-    return wrong(walk, at, rule, node);
+    return scene_fault_value(walk, at, rule, node);
 }
 
 int scene_fill(void *structure, const struct scene_rule *rule, struct scene_tree *tree, int node,
                struct cloth_error *error)
 {
-    struct walk walk = {tree, error};
-    return check(&walk, &(struct place){0}, rule, node, structure);
+    struct scene_walk walk = {tree, error};
+    return check_node(&walk, &(struct scene_place){0}, rule, node, structure);
 }
 
 int scene_check(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
-    struct walk walk = {tree, error};
-    const struct place root = {0}, schema = {&root, "schema", 0};
+    struct scene_walk walk = {tree, error};
+    const struct scene_place root = {0}, schema = {&root, "schema", 0};
     /* Another schema is reported before its keys are called unknown. */
     int node = scene_tree_get(tree, 1, "schema");
     int code =
-        node ? check(&walk, &schema, rule_of(scene_root.inside, "schema"), node, NULL) : CLOTH_OK;
-    return code ? code : check(&walk, &root, &scene_root, 1, model);
+        node ? check_node(&walk, &schema, scene_rule_of(scene_root.inside, "schema"), node, NULL)
+             : CLOTH_OK;
+    return code ? code : check_node(&walk, &root, &scene_root, 1, model);
 }

@@ -41,6 +41,15 @@ struct scene_field {
     size_t size;
 };
 
+/* A section of the page of all keys (page.c), in Markdown. Its head is a link's target, so no two
+ * sections have the same. */
+struct scene_section {
+    const char *head;
+    const char *text;    /* paragraphs; NULL: none */
+    const char *example; /* YAML: keys of the map that the rule stands in, or of a map around that;
+                            or a whole scene; NULL: none */
+};
+
 struct scene_rule {
     const char *key; /* NULL ends the keys of a map */
     enum scene_type type;
@@ -54,7 +63,13 @@ struct scene_rule {
     bool filled;     /* lists: at least one entry */
     const struct model_word *words; /* choices, ended by one without a word */
     const struct scene_rule *inside;
-    const char *about; /* for the list of keys */
+    const char *about; /* for the list of keys and the page: no capital, no full stop */
+    const char *more;  /* for the page alone: whole sentences; NULL: none */
+    const char
+        *needs; /* what the key does nothing without, in the words of needs.h; NULL: nothing */
+    const struct scene_section *section; /* of this key; NULL: it is a row of its map's table */
+    const struct scene_section
+        *shared; /* of this key and its neighbours, which other maps have, too */
 
     /* The fields, all of the structure that the map of this key fills. A number takes a double, a
      * whole one a uint32_t, a text a char * that the structure owns. A choice takes a bool, int or

@@ -3,7 +3,8 @@
 
 /* clang-format off */
 #define GIRTH(name, number, text) \
-    {name, SCENE_NUMBER, "m", .range = SCENE_POSITIVE, INTO(struct scene_figure, mannequin.girth[number]), \
+    {name, SCENE_NUMBER, "m", .range = SCENE_POSITIVE, INTO(struct scene_figure, \
+     mannequin.girth[number]), \
      .about = text}
 static const struct scene_rule measure_keys[] = {
     GIRTH("neck", MANNEQUIN_NECK, "girth of the neck; of all: that of the figure, if not given"),
@@ -29,10 +30,12 @@ static const struct scene_rule walk_keys[] = {
 #define ANGLE(name, number, rest, text) \
     {name, SCENE_NUMBER, "degrees", rest, INTO(struct mannequin_pose, angle[number]), .about = text}
 #define SIDE(side, right, which) \
-    ANGLE(side "_arm_aside", MANNEQUIN_ARM_ASIDE + (right), "45", which "arm, from straight down"), \
+    ANGLE(side "_arm_aside", MANNEQUIN_ARM_ASIDE + (right), "45", which "arm, from straight " \
+        "down"), \
     ANGLE(side "_arm_swing", MANNEQUIN_ARM_SWING + (right), "0", which "arm, forwards"), \
     ANGLE(side "_elbow_bend", MANNEQUIN_ELBOW_BEND + (right), "0", which "elbow"), \
-    ANGLE(side "_leg_aside", MANNEQUIN_LEG_ASIDE + (right), "0", which "leg, from where it stands"), \
+    ANGLE(side "_leg_aside", MANNEQUIN_LEG_ASIDE + (right), "0", which "leg, from where it " \
+        "stands"), \
     ANGLE(side "_leg_swing", MANNEQUIN_LEG_SWING + (right), "0", which "leg, forwards"), \
     ANGLE(side "_knee_bend", MANNEQUIN_KNEE_BEND + (right), "0", which "knee"), \
     ANGLE(side "_ankle_bend", MANNEQUIN_ANKLE_BEND + (right), "0", which "foot, the toes up")

@@ -11,7 +11,7 @@ static int no_memory(struct cloth_error *error)
     return cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
 }
 
-static void *member(void *base, const struct scene_field *field)
+static void *member_of(void *base, const struct scene_field *field)
 {
     return (char *)base + field->offset;
 }
@@ -42,7 +42,7 @@ static void store_value(void *field, size_t width, int value)
 int scene_store_scalar(void *base, const struct scene_rule *rule, const char *text,
                        struct cloth_error *error)
 {
-    void *field = member(base, &rule->field);
+    void *field = member_of(base, &rule->field);
     if (!rule->field.width)
         return CLOTH_OK;
     if (rule->type == SCENE_TEXT)
@@ -64,10 +64,10 @@ int scene_store_presence(void *base, const struct scene_rule *rule, const struct
                          int node, struct cloth_error *error)
 {
     if (rule->kind.width)
-        store_value(member(base, &rule->kind), rule->kind.width, rule->value);
+        store_value(member_of(base, &rule->kind), rule->kind.width, rule->value);
     if (!rule->place.width)
         return CLOTH_OK;
-    char **place = member(base, &rule->place);
+    char **place = member_of(base, &rule->place);
     *place = scene_tree_place(tree, node);
     return *place ? CLOTH_OK : no_memory(error);
 }
@@ -75,7 +75,7 @@ int scene_store_presence(void *base, const struct scene_rule *rule, const struct
 void *scene_store_items(void *base, const struct scene_rule *rule, size_t n, size_t *step,
                         struct cloth_error *error)
 {
-    void *field = member(base, &rule->field);
+    void *field = member_of(base, &rule->field);
     *step = rule->count.width ? rule->item : rule->inside->field.width;
     if (!rule->field.width)
         return NULL;
@@ -83,7 +83,7 @@ void *scene_store_items(void *base, const struct scene_rule *rule, size_t n, siz
         return field;
     void **array = field;
     *array = calloc(n ? n : 1, rule->item);
-    *(uint32_t *)member(base, &rule->count) = *array ? (uint32_t)n : 0;
+    *(uint32_t *)member_of(base, &rule->count) = *array ? (uint32_t)n : 0;
     if (!*array)
         no_memory(error);
     return *array;
@@ -92,5 +92,5 @@ void *scene_store_items(void *base, const struct scene_rule *rule, size_t n, siz
 int scene_store_name(void *item, const struct scene_rule *rule, const char *name,
                      struct cloth_error *error)
 {
-    return rule->name.width ? store_text(member(item, &rule->name), name, error) : CLOTH_OK;
+    return rule->name.width ? store_text(member_of(item, &rule->name), name, error) : CLOTH_OK;
 }

@@ -1,12 +1,14 @@
 #ifndef CLOTH_SCENE_SCHEMA_TABLES_H
 #define CLOTH_SCENE_SCHEMA_TABLES_H
 
+#include "cloth/scene/schema/needs.h"
 #include "cloth/scene/schema/rules.h"
 
 /* Macros for tables of rules. INTO: where the value goes. ARRAY: where a list of any length goes,
  * and the number of its items. PLACE: where the place of the value goes (model.h). MEANS: which
  * field says, by a value, that this key was chosen, or given. WORDS: the words of a choice, each
- * with its meaning. ITEM: the type of an item of a list. */
+ * with its meaning. ITEM: the type of an item of a list. SECTION: head, text and example of a
+ * section of the page. */
 /* clang-format off */
 #define FIELD(type, member) \
     {offsetof(type, member), sizeof(((type *)0)->member), #type, sizeof(type)}
@@ -17,20 +19,73 @@
 #define MEANS(type, member, is) .kind = FIELD(type, member), .value = (is)
 #define WORDS(...) .words = (const struct model_word[]){__VA_ARGS__, {0}}
 #define ITEM(type) .field = {.width = sizeof(type)}
-/* Keys of the struct mesh_transform `within` the type; number and positive are the file's own. */
+#define SECTION(...) .section = &(const struct scene_section){__VA_ARGS__}
+
+/* Keys of the struct mesh_transform `within` the type. */
 #define TRANSFORM(type, within) \
     {"scale", SCENE_NUMBER_OR_LIST, .fallback = "1", .range = SCENE_POSITIVE, .length = 3, \
-     .inside = &positive, INTO(type, within scale), \
+     .inside = &scene_positive, INTO(type, within scale), \
      .about = "first: a factor, or one for each axis"}, \
-    {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &number, \
+    {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &scene_number, \
      INTO(type, within rotate), .about = "then: a quaternion [w, x, y, z]"}, \
-    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number, \
+    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &scene_number, \
      INTO(type, within translate), .about = "last: a shift"}
+
+/* Ways to choose vertices, one of these: into the struct model_pick `pick` of a type. */
+#define PICK_VERTICES(type, pick) \
+    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &scene_vertex, \
+     ARRAY(type, pick vertices, pick n_vertices), MEANS(type, pick kind, MODEL_PICK_VERTICES), \
+     .about = "in the mesh's numbering, from 0", .shared = &scene_picks}
+#define PICK_BOX(type, pick) \
+    {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &scene_point, \
+     INTO(type, pick box), MEANS(type, pick kind, MODEL_PICK_BOX), \
+     .about = "all vertices in the box between two corners", .shared = &scene_picks}
+#define PICK_GROUP(type, pick) \
+    {"group", SCENE_TEXT, .choice = true, MEANS(type, pick kind, MODEL_PICK_VERTICES), \
+     .about = "all vertices of a group of the mesh's faces: of an OBJ file, or a panel", \
+     .shared = &scene_picks}
+#define PICK(type) \
+    PICK_VERTICES(type, pick.), \
+    {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &scene_number, \
+     INTO(type, pick.point), MEANS(type, pick.kind, MODEL_PICK_NEAREST), \
+     .about = "the vertex nearest to a point", .shared = &scene_picks}, \
+    {"radius", SCENE_NUMBER, "m", .range = SCENE_NOT_NEGATIVE, INTO(type, pick.radius), \
+     .about = "of nearest: and all vertices within it", .shared = &scene_picks}, \
+    PICK_BOX(type, pick.), \
+    PICK_GROUP(type, pick.)
 /* clang-format on */
 
-/* Shared by the tables. */
-extern const struct scene_rule scene_cloth, scene_probe;
-extern const struct scene_rule scene_curve_kinds[], scene_motion_keys[], scene_mannequin_keys[];
-extern const struct scene_rule scene_output_keys[];
+/* Names are compared with each other; a scene is read once for each phase. */
+enum { SCENE_MOST_NAMED = 4096, SCENE_MOST_PHASES = 100 };
+
+/* Items of lists. */
+extern const struct scene_rule scene_number, scene_positive, scene_text, scene_vertex;
+extern const struct scene_rule scene_point, scene_edge, scene_quaternion;
+
+/* Tables of other files; keys end with a rule without a key. */
+extern const struct scene_rule scene_cloth, scene_material, scene_obstacle;
+extern const struct scene_rule scene_pin, scene_load, scene_mass, scene_start, scene_probe;
+extern const struct scene_rule scene_joint, scene_weld, scene_fold;
+extern const struct scene_rule scene_seams_keys[], scene_time_keys[], scene_mannequin_keys[],
+    scene_contact_keys[];
+extern const struct scene_rule scene_solver_keys[], scene_newton_keys[], scene_output_keys[];
+extern const struct scene_rule scene_curve_kinds[], scene_motion_keys[];
+/* Sections of the page that stand with the keys of an entry. */
+extern const struct scene_section scene_picks, scene_curve, scene_motion;
+extern const struct scene_section scene_contact_section;
+extern const struct scene_section scene_obstacles_section;
+extern const struct scene_section scene_materials_section;
+extern const struct scene_section scene_solver_section;
+extern const struct scene_section scene_newton_section;
+extern const struct scene_section scene_time_section;
+extern const struct scene_section scene_probes_section;
+extern const struct scene_section scene_joints_section;
+extern const struct scene_section scene_welds_section;
+extern const struct scene_section scene_pins_section;
+extern const struct scene_section scene_loads_section;
+extern const struct scene_section scene_starts_section;
+extern const struct scene_section scene_masses_section;
+extern const struct scene_section scene_folds_section;
+extern const struct scene_section scene_seams_section;
 
 #endif

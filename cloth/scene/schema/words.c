@@ -1,9 +1,8 @@
-/* Words for people: the values that a rule allows, guesses for a wrong word, and the list of all
- * keys. */
-#include "cloth/scene/scene.h"
+/* Words for people: the values that a rule allows, and guesses for a wrong word. */
 #include "cloth/scene/schema/rules.h"
 
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { LONGEST = 31 }; /* words beyond this length are not guessed at */
@@ -15,7 +14,7 @@ static unsigned least_of(unsigned a, unsigned b)
 
 /* Insertions, deletions, changes and swaps of neighbours that lead from a to b (optimal string
  * alignment). */
-static unsigned distance(const char *a, const char *b)
+static unsigned word_distance(const char *a, const char *b)
 {
     size_t n = strlen(a), m = strlen(b);
     unsigned d[LONGEST + 1][LONGEST + 1];
@@ -43,7 +42,7 @@ const char *scene_nearest_word(const char *word, const char *const *candidates, 
         size_t other = strlen(candidates[i]);
         if (other > LONGEST)
             continue;
-        unsigned far = distance(word, candidates[i]);
+        unsigned far = word_distance(word, candidates[i]);
         if (far <= limit && far < (length > other ? length : other)) {
             nearest = candidates[i];
             limit = far ? far - 1 : 0;
@@ -61,7 +60,7 @@ int scene_word_value(const struct model_word *words, const char *word, bool *kno
     return words->value;
 }
 
-static void append(char *text, size_t size, const char *more)
+static void append_text(char *text, size_t size, const char *more)
 {
     size_t used = strlen(text);
     snprintf(text + used, size - used, "%s", more);
@@ -75,10 +74,10 @@ char *scene_allowed_words(const char *word, const char *const *candidates, size_
     if (nearest)
         snprintf(text, size, "; did you mean '%s'? Allowed: ", nearest);
     else
-        append(text, size, "; allowed: ");
+        append_text(text, size, "; allowed: ");
     for (size_t i = 0; i < n; i++) {
-        append(text, size, i ? ", " : "");
-        append(text, size, candidates[i]);
+        append_text(text, size, i ? ", " : "");
+        append_text(text, size, candidates[i]);
     }
     return text;
 }
@@ -86,8 +85,8 @@ char *scene_allowed_words(const char *word, const char *const *candidates, size_
 static void append_keys(char *text, size_t size, const struct scene_rule *keys)
 {
     for (const struct scene_rule *key = keys; key->key; key++) {
-        append(text, size, key == keys ? "" : ", ");
-        append(text, size, key->key);
+        append_text(text, size, key == keys ? "" : ", ");
+        append_text(text, size, key->key);
     }
 }
 
@@ -132,8 +131,8 @@ static void number_expected(const struct scene_rule *rule, char *text, size_t si
 static void append_words(const struct scene_rule *rule, char *text, size_t size)
 {
     for (const struct model_word *word = rule->words; word->word; word++) {
-        append(text, size, *text ? " or " : "");
-        append(text, size, word->word);
+        append_text(text, size, *text ? " or " : "");
+        append_text(text, size, word->word);
     }
 }
 
@@ -141,9 +140,9 @@ static void append_unit(const struct scene_rule *rule, char *text, size_t size)
 {
     if (!rule->unit)
         return;
-    append(text, size, " (");
-    append(text, size, rule->unit);
-    append(text, size, ")");
+    append_text(text, size, " (");
+    append_text(text, size, rule->unit);
+    append_text(text, size, ")");
 }
 
 char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size)
@@ -151,18 +150,18 @@ char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size
     *text = 0;
     switch (rule->type) {
     case SCENE_MAP:
-        append(text, size, "a map of ");
+        append_text(text, size, "a map of ");
         append_keys(text, size, rule->inside);
         break;
     case SCENE_ONE_OF:
-        append(text, size, "a map with exactly one of ");
+        append_text(text, size, "a map with exactly one of ");
         append_keys(text, size, rule->inside);
         break;
     case SCENE_NAMED:
-        append(text, size, "a non-empty map of names");
+        append_text(text, size, "a non-empty map of names");
         break;
     case SCENE_EDITS:
-        append(text, size, "a map KEY: VALUE, such as time.h: 0.002");
+        append_text(text, size, "a map KEY: VALUE, such as time.h: 0.002");
         break;
     case SCENE_LIST:
         list_expected(rule, text, size);
@@ -180,7 +179,7 @@ char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size
         append_words(rule, text, size);
         return text;
     case SCENE_TEXT:
-        append(text, size, "a text");
+        append_text(text, size, "a text");
         break;
     case SCENE_CHOICE:
         append_words(rule, text, size);
@@ -188,44 +187,4 @@ char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size
     }
     append_unit(rule, text, size);
     return text;
-}
-
-static void print_keys(FILE *file, const struct scene_rule *of, const char *path);
-
-static void print_inside(FILE *file, const struct scene_rule *rule, const char *path)
-{
-    char deeper[160];
-    if (rule->type == SCENE_MAP || rule->type == SCENE_ONE_OF) {
-        print_keys(file, rule, path);
-    } else if (rule->type == SCENE_NAMED) {
-        snprintf(deeper, sizeof deeper, "%s.NAME", path);
-        print_inside(file, rule->inside, deeper);
-    } else if (rule->type == SCENE_LIST) {
-        snprintf(deeper, sizeof deeper, "%s[]", path);
-        print_inside(file, rule->inside, deeper);
-    }
-}
-
-static void print_keys(FILE *file, const struct scene_rule *of, const char *path)
-{
-    for (const struct scene_rule *key = of->inside; key->key; key++) {
-        char here[160], expected[200];
-        snprintf(here, sizeof here, "%s%s%s", path, *path ? "." : "", key->key);
-        scene_rule_expected(key, expected, sizeof expected);
-        fprintf(file, "%s: %s; ", here, expected);
-        if (key->fallback)
-            fprintf(file, "default %s\n", key->fallback);
-        else
-            fprintf(file, "%s\n",
-                    of->type == SCENE_ONE_OF || key->choice ? "a choice"
-                    : key->required                         ? "required"
-                                                            : "optional");
-        fprintf(file, "    %s\n", key->about);
-        print_inside(file, key, here);
-    }
-}
-
-void scene_print_keys(FILE *file)
-{
-    print_keys(file, &scene_root, "");
 }

@@ -29,7 +29,7 @@ static int out_of_memory(struct cloth_error *error)
 
 /* Adds a node of the type, tag and text of another, without its children. Returns its number, or 0.
  */
-static int add(struct edit *edit, const yaml_node_t *like)
+static int add_node(struct edit *edit, const yaml_node_t *like)
 {
     yaml_document_t *document = &edit->tree->document;
     int node = 0;
@@ -66,12 +66,12 @@ static bool copy_children(struct scene_tree *tree, int to, const yaml_node_t *fr
 
 /* Adds all nodes of a document; children come after all nodes exist. Returns the new number of its
  * root, or 0. */
-static int graft(struct edit *edit, const yaml_document_t *from)
+static int graft_nodes(struct edit *edit, const yaml_document_t *from)
 {
     struct scene_tree *tree = edit->tree;
     int shift = (int)(tree->document.nodes.top - tree->document.nodes.start);
     for (const yaml_node_t *node = from->nodes.start; node < from->nodes.top; node++)
-        if (!add(edit, node))
+        if (!add_node(edit, node))
             return 0;
     int to = shift + 1;
     for (const yaml_node_t *node = from->nodes.start; node < from->nodes.top; node++, to++)
@@ -111,7 +111,7 @@ static int add_value(struct edit *edit, const char *text)
             node = edit_fails(
                 edit, "the value is in itself, by an alias * of its anchor &; " SCENE_CIRCLE);
         else if (yaml_document_get_root_node(&document))
-            node = graft(edit, &document);
+            node = graft_nodes(edit, &document);
         else
             node = edit_fails(edit, "there is no value; KEY=VALUE is expected");
         yaml_document_delete(&document);
@@ -122,21 +122,21 @@ static int add_value(struct edit *edit, const char *text)
 
 /* A copy of a map or list that the caller may change; a new one of that type if there is none yet.
  * 0 with an error if the node is of another type. */
-static int own(struct edit *edit, int node, yaml_node_type_t type)
+static int own_node(struct edit *edit, int node, yaml_node_type_t type)
 {
     struct scene_tree *tree = edit->tree;
     const yaml_node_t like = {.type = type};
     if (node == 1 && type == YAML_MAPPING_NODE)
         return node;
     if (!node || scene_tree_empty(tree, node))
-        return add(edit, &like);
+        return add_node(edit, &like);
     if (!scene_tree_is(tree, node, type)) {
         char what[160];
         snprintf(what, sizeof what, "'%.*s' is not a %s", (int)(edit->at - edit->start),
                  edit->start, type == YAML_SEQUENCE_NODE ? "list" : "map");
         return edit_fails(edit, what);
     }
-    int copy = add(edit, &like);
+    int copy = add_node(edit, &like);
     if (!copy)
         return 0;
     const yaml_node_t *from = scene_tree_node(tree, node);
@@ -144,7 +144,7 @@ static int own(struct edit *edit, int node, yaml_node_type_t type)
     return copy_children(tree, copy, from, 0) ? copy : out_of_memory(edit->error);
 }
 
-static int put(struct edit *edit, int node);
+static int put_value(struct edit *edit, int node);
 
 static int no_path(const struct edit *edit)
 {
@@ -158,7 +158,7 @@ static int add_key(struct edit *edit, const char *name, size_t length)
     key.data.scalar.value = (yaml_char_t *)name;
     key.data.scalar.length = length;
     key.data.scalar.style = YAML_PLAIN_SCALAR_STYLE;
-    return add(edit, &key);
+    return add_node(edit, &key);
 }
 
 static int put_key(struct edit *edit, int node)
@@ -168,7 +168,7 @@ static int put_key(struct edit *edit, int node)
     size_t length = strcspn(name, name == edit->whole ? "=" : ".[=");
     if (!length || (!name[length] && !edit->value))
         return no_path(edit);
-    int map = own(edit, node, YAML_MAPPING_NODE);
+    int map = own_node(edit, node, YAML_MAPPING_NODE);
     if (!map)
         return 0;
     size_t i = 0, n = scene_tree_length(tree, map);
@@ -177,8 +177,14 @@ static int put_key(struct edit *edit, int node)
         if (key && strlen(key) == length && !strncmp(key, name, length))
             break;
     }
+    const bool ends = edit->value ? !name[length] : name[length] == '=';
     edit->at = name + length;
-    int value = put(edit, i < n ? scene_tree_pair(tree, map, i).value : 0);
+    int value = put_value(edit, i < n ? scene_tree_pair(tree, map, i).value : 0);
+    if (value && ends && scene_tree_empty(tree, value)) { /* the key has its default again */
+        if (i < n)
+            scene_edit_remove(tree, map, i);
+        return map;
+    }
     int key = value ? add_key(edit, name, length) : 0;
     if (key && i < n)
         scene_tree_node(tree, map)->data.mapping.pairs.start[i] = (yaml_node_pair_t){key, value};
@@ -194,7 +200,7 @@ static int put_index(struct edit *edit, int node)
     unsigned long i = strtoul(edit->at + 1, &end, 10);
     if (edit->at[1] < '0' || edit->at[1] > '9' || *end != ']')
         return edit_fails(edit, "an index is written [0], [1], ...");
-    int list = own(edit, node, YAML_SEQUENCE_NODE);
+    int list = own_node(edit, node, YAML_SEQUENCE_NODE);
     if (!list)
         return 0;
     size_t n = scene_tree_length(tree, list);
@@ -205,7 +211,7 @@ static int put_index(struct edit *edit, int node)
         return edit_fails(edit, what);
     }
     edit->at = end + 1;
-    int value = put(edit, i < n ? scene_tree_item(tree, list, i) : 0);
+    int value = put_value(edit, i < n ? scene_tree_item(tree, list, i) : 0);
     if (value && i < n)
         scene_tree_node(tree, list)->data.sequence.items.start[i] = value;
     else if (value && !yaml_document_append_sequence_item(&tree->document, list, value))
@@ -214,7 +220,7 @@ static int put_index(struct edit *edit, int node)
 }
 
 /* The replacement of `node` (0: none) after following the rest of the path; 0 with an error. */
-static int put(struct edit *edit, int node)
+static int put_value(struct edit *edit, int node)
 {
     if (edit->value && !*edit->at)
         return edit->value;
@@ -261,7 +267,7 @@ static int edit_by_options(struct scene_tree *tree, bool phases, struct cloth_er
         if (starts_no_path(text))
             no_path(&edit);
         else
-            put(&edit, 1);
+            put_value(&edit, 1);
         if (error->code)
             return error->code;
     }
@@ -285,7 +291,7 @@ static int edit_by_phase(struct scene_tree *tree, uint32_t phase, struct cloth_e
         else if (key && starts_no_path(key))
             no_path(&edit);
         else if (key)
-            put(&edit, 1);
+            put_value(&edit, 1);
     }
     return error->code;
 }
@@ -293,8 +299,8 @@ static int edit_by_phase(struct scene_tree *tree, uint32_t phase, struct cloth_e
 int scene_edit_sets(struct scene_tree *tree, uint32_t phase, struct cloth_error *error)
 {
     int code = edit_by_options(tree, true, error);
-    if (!code)
-        code = edit_by_phase(tree, phase, error);
+    for (uint32_t i = 0; i <= phase && !code; i++)
+        code = edit_by_phase(tree, i, error);
     return code ? code : edit_by_options(tree, false, error);
 }
 

@@ -3,11 +3,12 @@
 
 #include "cloth/scene/yaml/tree.h"
 
-/* Applies the set of a phase, if the scene has that phase, then the tree's sets in their order: so
- * these hold in every phase. Sets that change the phases themselves come first. A key that is
- * missing on a path is made, an index equal to a list's length appends. Maps and lists on the path
- * are copied before they change, so that nodes shared by an alias change at this place only. Errors
- * name the option, or the key in the set of the phase. */
+/* Applies the sets of the phases up to one, as far as the scene has phases, then the tree's sets in
+ * their order. So what a phase sets holds until another phase sets it, and the tree's sets hold in
+ * every phase. Sets that change the phases themselves come first. A key that is missing on a path
+ * is made, one whose value is null is taken away, an index equal to a list's length appends. Maps
+ * and lists on the path are copied before they change, so that nodes shared by an alias change at
+ * this place only. Errors name the option, or the key in the set of the phase. */
 int scene_edit_sets(struct scene_tree *tree, uint32_t phase, struct cloth_error *error);
 
 /* Gives a map a further key, whose value is YAML text that is known to be well formed: a default.

@@ -33,8 +33,8 @@ static int read_all(FILE *file, char **bytes, size_t *size)
 }
 
 /* A scene may come through a pipe, too. */
-static int read_file(const char *path, const struct scene_words *words, char **bytes, size_t *size,
-                     struct cloth_error *error)
+static int read_bytes(const char *path, const struct scene_words *words, char **bytes, size_t *size,
+                      struct cloth_error *error)
 {
     FILE *file = words == &scene_words ? fopen(path, "rb") : cloth_file_open(path);
     if (!file)
@@ -223,8 +223,9 @@ static int check_circles(struct scene_tree *tree, struct cloth_error *error)
                 : CLOTH_OK;
 }
 
-static int parse(struct scene_tree *tree, const struct scene_words *words, yaml_parser_t *parser,
-                 const char *bytes, size_t size, struct cloth_error *error)
+static int parse_document(struct scene_tree *tree, const struct scene_words *words,
+                          yaml_parser_t *parser, const char *bytes, size_t size,
+                          struct cloth_error *error)
 {
     yaml_parser_set_input_string(parser, (const unsigned char *)bytes, size);
     if (!yaml_parser_load(parser, &tree->document))
@@ -258,7 +259,7 @@ int scene_tree_load(struct scene_tree *tree, const char *path, const struct scen
     char *bytes = NULL;
     size_t size = 0;
     yaml_parser_t parser;
-    int code = read_file(path, words, &bytes, &size, error);
+    int code = read_bytes(path, words, &bytes, &size, error);
     if (!code)
         code = check_depth(path, words, bytes, size, error);
     if (!code)
@@ -267,7 +268,7 @@ int scene_tree_load(struct scene_tree *tree, const char *path, const struct scen
         code = check_comments(path, words, bytes, size, error);
     if (!code) {
         if (yaml_parser_initialize(&parser)) {
-            code = parse(tree, words, &parser, bytes, size, error);
+            code = parse_document(tree, words, &parser, bytes, size, error);
             yaml_parser_delete(&parser);
         } else {
             code = cloth_fail(error, CLOTH_E_MEMORY, "%s: out of memory", path);

@@ -6,32 +6,32 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const char *digits(const char *at)
+static const char *skip_digits(const char *at)
 {
     while (*at >= '0' && *at <= '9')
         at++;
     return at;
 }
 
-static const char *sign(const char *at)
+static const char *skip_sign(const char *at)
 {
     return *at == '+' || *at == '-' ? at + 1 : at;
 }
 
 static bool is_number(const char *text)
 {
-    const char *start = sign(text), *at = digits(start);
+    const char *start = skip_sign(text), *at = skip_digits(start);
     bool any = at > start;
     if (*at == '.') {
         const char *fraction = at + 1;
-        at = digits(fraction);
+        at = skip_digits(fraction);
         any = any || at > fraction;
     }
     if (!any)
         return false;
     if (*at == 'e' || *at == 'E') {
-        const char *exponent = sign(at + 1);
-        at = digits(exponent);
+        const char *exponent = skip_sign(at + 1);
+        at = skip_digits(exponent);
         if (at == exponent)
             return false;
     }
@@ -48,7 +48,7 @@ bool scene_scalar_number(const char *text, double *value)
 
 bool scene_scalar_integer(const char *text, uint32_t *value)
 {
-    const char *start = sign(text), *end = digits(start);
+    const char *start = skip_sign(text), *end = skip_digits(start);
     double number;
     if (end == start || *end || !scene_scalar_number(text, &number))
         return false;

@@ -26,6 +26,11 @@ const char *scene_tree_scalar(const struct scene_tree *tree, int node)
     return at->type == YAML_SCALAR_NODE ? (const char *)at->data.scalar.value : NULL;
 }
 
+bool scene_tree_is_given(const struct scene_tree *tree, int node)
+{
+    return node && scene_tree_node(tree, node)->start_mark.index != SCENE_BY_DEFAULT;
+}
+
 bool scene_tree_empty(const struct scene_tree *tree, int node)
 {
     const yaml_node_t *at = scene_tree_node(tree, node);
@@ -148,4 +153,24 @@ void scene_tree_vector(const struct scene_tree *tree, int list, size_t n, double
 {
     for (size_t i = 0; i < n; i++)
         scene_scalar_number(scene_tree_scalar(tree, scene_tree_item(tree, list, i)), &value[i]);
+}
+
+const char *scene_tree_found(const struct scene_tree *tree, int node, const char *quotes,
+                             char *text, size_t size)
+{
+    bool list = scene_tree_is(tree, node, YAML_SEQUENCE_NODE);
+    size_t n = scene_tree_length(tree, node);
+    if (list || scene_tree_is(tree, node, YAML_MAPPING_NODE)) {
+        snprintf(text, size, n ? "a %s of %zu" : "an empty %s", list ? "list" : "map", n);
+        return text;
+    }
+    if (scene_tree_empty(tree, node))
+        return "empty";
+    bool plain = scene_tree_node(tree, node)->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
+    snprintf(text, size, "%s%.60s%s", plain ? "" : quotes, scene_tree_scalar(tree, node),
+             plain ? "" : quotes + strlen(quotes) - 1);
+    for (char *c = text; *c; c++)
+        if ((unsigned char)*c < 32 || *c == 127)
+            *c = ' ';
+    return text;
 }

@@ -16,6 +16,7 @@ struct scene_tree {
     const char *path;             /* of the file, as the user wrote it */
     size_t n_sets;                /* of the caller */
     const struct scene_set *sets; /* of the caller */
+    struct scene_made *made;      /* what the phases of a scene share (cloth/scene/build/made.h) */
 };
 
 /* The origin of a node that is not from the file. It is kept in its mark: index is one of these,
@@ -54,12 +55,19 @@ yaml_node_t *scene_tree_node(const struct scene_tree *tree, int node);
 bool scene_tree_is(const struct scene_tree *tree, int node, yaml_node_type_t type); /* 0 is none */
 const char *scene_tree_scalar(const struct scene_tree *tree, int node); /* NULL: not a scalar */
 bool scene_tree_empty(const struct scene_tree *tree, int node);    /* null: '', '~' or 'null' */
+bool scene_tree_is_given(const struct scene_tree *tree, int node); /* there, and no default */
 size_t scene_tree_length(const struct scene_tree *tree, int node); /* of a list or map; of 0: 0 */
 int scene_tree_item(const struct scene_tree *tree, int list, size_t i);
 yaml_node_pair_t scene_tree_pair(const struct scene_tree *tree, int map, size_t i);
 int scene_tree_get(const struct scene_tree *tree, int map, const char *key); /* 0: no such key */
 /* The map of a phase, counted from 0; 0: there is none, or it is no map. */
 int scene_tree_phase(const struct scene_tree *tree, uint32_t phase);
+
+/* What a node is, short and on one line: 3, a list of 2, or a text in quotes. quotes: what stands
+ * before a text, the last character also behind it. Returns text, or a constant. */
+#define SCENE_QUOTES "the text '"
+const char *scene_tree_found(const struct scene_tree *tree, int node, const char *quotes,
+                             char *text, size_t size);
 
 /* The place of a node, or of a mark, as scene_tree_fail names it; the caller frees it. NULL: out of
  * memory. */

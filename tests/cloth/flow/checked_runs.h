@@ -76,16 +76,9 @@ static inline int take_system(void *context, const struct solve_system *system,
     return CLOTH_OK;
 }
 
-static inline void constrain_some(void *context, const struct flow_rows *rows)
-{
-    (void)context;
-    for (size_t i = 0; i < rows->n; i += 3)
-        rows->filter[i] = (phys_vec){0};
-}
-
 /* What a run is besides its scene. */
 struct how {
-    bool system, own_filter;
+    bool system;
     bool saves;                   /* it makes checkpoints, */
     struct flow_checkpoint saved; /* of which this is the last one, on rank 0; to be freed */
     struct flow_checkpoint from;  /* it goes on from here, on rank 0; bytes NULL: it starts anew */
@@ -124,7 +117,6 @@ static inline void run_checked(struct how *how, struct flow *flow, struct cloth_
     options.bind = 0;
     options.check = 1;
     ck_assert_msg(!duite_start(&rt, &options), "%s", duite_message());
-    flow_filter_by(flow, (struct flow_filter){.rows = constrain_some});
     flow_run(flow, rt, &output, &progress, &how->report, error);
     ck_assert_msg(!duite_stop(&rt), "%s", duite_message());
 }
@@ -172,7 +164,6 @@ static inline bool run_how(struct how *how, const char *const sets[MAX_SETS])
         flow_join(&flow, &error);
     } else {
         model = scene_read_right(base, n, some);
-        model.own_filter = how->own_filter;
         flow_prepare(&flow, &model, ranks, &error);
         if (!error.code && how->from.bytes)
             flow_resume(flow, how->from, &(struct flow_resumed){0}, &error);

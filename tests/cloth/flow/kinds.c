@@ -63,11 +63,6 @@ static void verlet(struct session *s)
     run_of(s, MODEL_VERLET);
 }
 
-static void midpoint(struct session *s)
-{
-    run_of(s, MODEL_MIDPOINT);
-}
-
 static void runge(struct session *s)
 {
     run_of(s, MODEL_RK4);
@@ -179,7 +174,6 @@ void (*const kinds[KINDS])(struct session *) = {plain,
                                                 bdf2,
                                                 euler,
                                                 verlet,
-                                                midpoint,
                                                 runge,
                                                 tied,
                                                 tied_plainly,

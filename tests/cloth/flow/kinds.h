@@ -5,7 +5,7 @@
 
 /* Kinds of runs, for what must hold in all of them. Each fills the setup of a session that is then
  * to be started; session_end frees it. */
-enum { KINDS = 20 };
+enum { KINDS = 19 };
 extern void (*const kinds[KINDS])(struct session *);
 
 #endif

@@ -233,10 +233,8 @@ void record_run(struct record *r, const struct model *model)
     record_mpi(&rank, &ranks);
     r->code = rank ? flow_join(&flow, &r->error) : flow_prepare(&flow, model, ranks, &r->error);
     agree(r);
-    if (!r->code) {
-        flow_filter_by(flow, r->filter);
+    if (!r->code)
         run_prepared(r, flow);
-    }
     flow_free(flow);
 }
 

@@ -51,12 +51,11 @@ struct record {
     double *time;           /* frames */
     _Atomic uint64_t shown; /* steps that the progress was told of; tasks read it */
     /* Set before the run: */
-    uint64_t stop_after;       /* asks for a stop once so many steps were shown; 0: never */
-    uint64_t break_frame;      /* writing this frame fails; 0: none */
-    unsigned threads;          /* 0: 1 */
-    const char *scheduler;     /* NULL: the default */
-    const char *balance;       /* NULL: the default */
-    struct flow_filter filter; /* rows NULL: none */
+    uint64_t stop_after;   /* asks for a stop once so many steps were shown; 0: never */
+    uint64_t break_frame;  /* writing this frame fails; 0: none */
+    unsigned threads;      /* 0: 1 */
+    const char *scheduler; /* NULL: the default */
+    const char *balance;   /* NULL: the default */
 };
 
 /* Prepares, runs and frees; every rank has the whole record then. Starts MPI if it is not; it ends

@@ -1,7 +1,7 @@
 if HAVE_CHECK
 FLOW_TEST_MODELS = tests/cloth/flow/models.c tests/cloth/flow/models.h
 LEAK_TESTS += tests/cloth/flow/test_failures tests/cloth/flow/test_run tests/cloth/flow/test_memory
-TSAN_TESTS += tests/cloth/flow/test_grid tests/cloth/flow/test_filter tests/cloth/flow/test_cut_run tests/cloth/flow/test_skins \
+TSAN_TESTS += tests/cloth/flow/test_grid tests/cloth/flow/test_cut_run tests/cloth/flow/test_skins \
     tests/cloth/flow/test_sliders tests/cloth/flow/test_contact_index tests/cloth/flow/test_warnings tests/cloth/flow/test_ties \
     tests/cloth/flow/test_ties_runs tests/cloth/flow/test_levels
 ASAN_TESTS += tests/cloth/flow/test_motion tests/cloth/flow/test_halving tests/cloth/flow/test_limits tests/cloth/flow/test_strain_limit \
@@ -20,7 +20,6 @@ tests_cloth_flow_test_run_SOURCES = tests/cloth/flow/test_run.c $(FLOW_TEST_MODE
 tests_cloth_flow_test_solvers_SOURCES = tests/cloth/flow/test_solvers.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_halving_SOURCES = tests/cloth/flow/test_halving.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_obstacles_SOURCES = tests/cloth/contact/bodies.h tests/cloth/flow/test_obstacles.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_filter_SOURCES = tests/cloth/flow/test_filter.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_skins_SOURCES = tests/cloth/flow/test_skins.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_sliders_SOURCES = tests/cloth/flow/test_sliders.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_singular_SOURCES = tests/cloth/flow/test_singular.c $(FLOW_TEST_MODELS)

@@ -132,7 +132,7 @@ START_TEST(frequencies)
     const double rope = zero[n] / 2 * sqrt(G / (LINKS * LENGTH)), now = frequency_seen(&r);
     printf(
         "# hanging chain, mode %zu, %s, h = %g s: %.6f rad/s, %.6f of its links, %.6f of a rope\n",
-        n + 1, model_integrator_name(rows[_i].integrator), rows[_i].h, now, omega[n], rope);
+        n + 1, model_schemes[rows[_i].integrator].name, rows[_i].h, now, omega[n], rope);
     ck_assert_double_eq_tol(now, omega[n], rows[_i].allowed * omega[n]);
     ck_assert_double_eq_tol(now, rope, 0.06 * rope);
     record_free(&r);

@@ -1,6 +1,7 @@
 /* Newton steps and BDF2 on a chain that swings far: the equations of the step are solved, by one
  * step nearly, by several to the tolerance; energy is what the scheme promises; a floor and shorter
- * steps start BDF2 again. */
+ * steps start BDF2 again. Lines "# | " are rows of docs/accuracy.md, by
+ * tests/whole/test_integrators.sh. */
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 
@@ -155,7 +156,8 @@ START_TEST(order_of_a_swing)
     for (int i = 0; i < 2; i++)
         change[i] = hypot(x[i + 1][0] - x[i][0], x[i + 1][1] - x[i][1]);
     const double measured = log2(change[0] / change[1]);
-    printf("# chain, %s: order %.3f\n", rows[_i].name, measured);
+    printf("# | a chain of five links falls, %s | order %.0f | %.2f |\n", rows[_i].name,
+           rows[_i].order, measured);
     ck_assert_double_eq_tol(measured, rows[_i].order, 0.15);
 }
 END_TEST
@@ -284,8 +286,8 @@ START_TEST(energy_is_not_gained)
     setup.model.energy_growth = 0.005;
     run(&r, &setup);
     const double gained = r.report.energy_gained / fall();
-    printf("# chain, %s, h = %g s: gains %.2e of its fall in 1 s, loses %.4f\n", rows[_i].name,
-           rows[_i].h, gained, (0 - r.report.energy_lowest) / fall());
+    printf("# | a chain of five links falls from level, %s, h = %g s | %.0e | %.2g |\n",
+           rows[_i].name, rows[_i].h, gained, (0 - r.report.energy_lowest) / fall());
     ck_assert_double_le(gained, rows[_i].max);
     ck_assert_uint_ge(r.report.steps_retaken, rows[_i].retaken);
     ck_assert_uint_le(r.report.steps_retaken, rows[_i].retaken ? 8 : 0);
@@ -321,7 +323,7 @@ START_TEST(energy_wavers_in_a_band)
     static const enum model_integrator all[] = {MODEL_VERLET, MODEL_SYMPLECTIC_EULER};
     const double wide = band(all[_i], 0.01), narrow = band(all[_i], 0.005);
     printf("# %s: energy wavers by %.3e J at h = 0.01 s, %.3e at half of it: order %.3f\n",
-           model_integrator_name(all[_i]), wide, narrow, log2(wide / narrow));
+           model_schemes[all[_i]].name, wide, narrow, log2(wide / narrow));
     ck_assert_double_eq_tol(log2(wide / narrow), 2, 0.1);
 }
 END_TEST

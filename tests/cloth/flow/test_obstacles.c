@@ -101,16 +101,17 @@ static const struct way {
     enum model_integrator integrator;
     double h;
     double least, max; /* how much of its sinking in a step the lowest spring bears */
-} WAYS[] = {{MODEL_IMPLICIT_EULER, 0.01, 1, 1},    {MODEL_BDF2, 0.01, 1, 1},
-            {MODEL_SYMPLECTIC_EULER, 0.001, 0, 0}, {MODEL_VERLET, 0.001, 0, 1},
-            {MODEL_MIDPOINT, 0.00025, 0, 1},       {MODEL_RK4, 0.001, 0, 1}};
+} WAYS[] = {{MODEL_IMPLICIT_EULER, 0.01, 1, 1},
+            {MODEL_BDF2, 0.01, 1, 1},
+            {MODEL_SYMPLECTIC_EULER, 0.001, 0, 0},
+            {MODEL_VERLET, 0.001, 0, 1},
+            {MODEL_RK4, 0.001, 0, 1}};
 enum { N_WAYS = sizeof WAYS / sizeof *WAYS };
 
 /* When the row has come to rest on the shape, it has its speed: momentum n m v. Spring i carries
  * the weight of the masses above it, and the shape carries n m g. Where the solve does not know of
  * contact, n m g lets the lowest mass sink by s = n g h^2 in each step before it is put back, and
- * the spring above it carries (k + c / h) s more. By the midpoint method the next one carries k c
- * s h / 8 m more: less than the slack at the h here. */
+ * the spring above it carries (k + c / h) s more. */
 START_TEST(carries_a_row)
 {
     const struct way *way = WAYS + _i / N_SHAPES;

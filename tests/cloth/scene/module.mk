@@ -4,6 +4,7 @@ ASAN_TESTS += tests/cloth/scene/test_idle tests/cloth/scene/test_rules tests/clo
     tests/cloth/scene/test_force_errors tests/cloth/scene/test_obstacle_errors tests/cloth/scene/test_pattern_mesh \
     tests/cloth/scene/test_group_errors tests/cloth/scene/test_edge_errors tests/cloth/scene/test_seams
 tests_cloth_scene_test_idle_SOURCES = tests/cloth/scene/test_idle.c tests/cloth/scene/scene_file.c tests/cloth/scene/scene_file.h
+tests_cloth_scene_test_rules_SOURCES = tests/cloth/scene/test_rules.c tests/cloth/scene/scene_file.c tests/cloth/scene/scene_file.h
 tests_cloth_scene_test_values_SOURCES = tests/cloth/scene/test_values.c tests/cloth/scene/scene_file.c tests/cloth/scene/scene_file.h
 tests_cloth_scene_test_contact_values_SOURCES = tests/cloth/scene/test_contact_values.c tests/cloth/scene/scene_file.c tests/cloth/scene/scene_file.h
 tests_cloth_scene_test_sets_SOURCES = tests/cloth/scene/test_sets.c tests/cloth/scene/scene_file.c tests/cloth/scene/scene_file.h

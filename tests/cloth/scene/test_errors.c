@@ -94,7 +94,11 @@ START_TEST(wrong_kinds)
             .error = ":4:11: cloths[0].name has the tag !mine; a value without a tag is expected"},
            {"gravity: [0, -9.81, 0]", "integrator: rk5",
             .error = ":2:13: integrator is rk5; implicit_euler or explicit_euler or "
-                     "symplectic_euler or verlet or midpoint or rk4 or bdf2 is expected"});
+                     "symplectic_euler or verlet or rk4 or bdf2 is expected"},
+           {"gravity: [0, -9.81, 0]", "integrator: midpoint",
+            .error = ":2:13: integrator is midpoint; implicit_euler or explicit_euler or "
+                     "symplectic_euler or verlet or rk4 or bdf2 is expected: use verlet, which has "
+                     "its order at half the work"});
 }
 END_TEST
 
@@ -190,7 +194,8 @@ START_TEST(wrong_names)
         {"[{plane: {", "[{sphere: {name: a, centre: [0, 9, 0], radius: 1}}, {plane: {name: a, ",
          .error = ":11:79: a second obstacle is named 'a'; names must differ"},
         {"pins: [{vertices: [0, 3]}]", "pins: [{vertices: [0, 3], follow: flor}]",
-         .error = ":7:39: there is no obstacle 'flor': none has a name"});
+         .error = ":7:39: there is no obstacle 'flor'; there are 1, counted from 0, and none has a "
+                  "name"});
 }
 END_TEST
 

@@ -334,7 +334,7 @@ START_TEST(maps)
                          view->height ? MODEL_CONTACT_PROJECT : MODEL_CONTACT_CERTIFIED);
         if (cases[i].warnings)
             ck_assert_ptr_nonnull(
-                strstr(model.warnings[0], "resolution means nothing: it is of meet: image"));
+                strstr(model.warnings[1], "resolution means nothing: it needs meet = image"));
         model_free(&model);
         free(text);
     }

@@ -1,5 +1,9 @@
-/* Every rule fits the field that it fills: fields are found by offset, so no compiler looks. */
-#include "cloth/scene/schema/rules.h"
+/* Every rule fits the field that it fills: fields are found by offset, so no compiler looks. The
+ * examples of the page of all keys are what the rules allow. */
+#include "cloth/scene/schema/check.h"
+#include "cloth/scene/schema/faults.h"
+#include "cloth/scene/schema/needs.h"
+#include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
 
 #include <stdio.h>
@@ -141,10 +145,142 @@ START_TEST(words_mean_one_thing)
     check_all_words(&scene_root);
     for (int i = 0; i < MODEL_INTEGRATORS; i++) {
         bool known;
-        const char *name = model_integrator_name((enum model_integrator)i);
+        const char *name = model_schemes[i].name;
         ck_assert_int_eq(scene_word_value(model_integrators, name, &known), i);
         ck_assert(known);
     }
+}
+END_TEST
+
+/* The map of a rule, and the maps around it. */
+struct scope {
+    const struct scope *up;
+    const struct scene_rule *map;
+};
+
+static unsigned n_examples;
+
+static const struct scene_rule *rule_in(const struct scope *scope, const char *name)
+{
+    const struct scene_rule *rule = NULL;
+    for (; scope && !rule; scope = scope->up)
+        rule = scene_rule_of(scope->map->inside, name);
+    return rule;
+}
+
+/* Whole scenes run in tests/whole/test_options.sh. */
+static void check_example(const struct scope *scope, const char *example)
+{
+    struct cloth_error error = {0};
+    struct scene_tree tree;
+    if (!example || !strncmp(example, "schema:", 7))
+        return;
+    scene_write_file("scene.yaml", example, strlen(example));
+    int code = scene_tree_load(&tree, scene_path(), &scene_words, &error);
+    for (size_t i = 0; !code && i < scene_tree_length(&tree, 1); i++) {
+        const char *name = scene_tree_scalar(&tree, scene_tree_pair(&tree, 1, i).key);
+        const struct scene_rule *rule = rule_in(scope, name);
+        ck_assert_msg(rule, "%s is no key", name);
+        code = scene_fill(NULL, rule, &tree, scene_tree_pair(&tree, 1, i).value, &error);
+    }
+    ck_assert_msg(!code, "%s in the example\n%s", error.text, example);
+    scene_tree_free(&tree);
+    n_examples++;
+}
+
+static void check_examples(const struct scene_rule *map, const struct scope *up)
+{
+    const struct scope scope = {up, map};
+    for (const struct scene_rule *key = map->inside; key->key; key++) {
+        const struct scene_rule *inside = key;
+        if (key->section)
+            check_example(&scope, key->section->example);
+        while (inside->type == SCENE_LIST || inside->type == SCENE_NAMED)
+            inside = inside->inside;
+        if (inside->type == SCENE_MAP || inside->type == SCENE_ONE_OF)
+            check_examples(inside, &scope);
+    }
+}
+
+START_TEST(examples_are_allowed)
+{
+    check_examples(&scene_root, NULL);
+    ck_assert_uint_ge(n_examples, 25);
+}
+END_TEST
+
+static unsigned n_terms;
+
+/* Cuts a text where another one begins in it. Returns what stands behind that; NULL: nothing does.
+ */
+static char *cut(char *text, const char *at)
+{
+    char *found = strstr(text, at);
+    if (!found)
+        return NULL;
+    *found = 0;
+    return found + strlen(at);
+}
+
+/* A term of needs.h that is no fact: its keys are there, and its words are theirs. */
+static void check_term(const struct scope *scope, char *term)
+{
+    char *rest = !strncmp(term, "no ", 3) ? term + 3 : term, *value = strpbrk(rest, "=>");
+    char *next, *more, *key;
+    if (value)
+        value[-1] = 0;
+    for (; rest; rest = next) {
+        const struct scene_rule *rule = NULL;
+        next = cut(rest, " or ");
+        for (bool first = true; (key = strsep(&rest, ".")); first = false) {
+            rule = first ? rule_in(scope, key) : scene_rule_of(rule->inside, key);
+            ck_assert_msg(rule, "%s is no key", key);
+        }
+        for (char *word = value ? value + 2 : NULL; word && rule->words; word = more) {
+            bool known;
+            more = cut(word, " or ");
+            scene_word_value(rule->words, word, &known);
+            ck_assert_msg(known, "%s is no word of %s", word, rule->key);
+        }
+    }
+    n_terms++;
+}
+
+static void check_needs(const struct scope *scope, const struct scene_rule *rule)
+{
+    static const char *const facts[] = {NEEDS_TRIANGLES, NEEDS_WIND,          NEEDS_NO_SINE,
+                                        NEEDS_SPRINGS,   NEEDS_ONLY_SPRINGS,  NEEDS_MEETINGS,
+                                        NEEDS_GUARDED,   NEEDS_OWN_TRIANGLES, NEEDS_OWN_LINKS,
+                                        NEEDS_OWN_EDGES, NEEDS_DIAGONALS};
+    char text[200], *rest = text, *value = rule->needs ? strstr(rule->needs, ": ") : NULL;
+    snprintf(text, sizeof text, "%s", !rule->needs ? "" : value ? value + 2 : rule->needs);
+    while (rest && *rest) {
+        char *term = rest;
+        size_t i = 0;
+        while (i < sizeof facts / sizeof *facts && strncmp(term, facts[i], strlen(facts[i])))
+            i++;
+        const bool is_fact = i < sizeof facts / sizeof *facts;
+        rest = cut(is_fact ? term + strlen(facts[i]) : term, " and ");
+        if (!is_fact)
+            check_term(scope, term);
+    }
+}
+
+static void check_all_needs(const struct scene_rule *rule, const struct scope *up)
+{
+    const bool map = rule->type == SCENE_MAP || rule->type == SCENE_ONE_OF;
+    const struct scope own = {up, rule}, *scope = map ? &own : up;
+    check_needs(scope, rule);
+    for (const struct scene_rule *key = rule->inside; map && key->key; key++)
+        check_all_needs(key, scope);
+    if (!map && rule->inside)
+        check_all_needs(rule->inside, scope);
+}
+
+START_TEST(needs_are_keys_or_facts)
+{
+    check_all_needs(&scene_root, NULL);
+    ck_assert_uint_ge(n_terms, 25);
 }
 END_TEST
 
@@ -154,6 +290,8 @@ int main(void)
     TCase *cases = tcase_create("rules");
     tcase_add_test(cases, rules_fit_their_fields);
     tcase_add_test(cases, words_mean_one_thing);
+    tcase_add_test(cases, examples_are_allowed);
+    tcase_add_test(cases, needs_are_keys_or_facts);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

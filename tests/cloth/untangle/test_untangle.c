@@ -16,7 +16,7 @@ enum { SIDE = 24, POINTS = SIDE * SIDE, SHEETS = 2, TRIANGLES = 2 * (SIDE - 1) *
 static const double EDGE = 8e-3, THICKNESS = 2e-3; /* m */
 
 static phys_vec start[SHEETS * POINTS], x[SHEETS * POINTS];
-static uint32_t corner[SHEETS * TRIANGLES][3], cloth[SHEETS * TRIANGLES], layer[SHEETS];
+static uint32_t corner[SHEETS * TRIANGLES][3], layer[SHEETS];
 static unsigned char held[SHEETS * POINTS];
 static uint32_t sheets;
 static const struct contact_apart *ignored; /* NULL: all meet */
@@ -34,10 +34,8 @@ static void make_sheets(uint32_t n)
             for (uint32_t j = 0; j < SIDE - 1; j++) {
                 const uint32_t v = s * POINTS + i * SIDE + j;
                 const uint32_t both[2][3] = {{v, v + SIDE + 1, v + 1}, {v, v + SIDE, v + SIDE + 1}};
-                for (int k = 0; k < 2; k++, t++) {
-                    memcpy(corner[t], both[k], sizeof corner[t]);
-                    cloth[t] = s;
-                }
+                for (int k = 0; k < 2; k++)
+                    memcpy(corner[t++], both[k], sizeof *corner);
             }
 }
 
@@ -141,15 +139,12 @@ static double stretch(void)
 
 static struct untangle_result run(void)
 {
-    const struct untangle_cloths cloths = {.n_points = sheets * POINTS,
-                                           .n_triangles = count_triangles(),
-                                           .n_cloths = sheets,
-                                           .corner = (const uint32_t(*)[3])corner,
-                                           .cloth = cloth,
-                                           .layer = layer,
-                                           .held = held,
-                                           .apart = ignored,
-                                           .thickness = THICKNESS};
+    struct contact_surface surface[SHEETS + 1];
+    for (uint32_t s = 0; s <= sheets; s++)
+        surface[s] = (struct contact_surface){s * POINTS, s * TRIANGLES};
+    const struct contact_soup soup = {.n_cloths = sheets, .surface = surface, .welded = corner};
+    const struct untangle_cloths cloths = {
+        .soup = &soup, .layer = layer, .held = held, .apart = ignored, .thickness = THICKNESS};
     struct untangle_result result;
     struct cloth_error error = {0};
     memcpy(x, start, sizeof x);

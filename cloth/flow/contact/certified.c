@@ -6,7 +6,7 @@
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/mode.h"
-#include "cloth/flow/contact/skins.h"
+#include "cloth/flow/contact/skin.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/run/step.h"
 #include "cloth/flow/state/room.h"

@@ -55,7 +55,7 @@ static void find_corners(const struct meeting *m, const struct contact_candidate
 }
 
 /* Only listed pairs need it. */
-static void find_held(const struct meeting *m, struct corners *to)
+static void find_held_corners(const struct meeting *m, struct corners *to)
 {
     to->held = 0;
     for (unsigned k = 0; k < 4; k++)
@@ -100,9 +100,9 @@ static void describe_corner(const struct corners *corners, const struct contact_
 }
 
 /* Fills a contact, in zeroed memory. places: of the corners; they give the row's origin. */
-static void describe(const struct meeting *m, const struct contact_candidate *candidate,
-                     const struct corners *corners, const phys_vec places[4],
-                     const struct contact_nearest *nearest, struct flow_contact *to)
+static void describe_pair(const struct meeting *m, const struct contact_candidate *candidate,
+                          const struct corners *corners, const phys_vec places[4],
+                          const struct contact_nearest *nearest, struct flow_contact *to)
 {
     const int second = corners->side[0]; /* 1: of a triangle of the first side and a vertex */
     const bool turned = is_turned(m, corners);
@@ -127,7 +127,7 @@ static void describe(const struct meeting *m, const struct contact_candidate *ca
     }
 }
 
-static void append(struct meeting *m, const struct flow_near *near)
+static void append_pair(struct meeting *m, const struct flow_near *near)
 {
     const bool first = near->contact.side[0] == m->args->side[0];
     if (m->n < m->room)
@@ -214,16 +214,16 @@ static bool presses(const struct meeting *m, const struct contact_candidate *can
 }
 
 /* Appends a pair that is near at the end of the step. */
-static void list(struct meeting *m, const struct contact_candidate *candidate,
-                 struct corners *corners, const struct contact_nearest *nearest)
+static void list_pair(struct meeting *m, const struct contact_candidate *candidate,
+                      struct corners *corners, const struct contact_nearest *nearest)
 {
     struct flow_near near;
     memset(&near, 0, sizeof near); /* padding, too: lists are compared byte by byte */
-    find_held(m, corners);
-    describe(m, candidate, corners, corners->y, nearest, &near.contact);
+    find_held_corners(m, corners);
+    describe_pair(m, candidate, corners, corners->y, nearest, &near.contact);
     for (uint32_t k = 0; k < 4; k++)
         near.part[k] = 1;
-    append(m, &near);
+    append_pair(m, &near);
 }
 
 /* The gap at the step's end, along the normal of its begin. */
@@ -237,16 +237,16 @@ static double gap_ahead(const struct corners *corners, const struct contact_near
 
 /* Appends a pair that the step drives into each other. The parts stay 1 if no cut helps: the pair
  * fails again in the next look, and the step is given up after the last one. */
-static void fail(struct meeting *m, const struct contact_candidate *candidate,
-                 struct corners *corners)
+static void fail_pair(struct meeting *m, const struct contact_candidate *candidate,
+                      struct corners *corners)
 {
     double part[4] = {1, 1, 1, 1};
     struct contact_nearest nearest;
     struct flow_near near;
     memset(&near, 0, sizeof near);
-    find_held(m, corners);
+    find_held_corners(m, corners);
     contact_nearest_of(corners->pair, corners->x, &nearest);
-    describe(m, candidate, corners, corners->x, &nearest, &near.contact);
+    describe_pair(m, candidate, corners, corners->x, &nearest, &near.contact);
     near.fails = true;
     near.presses = true;
     near.contact.row.firm = contact_row_firm_for(&near.contact.row, gap_ahead(corners, &nearest));
@@ -254,7 +254,7 @@ static void fail(struct meeting *m, const struct contact_candidate *candidate,
                       corners->held, part);
     for (uint32_t k = 0; k < 4; k++)
         near.part[k] = part[(k + is_turned(m, corners)) % 4];
-    append(m, &near);
+    append_pair(m, &near);
 }
 
 static enum contact_passing passing_of(const struct meeting *m, const struct corners *corners)
@@ -265,13 +265,13 @@ static enum contact_passing passing_of(const struct meeting *m, const struct cor
                         flow_contact_reach(m->model));
 }
 
-static void look_at(struct meeting *m, const struct contact_candidate *candidate,
-                    struct corners *corners)
+static void look_at_pair(struct meeting *m, const struct contact_candidate *candidate,
+                         struct corners *corners)
 {
     struct contact_nearest nearest;
     const enum contact_passing passing = passing_of(m, corners);
     if (passing == CONTACT_MAY_TOUCH) {
-        fail(m, candidate, corners);
+        fail_pair(m, candidate, corners);
         return;
     }
     m->passes++;
@@ -279,7 +279,7 @@ static void look_at(struct meeting *m, const struct contact_candidate *candidate
         return;
     contact_nearest_of(corners->pair, corners->y, &nearest);
     if (presses(m, candidate, corners, &nearest))
-        list(m, candidate, corners, &nearest);
+        list_pair(m, candidate, corners, &nearest);
 }
 
 /* True if the two sides do not meet, or the block's feature is attached to the body. */
@@ -298,7 +298,7 @@ static bool is_left_out(const struct meeting *m, const struct contact_candidate 
 
 /* Corners of several candidates are brought before the first is looked at: a processor that has
  * just written halves of a vector waits where it reads the whole. */
-static void visit(void *to, uint32_t n, const struct contact_candidate *candidate)
+static void visit_pairs(void *to, uint32_t n, const struct contact_candidate *candidate)
 {
     enum { AT_ONCE = 16 };
     struct meeting *m = to;
@@ -309,7 +309,7 @@ static void visit(void *to, uint32_t n, const struct contact_candidate *candidat
             find_corners(m, candidate + i + k, corners + k);
         for (uint32_t k = 0; k < some; k++)
             if (!m->leaves_out || !is_left_out(m, candidate + i + k))
-                look_at(m, candidate + i + k, corners + k);
+                look_at_pair(m, candidate + i + k, corners + k);
     }
 }
 
@@ -349,7 +349,7 @@ static size_t query_meeting(struct meeting *m, const struct contact_side *other,
                             struct flow_list *list)
 {
     const uint32_t *side = m->args->side;
-    contact_query(m->side, other, flow_contact_reach(m->model), visit, m);
+    contact_query(m->side, other, flow_contact_reach(m->model), visit_pairs, m);
     m->counts[FLOW_COUNT_ALL] = (double)m->n;
     m->counts[FLOW_COUNT_PASSES] = (double)m->passes;
     *list = (struct flow_list){.n = m->n < m->room ? m->n : m->room, .side = {side[0], side[1]}};

@@ -8,7 +8,7 @@
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/mode.h"
-#include "cloth/flow/contact/skins.h"
+#include "cloth/flow/contact/skin.h"
 #include "cloth/flow/run/step.h"
 
 #include "cloth/contact/solid.h"
@@ -48,7 +48,7 @@ static int roots_body(const duite_call *call, const struct roots_fields *on)
     return 0;
 }
 
-static int get_roots(struct flow_state *state)
+static int get_root_boxes(struct flow_state *state)
 {
     struct flow_block_args args;
     int code = flow_bodies_follow(state);
@@ -212,8 +212,8 @@ static bool has_corners(const struct flow_state *state, uint32_t block, uint32_t
     return has;
 }
 
-static bool concerns(const struct flow_state *state, const struct flow_meeting *meeting,
-                     uint32_t block)
+static bool concerns_block(const struct flow_state *state, const struct flow_meeting *meeting,
+                           uint32_t block)
 {
     return has_corners(state, block, meeting->side[0]) ||
            has_corners(state, block, meeting->side[1]);
@@ -224,7 +224,7 @@ uint32_t flow_contact_lists(const struct flow_state *state, uint32_t block, duit
     const struct flow_meetings *meetings = &state->contact.meetings;
     uint32_t n = 0;
     for (uint32_t i = 0; i < meetings->n; i++)
-        if (concerns(state, meetings->all + i, block))
+        if (concerns_block(state, meetings->all + i, block))
             to[n++] = meetings->all[i].near;
     return n;
 }
@@ -235,7 +235,7 @@ void flow_contact_keepers(const struct flow_state *state, uint32_t block, unsign
     const uint32_t n_blocks = state->flow->tables.n_blocks;
     memset(keeps, 0, n_blocks);
     for (uint32_t i = 0; i < meetings->n; i++)
-        for (int k = 0; k < 2 && concerns(state, meetings->all + i, block); k++)
+        for (int k = 0; k < 2 && concerns_block(state, meetings->all + i, block); k++)
             if (meetings->all[i].side[k] < n_blocks)
                 keeps[meetings->all[i].side[k]] = 1;
 }
@@ -266,7 +266,7 @@ static int fork_meeting(struct flow_state *state, uint32_t number)
 }
 
 /* Forks all meetings and gets their counts. */
-static int meet(struct flow_state *state)
+static int fork_meetings(struct flow_state *state)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
     int code = duite_set(state->rt, meetings->counts, NULL);
@@ -332,12 +332,12 @@ int flow_contact_look(struct flow_state *state, struct flow_seen *seen)
     int code = flow_contact_mode(state->flow->model)->sweeps ? flow_skins_refit(state)
                                                              : flow_skins_place(state);
     if (!code)
-        code = get_roots(state);
+        code = get_root_boxes(state);
     place_shapes(state);
     if (!code && (!state->contact.meetings.counts.generation || !all_meet(state)))
         code = make_meetings(state);
     do
-        code = code ? code : meet(state);
+        code = code ? code : fork_meetings(state);
     while (!code && make_longer(state));
     sum_up(state, seen);
     return code;

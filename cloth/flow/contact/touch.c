@@ -59,7 +59,7 @@ static int compare_first(const struct flow_contact *a, const struct flow_contact
     return kind ? kind : compare_u32(a->feature[0], b->feature[0]);
 }
 
-static int compare(const void *left, const void *right)
+static int compare_contacts(const void *left, const void *right)
 {
     const struct flow_contact *a = left, *b = right;
     const int first = compare_first(a, b);
@@ -76,7 +76,7 @@ static size_t lower_bound(const struct flow_contact *list, size_t n,
     size_t low = 0, high = n;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (compare(list + middle, contact) < 0)
+        if (compare_contacts(list + middle, contact) < 0)
             low = middle + 1;
         else
             high = middle;
@@ -134,8 +134,8 @@ static bool find_point(const struct touching *t, const struct flow_contact *cont
 }
 
 /* The row of a contact as the solve of the step had it. */
-static void find_row(const struct touching *t, const struct flow_contact *contact,
-                     struct contact_row *row)
+static void find_solved_row(const struct touching *t, const struct flow_contact *contact,
+                            struct contact_row *row)
 {
     *row = contact->row;
     contact_row_begin(row, t->args->stiffness, t->args->to - t->args->from);
@@ -144,11 +144,11 @@ static void find_row(const struct touching *t, const struct flow_contact *contac
 
 /* ---- To be solved once more ---- */
 
-static void press(const struct touching *t, struct flow_contact *contact)
+static void press_again(const struct touching *t, struct flow_contact *contact)
 {
     struct contact_row row;
     phys_vec point;
-    find_row(t, contact, &row);
+    find_solved_row(t, contact, &row);
     if (!find_point(t, contact, &point))
         return;
     contact_row_press(&row, &point);
@@ -160,7 +160,7 @@ static void press(const struct touching *t, struct flow_contact *contact)
 static size_t find_before(const struct touching *t, const struct flow_contact *contact)
 {
     const size_t at = lower_bound(t->before, t->n_before, contact);
-    return at < t->n_before && !compare(t->before + at, contact) ? at : t->n_before;
+    return at < t->n_before && !compare_contacts(t->before + at, contact) ? at : t->n_before;
 }
 
 /* Contacts that fail although they are there are marked. */
@@ -182,14 +182,14 @@ static void end_again(struct touching *t)
         *contact = t->before[i];
         if (t->used[i])
             contact_row_stiffen(&contact->row);
-        press(t, contact);
+        press_again(t, contact);
     }
-    qsort(t->after, t->n, sizeof *t->after, compare);
+    qsort(t->after, t->n, sizeof *t->after, compare_contacts);
 }
 
 /* ---- The end of a step ---- */
 
-static void accept(struct touching *t, const struct flow_near *near)
+static void take_near(struct touching *t, const struct flow_near *near)
 {
     if (!near->fails)
         t->after[t->n++] = near->contact;
@@ -203,28 +203,28 @@ static void hand_over(struct touching *t, size_t from, size_t to)
     phys_vec point;
     if (!find_point(t, before, &point))
         return;
-    find_row(t, before, &row);
+    find_solved_row(t, before, &row);
     contact_row_end(&row, &point, after);
     t->lent += contact_row_lent(&row, &point, before->row.energy, after->energy);
     t->used[from] = t->used[t->n_before + to] = 1;
 }
 
 /* Ends a contact without a successor. */
-static void part(struct touching *t, const struct flow_contact *before)
+static void end_contact(struct touching *t, const struct flow_contact *before)
 {
     struct contact_row row;
     phys_vec point;
     if (!find_point(t, before, &point))
         return;
-    find_row(t, before, &row);
+    find_solved_row(t, before, &row);
     t->lent += contact_row_lent(&row, &point, before->row.energy, 0);
 }
 
 /* The place in a triangle that is nearest to a shape jumps along it if both are almost parallel. A
  * contact stays at its place if that is hardly farther: else resting cloth would rock from step to
  * step. */
-static void stay(const struct touching *t, const struct flow_contact *before,
-                 struct flow_contact *after)
+static void stay_at_place(const struct touching *t, const struct flow_contact *before,
+                          struct flow_contact *after)
 {
     const double hardly = HARDLY * after->row.thickness;
     struct contact_row there = after->row;
@@ -240,7 +240,7 @@ static void stay(const struct touching *t, const struct flow_contact *before,
 
 /* The pair that a contact slid on to: of the same first feature, on much the same side, and new.
  * Returns n if there is none. */
-static size_t successor(const struct touching *t, const struct flow_contact *before)
+static size_t find_successor(const struct touching *t, const struct flow_contact *before)
 {
     struct flow_contact least = *before;
     least.side[1] = least.feature[1] = 0;
@@ -272,31 +272,31 @@ static void begin_all(struct touching *t)
 
 static void end_accept(struct touching *t)
 {
-    qsort(t->after, t->n, sizeof *t->after, compare);
+    qsort(t->after, t->n, sizeof *t->after, compare_contacts);
     t->n = flow_contact_drop_aslant(t->after, t->n, t->used + t->n_before);
     if (!t->carries)
         t->n = flow_contact_drop_repeated(t->after, t->n);
     for (size_t i = 0; i < t->n; i++) {
         const size_t at = find_before(t, t->after + i);
         if (at < t->n_before) {
-            stay(t, t->before + at, t->after + i);
+            stay_at_place(t, t->before + at, t->after + i);
             hand_over(t, at, i);
         }
     }
     for (size_t i = 0; i < t->n_before; i++) {
         if (t->used[i])
             continue;
-        const size_t next = successor(t, t->before + i);
+        const size_t next = find_successor(t, t->before + i);
         if (next < t->n)
             hand_over(t, i, next);
         else
-            part(t, t->before + i);
+            end_contact(t, t->before + i);
     }
     if (!(t->args->to > t->args->from))
         begin_all(t);
 }
 
-static void sum_energy(const struct touching *t, double held[FLOW_HELD])
+static void sum_held_energy(const struct touching *t, double held[FLOW_HELD])
 {
     for (size_t i = 0; i < t->n; i++)
         held[FLOW_HELD_ALL] += contact_row_holds(&t->after[i].row);
@@ -306,7 +306,7 @@ static void sum_energy(const struct touching *t, double held[FLOW_HELD])
 /* ---- Both ---- */
 
 /* Takes the pairs that the block's meetings listed for it. */
-static void take_lists(struct touching *t)
+static void take_meetings(struct touching *t)
 {
     const struct touch_fields *on = t->on;
     for (size_t at = 0; at < on->n_meetings; at++) {
@@ -316,7 +316,7 @@ static void take_lists(struct touching *t)
             if (near[i].contact.side[0] != t->args->block)
                 continue;
             if (t->args->accept)
-                accept(t, near + i);
+                take_near(t, near + i);
             else
                 add_failing(t, near + i);
         }
@@ -340,13 +340,13 @@ static int touch_body(const duite_call *call, const struct touch_fields *on)
     t.used = calloc(t.n_before + args->room + 1, 1);
     if (!t.used)
         return duite_fail(call, FLOW_NO_MEMORY, "out of memory for contacts");
-    take_lists(&t);
+    take_meetings(&t);
     if (args->accept)
         end_accept(&t);
     else
         end_again(&t);
     if (args->accept)
-        sum_energy(&t, on->contact_energy);
+        sum_held_energy(&t, on->contact_energy);
     free(t.used);
     *after = (struct flow_list){.n = t.n};
     return duite_resize(call, FLOW_INDEX_OF(touch, after),

@@ -1,11 +1,12 @@
 /* The facets around a vertex, from one to the next across their edges. */
 #include "cloth/contact/body_skin.h"
 
-/* Part of a distance: a surface that rises by less is flat. */
-static const double FLAT = 1e-3;
-/* Square of the sine of an angle: facets that meet at less are of one flat surface. It is small, as
- * a triangle of the cloth may lie over many edges. */
-static const double BENDS = 4e-6;
+/* A surface that rises by less does not hide a vertex or an edge: sine of an angle, 0.06 degrees.
+ * More than what rounding does to a plane of triangles, in double. */
+static const double RISE_OF_PLANE = 1e-3;
+/* Facets that meet at less are of one flat surface: square of the sine of 0.1 degree. It is small,
+ * as a triangle of the cloth may lie over many edges, and what they hold up is the sum. */
+static const double BEND_OF_PLANE = 4e-6;
 
 void contact_body_fans(const struct contact_body *body, uint32_t *fan)
 {
@@ -21,7 +22,7 @@ static bool is_below(const phys_vec *x, const phys_vec *point, const phys_vec *n
 {
     const phys_vec way = *x - *point;
     const double rise = phys_dot(n, &way);
-    return !(rise > 0) || rise * rise <= FLAT * FLAT * phys_dot(&way, &way);
+    return !(rise > 0) || rise * rise <= RISE_OF_PLANE * RISE_OF_PLANE * phys_dot(&way, &way);
 }
 
 /* On which corner of a facet a vertex is. */
@@ -66,7 +67,7 @@ static void find_normal(const struct contact_facet *facet, const phys_vec *y, ph
 static bool is_bent(const phys_vec *m, const phys_vec *n)
 {
     const double dot = phys_dot(m, n);
-    return !(dot > 0 && dot * dot > (1 - BENDS) * phys_dot(m, m) * phys_dot(n, n));
+    return !(dot > 0 && dot * dot > (1 - BEND_OF_PLANE) * phys_dot(m, m) * phys_dot(n, n));
 }
 
 bool contact_body_bends(const struct contact_body *body, const uint32_t *fan, const phys_vec *y,

@@ -39,16 +39,36 @@ struct contact_row {
                     * none */
 };
 
-/* Part of the thickness: a contact with a load that opens by less beyond it stays active in the
- * step. */
+/* Numbers of the law (docs/physics.md), none of which has a unit: lengths are parts of the
+ * thickness, forces of the load, stiffnesses of that of other contacts. */
+
+/* A contact with a load that opens by less beyond the thickness stays active in the step: what
+ * rests would bounce else. */
 #define CONTACT_ROW_OPENS 0.1
 /* Part of the lack of a gap to the thickness that a step makes up for. A mass resting on a contact
- * swings if this is more than k h^2 / mass. */
+ * swings if this is more than k h^2 / mass, as in piles; it is so for less than m / 8 then. */
 #define CONTACT_ROW_RISES 0.125
-/* The same for a contact that was made stiffer, as its pair failed: it needs room soon. */
+/* The same for a contact that was made stiffer, as its pair failed: a wrung sheet finds no room
+ * with less. */
 #define CONTACT_ROW_YIELDS 0.5
-/* The same where a load rests, though the row has not taken up the energy for it. */
+/* The same where a load rests, though the row has not taken up the energy for it. With an eighth a
+ * pile of eight sheets of 2 mm jumps by millimetres every second; with this it rests. */
 #define CONTACT_ROW_LIFTS 0.02
+/* Part of the resting load: an account of energy that lets a push begin with so little less than
+ * that has nothing to give, but for rounding. */
+#define CONTACT_ROW_EMPTY 1e-6
+/* How many times as stiff a contact becomes whose pair fails although it is there, and at most: so
+ * wrung cloth needs fewer solves and no halved steps. A step that is accepted takes the last of
+ * these away. */
+#define CONTACT_ROW_FIRMER  4
+#define CONTACT_ROW_FIRMEST 256
+#define CONTACT_ROW_SOFTENS 0.5
+/* A new contact has this times the part of the thickness that is lacking: it stops an approach
+ * within about half the thickness. */
+#define CONTACT_ROW_STOPS 2
+/* The stretch across the normal is expected to grow by this factor at most, or to shrink: what
+ * begins to slide stretches the spring from 0. */
+#define CONTACT_ROW_GROWS 2
 
 /* A step begins, or is solved again, with a row that has the gap of its begin. stiffness: of rows
  * that are not firm; h: s, its length. */
@@ -60,7 +80,7 @@ PHYS_INLINE void contact_row_begin(struct contact_row *row, double stiffness, do
     const double rise = lacks > 0 ? rises * lacks : lacks;
     const double most = (sqrt(2 * k * row->energy) - row->rested) / k;
     const double softer = row->hold > 0 ? row->hold / stiffness : 1;
-    const double lifts = lacks > 0 && row->rested > 0 && most * k > -1e-6 * row->rested
+    const double lifts = lacks > 0 && row->rested > 0 && most * k > -CONTACT_ROW_EMPTY * row->rested
                              ? CONTACT_ROW_LIFTS * lacks
                              : most;
     const double allowed = firm > 1 && lacks > 0 ? rise : (most > lifts ? most : lifts);
@@ -165,16 +185,15 @@ PHYS_INLINE void contact_row_force(const struct contact_row *row, const phys_vec
  * lasts, and softer from step to step after it. */
 PHYS_INLINE void contact_row_stiffen(struct contact_row *row)
 {
-    const double firm = 4 * (row->firm > 1 ? row->firm : 1);
-    row->firm = firm < 256 ? firm : 256;
+    const double firm = CONTACT_ROW_FIRMER * (row->firm > 1 ? row->firm : 1);
+    row->firm = firm < CONTACT_ROW_FIRMEST ? firm : CONTACT_ROW_FIRMEST;
 }
 
-/* The firmness of a row without a load that would end the step with this gap (m). It stops an
- * approach within about half the thickness. */
+/* The firmness of a row without a load that would end the step with this gap (m). */
 PHYS_INLINE double contact_row_firm_for(const struct contact_row *row, double gap)
 {
-    const double firm = 2 * (1 - gap / row->thickness);
-    return firm > 1 ? (firm < 256 ? firm : 256) : 0;
+    const double firm = CONTACT_ROW_STOPS * (1 - gap / row->thickness);
+    return firm > 1 ? (firm < CONTACT_ROW_FIRMEST ? firm : CONTACT_ROW_FIRMEST) : 0;
 }
 
 /* The energy that a row has taken up when the step ended at this point with this load, but no more
@@ -217,7 +236,8 @@ PHYS_INLINE void contact_row_end(const struct contact_row *row, const phys_vec *
     const double most = row->friction * load, pull = row->hold * length;
     const double grows = row->slid > 0 ? length / row->slid : 1;
     next->slid = length;
-    next->grows = grows < 2 ? (grows > 0.5 ? grows : 0.5) : 2;
+    const double most_grown = CONTACT_ROW_GROWS, least_grown = 1.0 / CONTACT_ROW_GROWS;
+    next->grows = grows < most_grown ? (grows > least_grown ? grows : least_grown) : most_grown;
     next->slip = pull <= most ? stretch : most / pull * stretch;
     next->slip -= phys_dot(&next->normal, &next->slip) * next->normal;
     next->load = next->rested = load;
@@ -225,7 +245,7 @@ PHYS_INLINE void contact_row_end(const struct contact_row *row, const phys_vec *
     next->hold = row->hold;
     next->span = row->span;
     next->pushed = 0;
-    next->firm = fmax(next->firm, 0.5 * row->firm);
+    next->firm = fmax(next->firm, CONTACT_ROW_SOFTENS * row->firm);
 }
 
 #endif

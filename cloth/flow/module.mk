@@ -72,13 +72,10 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/contact/project.c \
     cloth/flow/contact/repulsion.c \
     cloth/flow/contact/rows.c \
+    cloth/flow/contact/scales.c \
     cloth/flow/contact/skin.c \
     cloth/flow/contact/skin.h \
     cloth/flow/contact/skin_tables.c \
-    cloth/flow/contact/skins.c \
-    cloth/flow/contact/skins.h \
-    cloth/flow/contact/stiffness.c \
-    cloth/flow/contact/thickness.c \
     cloth/flow/contact/touch.c \
     cloth/flow/integrators/explicit.c \
     cloth/flow/integrators/implicit.c \

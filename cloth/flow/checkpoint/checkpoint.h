@@ -59,9 +59,8 @@ bool flow_saved_are_contacts(const struct flow *flow, uint32_t block, const unsi
 uint64_t flow_saved_layout(const struct model *model);
 
 /* Puts the objects of a block that a checkpoint has into `refs`, in their order; block n_blocks:
- * those of the run. Returns the end. There is room for FLOW_FIELDS_OF_ALL + 1. Local. */
-duite_object *flow_saved_objects(const struct flow_state *state, uint32_t block,
-                                 duite_object *refs);
+ * those of the run. Returns how many. There is room for FLOW_FIELDS_OF_ALL + 1. Local. */
+size_t flow_saved_objects(const struct flow_state *state, uint32_t block, duite_object *refs);
 
 /* Bytes of a number of an object. */
 size_t flow_saved_width(duite_type type);

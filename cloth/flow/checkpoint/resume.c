@@ -66,21 +66,24 @@ int flow_resume(struct flow *flow, struct flow_checkpoint from, struct flow_resu
 
 /* ---- State of the main program ---- */
 
-static int send_main(const duite_call *call)
+FLOW_KERNEL_WITH(resume_main, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(main_program)),
+                 .fixed = 1)
+static int resume_main_body(const duite_call *call, const struct resume_main_fields *on)
 {
-    memcpy(call->param[0].data, flow_of(call)->from.bytes, call->param[0].count);
+    memcpy(on->main_program, flow_of(call)->from.bytes,
+           duite_count(call, FLOW_INDEX_OF(resume_main, main_program)));
     return 0;
 }
-const duite_kernel flow_send_main = {
-    .name = "resume_main", .body = send_main, .access = {DUITE_W}, .fixed = 1};
 
 /* Sends it to all ranks. */
 static int share_main(struct flow_state *state, unsigned char *received)
 {
+    const struct flow_block_args all = {0};
     duite_object object;
     int code = duite_new(state->rt, DUITE_BYTE, state->head.resumed_bytes, &object);
     if (!code)
-        code = duite_fork_at(state->rt, 0, &flow_send_main, NULL, 1, &object);
+        code = flow_fork_given_at(state, 0, &flow_kernel_resume_main, &all,
+                                  &(struct flow_given){.one = &object});
     if (!code)
         code = duite_get(state->rt, object, received);
     const int freed = object.generation ? duite_free(state->rt, object) : DUITE_OK;
@@ -137,9 +140,9 @@ int flow_resume_main(struct flow_state *state)
 
 /* Where the objects of the next block are, on rank 0: bytes of the checkpoint. */
 struct load_args {
-    uint64_t at;
     uint32_t block; /* n_blocks: those of the run */
     bool keeps;     /* the last one is the list of its contacts */
+    uint64_t at;
 };
 
 /* How many bytes an object has; UINT64_MAX: the checkpoint ends before. */
@@ -158,44 +161,39 @@ static uint64_t next_at(uint64_t at, uint64_t bytes)
     return bytes == UINT64_MAX ? bytes : at + sizeof bytes + (bytes + 7) / 8 * 8;
 }
 
-/* Checks the list and makes its index again. */
-static bool is_list(const duite_call *call, size_t i, uint64_t bytes)
+/* Checks the list of a block and makes its index again. */
+static bool is_list(const struct flow *flow, uint32_t block, const duite_param *to, uint64_t bytes)
 {
-    const struct load_args *args = call->args;
-    const duite_param *to = call->param + i;
-    const struct flow *flow = flow_of(call);
     struct flow_list *list = to->data;
     const uint32_t n_blocks = flow->tables.n_blocks;
-    if (bytes > to->max || !flow_saved_are_contacts(flow, args->block, to->data, bytes))
+    if (bytes > to->max || !flow_saved_are_contacts(flow, block, to->data, bytes))
         return false;
     return !list->n || (flow_contact_index_room(list->n, n_blocks) <= to->max &&
                         flow_contact_index(list, n_blocks) == bytes);
 }
 
 /* Checks the numbers of x and v, the first objects of a block. */
-static bool is_field(const duite_call *call, size_t i)
+static bool is_field(const struct flow *flow, uint32_t block, const duite_param *to, size_t i)
 {
-    const struct load_args *args = call->args;
-    const duite_param *to = call->param + i;
-    return args->block == flow_of(call)->tables.n_blocks || i > 1 ||
-           flow_saved_is_place(to->data, to->count);
+    return block == flow->tables.n_blocks || i > 1 || flow_saved_is_place(to->data, to->count);
 }
 
-/* Parameters: w the saved objects. */
-static int load(const duite_call *call)
+FLOW_KERNEL_WITH(resume_load, FLOW_NO_PART, struct load_args, (REST_W(saved_objects)), .fixed = 1)
+static int resume_load_body(const duite_call *call, const struct resume_load_fields *on)
 {
-    const struct load_args *args = call->args;
-    const struct flow_checkpoint *from = &flow_of(call)->from;
+    const struct load_args *args = on->args;
+    const struct flow *flow = flow_of(call);
+    const struct flow_checkpoint *from = &flow->from;
     uint64_t at = args->at;
-    for (size_t i = 0; i < call->n_params; i++) {
-        const duite_param *to = call->param + i;
+    for (size_t i = 0; i < on->n_saved_objects; i++) {
+        const duite_param *to = on->saved_objects + i;
         const size_t width = flow_saved_width(to->type);
         const uint64_t bytes = bytes_at(from, at);
-        const bool list = args->keeps && i == call->n_params - 1;
+        const bool list = args->keeps && i == on->n_saved_objects - 1;
         if (list ? bytes > to->max : bytes != to->count * width)
             return duite_fail(call, FLOW_UNFIT, "the checkpoint has a block of another size");
         memcpy(to->data, from->bytes + at + sizeof bytes, bytes);
-        if (list ? !is_list(call, i, bytes) : !is_field(call, i))
+        if (list ? !is_list(flow, args->block, to, bytes) : !is_field(flow, args->block, to, i))
             return duite_fail(call, FLOW_UNFIT,
                               "the checkpoint has places or contacts that no run comes to");
         if (list && bytes != to->count && duite_resize(call, i, bytes))
@@ -204,11 +202,6 @@ static int load(const duite_call *call)
     }
     return 0;
 }
-const duite_kernel flow_load_block = {.name = "resume_load",
-                                      .body = load,
-                                      .variadic = DUITE_W,
-                                      .args_size = sizeof(struct load_args),
-                                      .fixed = 1};
 
 /* Runs at the block's home and writes last, so that the home holds the objects. */
 FLOW_KERNEL(resume, FLOW_NO_PART, struct flow_block_args,
@@ -232,16 +225,18 @@ static void skip(const struct flow_state *state, size_t n, struct load_args *arg
 static int load_all(struct flow_state *state)
 {
     const uint32_t n_blocks = state->flow->tables.n_blocks;
-    duite_object refs[FLOW_FIELDS_OF_ALL + 1];
+    duite_object refs[FLOW_MAX_PARAMETERS + FLOW_FIELDS_OF_ALL + 1];
+    duite_object *rest = refs + FLOW_MAX_PARAMETERS;
     struct load_args args = {.at = state->head.resumed_bytes};
     int code = DUITE_OK;
     for (uint32_t b = 0; b <= n_blocks && !code; b++) {
         const struct flow_block_args block = {b};
         args.block = b;
         args.keeps = b < n_blocks && flow_contact_mode(state->flow->model)->carries;
-        const size_t n = (size_t)(flow_saved_objects(state, b, refs) - refs);
+        const size_t n = flow_saved_objects(state, b, rest);
         if (n)
-            code = duite_fork_at(state->rt, 0, &flow_load_block, &args, n, refs);
+            code = flow_fork_given_at(state, 0, &flow_kernel_resume_load, &args,
+                                      &(struct flow_given){.n = n, .rest = rest});
         skip(state, n, &args);
         if (!code && b < n_blocks)
             code = flow_fork_one(state, &flow_kernel_resume, &block);

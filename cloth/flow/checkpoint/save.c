@@ -50,35 +50,24 @@ static void append_object(struct flow *flow, const duite_param *object)
 }
 
 struct save_args {
+    uint32_t block;
     uint32_t last; /* not zero: nothing follows */
 };
 
-/* Parameters: rw the token, then r the objects to save. */
-static int save_block(const duite_call *call)
+FLOW_KERNEL_WITH(save, FLOW_OUTPUT, struct save_args, (RW(token), REST_R(saved_objects)),
+                 .side_effects = 1, .fixed = 1)
+static int save_body(const duite_call *call, const struct save_fields *on)
 {
-    const struct save_args *args = call->args;
     struct flow *flow = flow_of(call);
-    for (size_t i = 1; i < call->n_params; i++)
-        append_object(flow, call->param + i);
-    if (!args->last)
+    for (size_t i = 0; i < on->n_saved_objects; i++)
+        append_object(flow, on->saved_objects + i);
+    if (!on->args->last)
         return 0;
     const struct flow_checkpoint whole = flow->saving;
     flow->saving = (struct flow_checkpoint){0};
     flow->output->save(flow->output->context, whole);
     return 0;
 }
-
-static int save_timed(const duite_call *call)
-{
-    return flow_timed(call, save_block, FLOW_OUTPUT);
-}
-const duite_kernel flow_save_block = {.name = "save",
-                                      .body = save_timed,
-                                      .access = {DUITE_RW},
-                                      .variadic = DUITE_R,
-                                      .args_size = sizeof(struct save_args),
-                                      .side_effects = 1,
-                                      .fixed = 1};
 
 /* ---- State of the main program ---- */
 
@@ -165,7 +154,8 @@ static void begin_saving(struct flow_state *state, bool finished)
 int flow_save(struct flow_state *state, bool finished)
 {
     const uint32_t n_blocks = state->flow->tables.n_blocks;
-    duite_object refs[FLOW_FIELDS_OF_ALL + 2] = {state->run.token};
+    duite_object refs[FLOW_MAX_PARAMETERS + FLOW_FIELDS_OF_ALL + 1];
+    duite_object *rest = refs + FLOW_MAX_PARAMETERS;
     int64_t token;
     if (!state->output || !state->output->save)
         return DUITE_OK;
@@ -173,9 +163,9 @@ int flow_save(struct flow_state *state, bool finished)
     if (!code && duite_rank(state->rt) == 0)
         begin_saving(state, finished);
     for (uint32_t b = 0; b <= n_blocks && !code; b++) {
-        const struct save_args args = {.last = b == n_blocks};
-        const duite_object *end = flow_saved_objects(state, b, refs + 1);
-        code = duite_fork_at(state->rt, 0, &flow_save_block, &args, (size_t)(end - refs), refs);
+        const struct save_args args = {.block = b, .last = b == n_blocks};
+        const struct flow_given given = {.n = flow_saved_objects(state, b, rest), .rest = rest};
+        code = flow_fork_given_at(state, 0, &flow_kernel_save, &args, &given);
     }
     return code;
 }

@@ -6,7 +6,7 @@
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/mode.h"
-#include "cloth/flow/contact/skins.h"
+#include "cloth/flow/contact/skin.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/run/step.h"
 #include "cloth/flow/state/room.h"
@@ -17,10 +17,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Solves of a step, and rounds of cuts after them. Cuts shorten ways only, so rounds end; where
+ * eight do not, halves of the step need fewer. */
 enum { MAX_SOLVES = 5, MAX_CUTS = 8 };
-/* Halve the step if more rows than this share of the contacts lose half of their way. */
+/* Halve the step if more rows than this share of the contacts lose half of their way: what is left
+ * shows then. */
 static const double TOO_MANY = 0.01;
-/* Cut at once if failing pairs are at most this share of the contacts. */
+/* Cut at once if failing pairs are at most this share of the contacts. Ten times as many bring no
+ * fewer solves beside the culling of pairs. */
 static const double FEW = 0.001;
 
 double flow_contact_stiffness(const struct flow *flow, double h)
@@ -305,11 +309,11 @@ static void make_row(const struct flow *flow, const struct flow_step_args *step,
     flow_contact_ahead(flow, step->time - step->h, step->time, contact, row);
 }
 
-static void press_row(const struct flow *flow, const struct flow_ties *ties,
+static void press_row(const struct contact_spring *spring, const struct flow_ties *ties,
                       const struct flow_view *view, double h, double left, uint32_t i,
                       const phys_vec *point, struct flow_pressed *to)
 {
-    (void)flow, (void)ties, (void)h, (void)left;
+    (void)spring, (void)ties, (void)h, (void)left;
     contact_row_linearise(view->contact_rows + i, point, &to->force, &to->value);
     to->against = to->value;
 }

@@ -114,14 +114,24 @@ size_t flow_contact_drop_repeated(struct flow_contact *list, size_t n);
 
 /* Arguments of the task of two sides. */
 struct flow_meet_args {
-    uint32_t side[2], number; /* among all meetings */
-    uint32_t room;            /* for so many items in its list */
-    double from, to;          /* s: of the step */
+    union {
+        uint32_t block; /* the first side */
+        uint32_t side[2];
+    };
+    uint32_t number; /* among all meetings */
+    uint32_t room;   /* for so many items in its list */
+    double from, to; /* s: of the step */
 };
 
 /* Room for so many meetings on every rank; frees those there are. (memory.c) */
 int flow_contact_room(struct flow_state *state, uint32_t n);
 void flow_contact_part(struct flow_state *state);
+/* Room for the further objects of a fork (struct flow_given): lists of all meetings with points, or
+ * of all blocks. Local. */
+static inline duite_object *flow_contact_rest(const struct flow_state *state)
+{
+    return state->contact.refs + FLOW_MAX_PARAMETERS;
+}
 
 /* Counts of one look at the step. */
 struct flow_seen {

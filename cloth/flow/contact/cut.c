@@ -9,6 +9,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* A row counts as halved if it goes less than this part of its way, and what it loses is more than
+ * this part of the thickness: shorter losses do not show. */
+static const double HALF = 0.5, COUNTS = 0.1;
+
 struct cut_args {
     union {
         uint32_t block;
@@ -17,25 +21,16 @@ struct cut_args {
     uint32_t attempt, accepted; /* as in struct flow_contact_state */
 };
 
-/* Parameters: of fields, then the lists of meetings that may have corners in the block. */
-enum {
-    AT_TABLE,
-    AT_KEPT_X,
-    AT_X,
-    AT_V,
-    AT_RUNS,
-    AT_HALO_X,
-    AT_HALO_V,
-    AT_COUNTS,
-    AT_LONGEST,
-    AT_LISTS
-};
+FLOW_KERNEL(cut, FLOW_COLLIDE, struct cut_args,
+            (R(table), R(kept_x), RW(x), RW(v), RW(cut_runs), W(halo_x), W(halo_v), SUM(cut_counts),
+             MAX(cut_longest), REST_R(meetings)))
 
 /* Finds the part of its way that each row may go, by all failing pairs. */
-static void find_parts(const duite_call *call, uint32_t block, double *part)
+static void find_parts(const struct cut_fields *on, double *part)
 {
-    for (size_t at = AT_LISTS; at < call->n_params; at++) {
-        const struct flow_list *list = duite_in(call, at, struct flow_list);
+    const uint32_t block = on->args->block;
+    for (size_t at = 0; at < on->n_meetings; at++) {
+        const struct flow_list *list = on->meetings[at].data;
         const struct flow_near *near = (const struct flow_near *)(list + 1);
         for (uint64_t i = 0; i < list->n; i++)
             for (uint32_t k = 0; near[i].fails && k < near[i].contact.at.n; k++) {
@@ -58,63 +53,41 @@ static void cut_row(const struct flow_step_args *step, double part, double thick
     counts[FLOW_CUT_ROWS]++;
     for (int c = 0; c < 3; c++)
         counts[FLOW_CUT_MOMENTUM + c] += change[c];
-    counts[FLOW_CUT_HALVED] += part < 0.5 && (1 - part) * length > 0.1 * thickness;
+    counts[FLOW_CUT_HALVED] += part < HALF && (1 - part) * length > COUNTS * thickness;
 }
 
-static int cut(const duite_call *call)
+static int cut_body(const duite_call *call, const struct cut_fields *on)
 {
-    const struct cut_args *args = call->args;
-    const struct flow_table table = flow_table_in(call, duite_in(call, AT_TABLE, unsigned char));
+    const struct cut_args *args = on->args;
+    const struct flow_table table = flow_table_in(call, on->table);
     const double thickness = flow_of(call)->model->contact.thickness;
-    phys_vec *x = duite_out(call, AT_X, phys_vec), *v = duite_out(call, AT_V, phys_vec);
-    struct flow_cut_run *runs = call->param[AT_RUNS].data;
-    double *part = malloc((table.n + 1) * sizeof *part), *longest = call->param[AT_LONGEST].data;
+    struct flow_cut_run *runs = (struct flow_cut_run *)(void *)on->cut_runs;
+    double *part = malloc((table.n + 1) * sizeof *part);
     if (!part)
         return duite_fail(call, FLOW_NO_MEMORY, "out of memory for the ways of a block");
     for (uint32_t i = 0; i < table.n; i++)
         part[i] = 1;
-    find_parts(call, args->block, part);
+    find_parts(on, part);
     for (uint32_t i = 0; i < table.n; i++) {
         if (part[i] >= 1)
             continue;
-        cut_row(&args->step, part[i] > 0 ? part[i] : 0, thickness, table.mass[i],
-                duite_in(call, AT_KEPT_X, phys_vec) + i, x + i, v + i,
-                duite_out(call, AT_COUNTS, double));
-        *longest = fmax(*longest, flow_cut_again(runs + i, args->attempt, args->accepted));
+        cut_row(&args->step, part[i] > 0 ? part[i] : 0, thickness, table.mass[i], on->kept_x + i,
+                on->x + i, on->v + i, on->cut_counts);
+        *on->cut_longest =
+            fmax(*on->cut_longest, flow_cut_again(runs + i, args->attempt, args->accepted));
     }
-    flow_write_halo(&table, x, duite_out(call, AT_HALO_X, phys_vec));
-    flow_write_halo(&table, v, duite_out(call, AT_HALO_V, phys_vec));
+    flow_write_halo(&table, on->x, on->halo_x);
+    flow_write_halo(&table, on->v, on->halo_v);
     free(part);
     return 0;
 }
 
-static int cut_timed(const duite_call *call)
+static int fork_cut(struct flow_state *state, const struct cut_args *args)
 {
-    return flow_timed(call, cut, FLOW_COLLIDE);
-}
-const duite_kernel flow_cut_ways = {.name = "cut",
-                                    .body = cut_timed,
-                                    .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_RW, DUITE_RW,
-                                               DUITE_W, DUITE_W, DUITE_CW, DUITE_CW},
-                                    .law = {[AT_COUNTS] = &duite_sum, [AT_LONGEST] = &duite_max},
-                                    .variadic = DUITE_R,
-                                    .args_size = sizeof(struct cut_args)};
-
-static int fork_block(struct flow_state *state, const struct cut_args *args)
-{
-    const struct flow_objects *of = state->block + args->block;
-    duite_object *refs = state->contact.refs;
-    refs[AT_TABLE] = of->table;
-    refs[AT_KEPT_X] = of->kept_x;
-    refs[AT_X] = of->x;
-    refs[AT_V] = of->v;
-    refs[AT_RUNS] = of->cut_runs;
-    refs[AT_HALO_X] = of->halo_x;
-    refs[AT_HALO_V] = of->halo_v;
-    refs[AT_COUNTS] = state->run.cut_counts;
-    refs[AT_LONGEST] = state->run.cut_longest;
-    const uint32_t n = flow_contact_lists(state, args->block, refs + AT_LISTS);
-    return duite_fork(state->rt, &flow_cut_ways, args, AT_LISTS + (size_t)n, refs);
+    duite_object *rest = flow_contact_rest(state);
+    const struct flow_given given = {.n = flow_contact_lists(state, args->block, rest),
+                                     .rest = rest};
+    return flow_fork_given(state, &flow_kernel_cut, args, &given);
 }
 
 int flow_contact_cut(struct flow_state *state, struct flow_cut *cut)
@@ -127,7 +100,7 @@ int flow_contact_cut(struct flow_state *state, struct flow_cut *cut)
     if (!code)
         code = duite_set(state->rt, state->run.cut_longest, NULL);
     for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++)
-        code = fork_block(state, &args);
+        code = fork_cut(state, &args);
     if (!code)
         code = duite_get(state->rt, state->run.cut_counts, counts);
     const double *p = counts + FLOW_CUT_MOMENTUM;

@@ -11,6 +11,10 @@
 
 #include <math.h>
 
+/* A surface that goes down by more from an edge has a ridge there: sine of 3 degrees. Cloth that
+ * slides over less has vertices and triangles that are nearer. */
+static const double RIDGE = 0.05;
+
 /* The state of a query's visits. */
 struct meeting {
     const struct flow *flow;
@@ -51,7 +55,7 @@ static void find_corners(const struct meeting *m, const struct contact_candidate
 }
 
 /* Only listed pairs need it. */
-static void find_held(const struct meeting *m, struct corners *to)
+static void find_held_corners(const struct meeting *m, struct corners *to)
 {
     to->held = 0;
     for (unsigned k = 0; k < 4; k++)
@@ -96,9 +100,9 @@ static void describe_corner(const struct corners *corners, const struct contact_
 }
 
 /* Fills a contact, in zeroed memory. places: of the corners; they give the row's origin. */
-static void describe(const struct meeting *m, const struct contact_candidate *candidate,
-                     const struct corners *corners, const phys_vec places[4],
-                     const struct contact_nearest *nearest, struct flow_contact *to)
+static void describe_pair(const struct meeting *m, const struct contact_candidate *candidate,
+                          const struct corners *corners, const phys_vec places[4],
+                          const struct contact_nearest *nearest, struct flow_contact *to)
 {
     const int second = corners->side[0]; /* 1: of a triangle of the first side and a vertex */
     const bool turned = is_turned(m, corners);
@@ -123,7 +127,7 @@ static void describe(const struct meeting *m, const struct contact_candidate *ca
     }
 }
 
-static void append(struct meeting *m, const struct flow_near *near)
+static void append_pair(struct meeting *m, const struct flow_near *near)
 {
     const bool first = near->contact.side[0] == m->args->side[0];
     if (m->n < m->room)
@@ -140,7 +144,6 @@ static void append(struct meeting *m, const struct flow_near *near)
 static bool is_ridge(const struct meeting *m, int side, uint32_t edge, const phys_vec *normal,
                      double sign)
 {
-    static const double FLAT = 0.05; /* sine of an angle */
     const struct contact_skin *skin = m->skin + side;
     const phys_vec *y = m->side[side].y, *from = y + skin->edge[edge][0];
     const phys_vec along = y[skin->edge[edge][1]] - *from;
@@ -151,7 +154,7 @@ static bool is_ridge(const struct meeting *m, int side, uint32_t edge, const phy
         const phys_vec to = y[skin->beside[edge][k]] - *from;
         const phys_vec across = to - phys_dot(&to, &along) / square * along;
         const double up = sign * phys_dot(&across, normal);
-        ridge = ridge && up > (border ? -FLAT : FLAT) * sqrt(phys_dot(&across, &across));
+        ridge = ridge && up > (border ? -RIDGE : RIDGE) * sqrt(phys_dot(&across, &across));
     }
     return ridge;
 }
@@ -211,16 +214,16 @@ static bool presses(const struct meeting *m, const struct contact_candidate *can
 }
 
 /* Appends a pair that is near at the end of the step. */
-static void list(struct meeting *m, const struct contact_candidate *candidate,
-                 struct corners *corners, const struct contact_nearest *nearest)
+static void list_pair(struct meeting *m, const struct contact_candidate *candidate,
+                      struct corners *corners, const struct contact_nearest *nearest)
 {
     struct flow_near near;
     memset(&near, 0, sizeof near); /* padding, too: lists are compared byte by byte */
-    find_held(m, corners);
-    describe(m, candidate, corners, corners->y, nearest, &near.contact);
+    find_held_corners(m, corners);
+    describe_pair(m, candidate, corners, corners->y, nearest, &near.contact);
     for (uint32_t k = 0; k < 4; k++)
         near.part[k] = 1;
-    append(m, &near);
+    append_pair(m, &near);
 }
 
 /* The gap at the step's end, along the normal of its begin. */
@@ -234,16 +237,16 @@ static double gap_ahead(const struct corners *corners, const struct contact_near
 
 /* Appends a pair that the step drives into each other. The parts stay 1 if no cut helps: the pair
  * fails again in the next look, and the step is given up after the last one. */
-static void fail(struct meeting *m, const struct contact_candidate *candidate,
-                 struct corners *corners)
+static void fail_pair(struct meeting *m, const struct contact_candidate *candidate,
+                      struct corners *corners)
 {
     double part[4] = {1, 1, 1, 1};
     struct contact_nearest nearest;
     struct flow_near near;
     memset(&near, 0, sizeof near);
-    find_held(m, corners);
+    find_held_corners(m, corners);
     contact_nearest_of(corners->pair, corners->x, &nearest);
-    describe(m, candidate, corners, corners->x, &nearest, &near.contact);
+    describe_pair(m, candidate, corners, corners->x, &nearest, &near.contact);
     near.fails = true;
     near.presses = true;
     near.contact.row.firm = contact_row_firm_for(&near.contact.row, gap_ahead(corners, &nearest));
@@ -251,7 +254,7 @@ static void fail(struct meeting *m, const struct contact_candidate *candidate,
                       corners->held, part);
     for (uint32_t k = 0; k < 4; k++)
         near.part[k] = part[(k + is_turned(m, corners)) % 4];
-    append(m, &near);
+    append_pair(m, &near);
 }
 
 static enum contact_passing passing_of(const struct meeting *m, const struct corners *corners)
@@ -262,13 +265,13 @@ static enum contact_passing passing_of(const struct meeting *m, const struct cor
                         flow_contact_reach(m->model));
 }
 
-static void look_at(struct meeting *m, const struct contact_candidate *candidate,
-                    struct corners *corners)
+static void look_at_pair(struct meeting *m, const struct contact_candidate *candidate,
+                         struct corners *corners)
 {
     struct contact_nearest nearest;
     const enum contact_passing passing = passing_of(m, corners);
     if (passing == CONTACT_MAY_TOUCH) {
-        fail(m, candidate, corners);
+        fail_pair(m, candidate, corners);
         return;
     }
     m->passes++;
@@ -276,7 +279,7 @@ static void look_at(struct meeting *m, const struct contact_candidate *candidate
         return;
     contact_nearest_of(corners->pair, corners->y, &nearest);
     if (presses(m, candidate, corners, &nearest))
-        list(m, candidate, corners, &nearest);
+        list_pair(m, candidate, corners, &nearest);
 }
 
 /* True if the two sides do not meet, or the block's feature is attached to the body. */
@@ -295,7 +298,7 @@ static bool is_left_out(const struct meeting *m, const struct contact_candidate 
 
 /* Corners of several candidates are brought before the first is looked at: a processor that has
  * just written halves of a vector waits where it reads the whole. */
-static void visit(void *to, uint32_t n, const struct contact_candidate *candidate)
+static void visit_pairs(void *to, uint32_t n, const struct contact_candidate *candidate)
 {
     enum { AT_ONCE = 16 };
     struct meeting *m = to;
@@ -306,75 +309,89 @@ static void visit(void *to, uint32_t n, const struct contact_candidate *candidat
             find_corners(m, candidate + i + k, corners + k);
         for (uint32_t k = 0; k < some; k++)
             if (!m->leaves_out || !is_left_out(m, candidate + i + k))
-                look_at(m, candidate + i + k, corners + k);
+                look_at_pair(m, candidate + i + k, corners + k);
     }
 }
 
-/* Parameters: w the list, cw the counts, then of each block, or of all bodies, skins, points,
- * boxes; behind those of bodies their fans. */
-enum { AT_LIST, AT_COUNTS, AT_SIDES, EACH_SIDE = 3 };
+/* ---- The tasks ---- */
 
-static void open_side(const duite_call *call, size_t at, struct contact_skin *skin,
-                      struct contact_side *side)
+static struct contact_side side_of_points(const struct contact_skin *skin, const phys_vec *points,
+                                          const unsigned char *boxes)
 {
-    *skin = flow_skin_open(duite_in(call, at, unsigned char)).skin;
-    const phys_vec *points = duite_in(call, at + 1, phys_vec);
-    *side = (struct contact_side){.skin = skin,
-                                  .boxes = duite_in(call, at + 2, unsigned char),
-                                  .x = points,
-                                  .y = points + skin->n_points};
+    return (struct contact_side){
+        .skin = skin, .boxes = boxes, .x = points, .y = points + skin->n_points};
 }
 
-static void open_sides(const duite_call *call, struct meeting *m)
+/* Opens the first side, and what all meetings have. */
+static void begin_meeting(const duite_call *call, const struct flow_meet_args *args,
+                          const unsigned char *skin, const phys_vec *points,
+                          const unsigned char *boxes, double *counts, struct flow_list *list,
+                          struct meeting *m)
 {
-    const uint32_t n_blocks = m->flow->tables.n_blocks, *side = m->args->side;
-    const size_t other = AT_SIDES + (side[0] != side[1] ? EACH_SIDE : 0);
-    open_side(call, AT_SIDES, m->skin, m->side);
-    m->attached = flow_skin_open(duite_in(call, AT_SIDES, unsigned char)).attached;
-    if (side[1] < n_blocks) {
-        open_side(call, other, m->skin + 1, m->side + 1);
-        return;
-    }
-    m->obstacle = m->model->obstacles + (side[1] - n_blocks);
-    m->body = contact_bodies_at(&m->model->bodies, m->obstacle->body);
-    m->fan = duite_in(call, other + EACH_SIDE, uint32_t) +
-             flow_body_place(m->model, side[1] - n_blocks).vertex;
-    flow_body_open(m->model, side[1] - n_blocks, duite_in(call, other, unsigned char),
-                   duite_in(call, other + 1, phys_vec), duite_in(call, other + 2, unsigned char),
-                   m->skin + 1, m->side + 1);
+    const struct flow *flow = flow_of(call);
+    const struct flow_skin own = flow_skin_open(skin);
+    *m = (struct meeting){.flow = flow,
+                          .model = flow->model,
+                          .args = args,
+                          .sweeps = flow_contact_mode(flow->model)->sweeps,
+                          .leaves_out =
+                              flow_leaves_out(flow->model, args->side[1] >= flow->tables.n_blocks),
+                          .attached = own.attached,
+                          .near = (struct flow_near *)(list + 1),
+                          .room = args->room,
+                          .counts = counts + (size_t)FLOW_COUNTS * args->number};
+    m->skin[0] = own.skin;
+    m->side[0] = side_of_points(m->skin, points, boxes);
 }
 
-static int meet(const duite_call *call)
+/* Fills the list; returns its bytes. other: the second side. */
+static size_t query_meeting(struct meeting *m, const struct contact_side *other,
+                            struct flow_list *list)
 {
-    const struct flow_meet_args *args = call->args;
-    struct flow_list *list = duite_out(call, AT_LIST, struct flow_list);
-    struct meeting m = {
-        .flow = flow_of(call),
-        .model = flow_of(call)->model,
-        .args = args,
-        .sweeps = flow_contact_mode(flow_of(call)->model)->sweeps,
-        .leaves_out =
-            flow_leaves_out(flow_of(call)->model, args->side[1] >= flow_of(call)->tables.n_blocks),
-        .near = (struct flow_near *)(list + 1),
-        .room = args->room,
-        .counts = duite_out(call, AT_COUNTS, double) + (size_t)FLOW_COUNTS * args->number};
-    const bool alone = args->side[0] == args->side[1];
-    open_sides(call, &m);
-    contact_query(m.side, alone ? m.side : m.side + 1, flow_contact_reach(m.model), visit, &m);
-    m.counts[FLOW_COUNT_ALL] = (double)m.n;
-    m.counts[FLOW_COUNT_PASSES] = (double)m.passes;
-    *list = (struct flow_list){.n = m.n < m.room ? m.n : m.room,
-                               .side = {args->side[0], args->side[1]}};
-    return duite_resize(call, AT_LIST, flow_list_bytes(list->n, sizeof *m.near));
+    const uint32_t *side = m->args->side;
+    contact_query(m->side, other, flow_contact_reach(m->model), visit_pairs, m);
+    m->counts[FLOW_COUNT_ALL] = (double)m->n;
+    m->counts[FLOW_COUNT_PASSES] = (double)m->passes;
+    *list = (struct flow_list){.n = m->n < m->room ? m->n : m->room, .side = {side[0], side[1]}};
+    return flow_list_bytes(list->n, sizeof *m->near);
 }
 
-static int meet_timed(const duite_call *call)
+FLOW_KERNEL(meet_self, FLOW_COLLIDE, struct flow_meet_args,
+            (GIVEN_W(near), GIVEN_SUM(counts), R(skin), R(skin_x), R(skin_boxes)))
+static int meet_self_body(const duite_call *call, const struct meet_self_fields *on)
 {
-    return flow_timed(call, meet, FLOW_COLLIDE);
+    struct meeting m;
+    begin_meeting(call, on->args, on->skin, on->skin_x, on->skin_boxes, on->counts, on->near, &m);
+    m.skin[1] = m.skin[0];
+    m.side[1] = m.side[0];
+    return duite_resize(call, FLOW_INDEX_OF(meet_self, near), query_meeting(&m, m.side, on->near));
 }
-const duite_kernel flow_meet = {.name = "meet",
-                                .body = meet_timed,
-                                .access = {DUITE_W, DUITE_CW},
-                                .law = {NULL, &duite_sum},
-                                .variadic = DUITE_R,
-                                .args_size = sizeof(struct flow_meet_args)};
+
+FLOW_KERNEL(meet, FLOW_COLLIDE, struct flow_meet_args,
+            (GIVEN_W(near), GIVEN_SUM(counts), R(skin), R(skin_x), R(skin_boxes),
+             GIVEN_R(other_skin), GIVEN_R(other_x), GIVEN_R(other_boxes)))
+static int meet_body(const duite_call *call, const struct meet_fields *on)
+{
+    struct meeting m;
+    begin_meeting(call, on->args, on->skin, on->skin_x, on->skin_boxes, on->counts, on->near, &m);
+    m.skin[1] = flow_skin_open(on->other_skin).skin;
+    m.side[1] = side_of_points(m.skin + 1, on->other_x, on->other_boxes);
+    return duite_resize(call, FLOW_INDEX_OF(meet, near), query_meeting(&m, m.side + 1, on->near));
+}
+
+FLOW_KERNEL(meet_figure, FLOW_COLLIDE, struct flow_meet_args,
+            (GIVEN_W(near), GIVEN_SUM(counts), R(skin), R(skin_x), R(skin_boxes), R(body_skins),
+             R(body_points), R(body_boxes), R(body_fans)))
+static int meet_figure_body(const duite_call *call, const struct meet_figure_fields *on)
+{
+    struct meeting m;
+    begin_meeting(call, on->args, on->skin, on->skin_x, on->skin_boxes, on->counts, on->near, &m);
+    const uint32_t number = on->args->side[1] - m.flow->tables.n_blocks;
+    m.obstacle = m.model->obstacles + number;
+    m.body = contact_bodies_at(&m.model->bodies, m.obstacle->body);
+    m.fan = on->body_fans + flow_body_place(m.model, number).vertex;
+    flow_body_open(m.model, number, on->body_skins, on->body_points, on->body_boxes, m.skin + 1,
+                   m.side + 1);
+    return duite_resize(call, FLOW_INDEX_OF(meet_figure, near),
+                        query_meeting(&m, m.side + 1, on->near));
+}

@@ -31,7 +31,7 @@ struct meeting {
     double *counts;
 };
 
-static void append(struct meeting *m, const struct flow_near *near)
+static void append_place(struct meeting *m, const struct flow_near *near)
 {
     if (m->n < m->room)
         m->near[m->n] = *near;
@@ -41,22 +41,22 @@ static void append(struct meeting *m, const struct flow_near *near)
 }
 
 /* The friction coefficient of the shape and the cloth of n points. */
-static double friction_of(const struct meeting *m, uint32_t n, const uint32_t *point)
+static double friction_at(const struct meeting *m, uint32_t n, const uint32_t *point)
 {
     return flow_friction_of(m->flow, flow_cloth_of(&m->skin, n, point), m->obstacle);
 }
 
-static bool is_left_out(const struct meeting *m, uint32_t n, const uint32_t *point)
+static bool are_left_out(const struct meeting *m, uint32_t n, const uint32_t *point)
 {
-    return friction_of(m, n, point) < 0 ||
+    return friction_at(m, n, point) < 0 ||
            flow_is_attached(m->attached, n, point, m->obstacle - m->flow->n_cloths);
 }
 
 /* Fills the contact of a point of the cloth, in zeroed memory: n corners at places, weights in
  * `on`. The begin of a step adds the shape's motion (flow_contact_ahead). */
-static void describe(const struct meeting *m, uint32_t n, const uint32_t *point,
-                     const phys_vec *places, const struct contact_solid_point *on,
-                     struct flow_near *near)
+static void describe_place(const struct meeting *m, uint32_t n, const uint32_t *point,
+                           const phys_vec *places, const struct contact_solid_point *on,
+                           struct flow_near *near)
 {
     struct flow_contact *to = &near->contact;
     to->kind = FLOW_CONTACT_SHAPE;
@@ -64,7 +64,7 @@ static void describe(const struct meeting *m, uint32_t n, const uint32_t *point,
     to->row.normal = on->normal;
     to->row.gap = on->gap;
     to->row.thickness = m->model->contact.thickness;
-    to->row.friction = friction_of(m, n, point);
+    to->row.friction = friction_at(m, n, point);
     for (int k = 0; k < 2; k++)
         to->side[k] = m->args->side[k];
     for (uint32_t k = 0; k < n; k++) {
@@ -87,8 +87,8 @@ static bool is_certified(const struct meeting *m, const phys_vec x[3], const phy
 
 /* The gap at a point one step later, if point and shape move on as in this step; from the begin of
  * this step, the gap at its end. */
-static double gap_ahead(const struct meeting *m, const phys_vec *x, const phys_vec *y,
-                        const struct contact_solid_point *on)
+static double gap_of_place_ahead(const struct meeting *m, const phys_vec *x, const phys_vec *y,
+                                 const struct contact_solid_point *on)
 {
     phys_vec way = -m->h * on->velocity;
     for (int k = 0; k < 3; k++)
@@ -110,13 +110,15 @@ static bool fails_alone(const struct meeting *m, const phys_vec x[3], const phys
 }
 
 /* on: at the step's begin. The parts stay 1 if no cut helps, as in meet.c. */
-static void fail(struct meeting *m, uint32_t n, const uint32_t *point, const phys_vec x[3],
-                 const phys_vec y[3], const struct contact_solid_point *on, struct flow_near *near)
+static void fail_place(struct meeting *m, uint32_t n, const uint32_t *point, const phys_vec x[3],
+                       const phys_vec y[3], const struct contact_solid_point *on,
+                       struct flow_near *near)
 {
     double part[3] = {1, 1, 1};
-    describe(m, n, point, x, on, near);
+    describe_place(m, n, point, x, on, near);
     near->fails = true;
-    near->contact.row.firm = contact_row_firm_for(&near->contact.row, gap_ahead(m, x, y, on));
+    near->contact.row.firm =
+        contact_row_firm_for(&near->contact.row, gap_of_place_ahead(m, x, y, on));
     (void)contact_solid_cut(&m->solid, x, y, m->model->contact.thickness, near->contact.at.held,
                             part);
     for (uint32_t k = 0; k < n; k++)
@@ -130,11 +132,11 @@ static void fail_triangle(struct meeting *m, uint32_t triangle, const phys_vec x
     struct flow_near near;
     memset(&near, 0, sizeof near); /* padding, too: lists are compared byte by byte */
     contact_solid_nearest(&m->solid, CONTACT_BEGIN, x, &on);
-    fail(m, 3, m->skin.corner[triangle], x, y, &on, &near);
+    fail_place(m, 3, m->skin.corner[triangle], x, y, &on, &near);
     near.presses = !fails_alone(m, x, y);
     near.contact.feature[0] = triangle;
     near.contact.feature[1] = FLOW_ON_TRIANGLE;
-    append(m, &near);
+    append_place(m, &near);
 }
 
 static void list_triangle(struct meeting *m, uint32_t triangle, const phys_vec y[3])
@@ -147,12 +149,12 @@ static void list_triangle(struct meeting *m, uint32_t triangle, const phys_vec y
     if (!m->sweeps && !(on.gap > 0))
         return; /* its corners know the way out */
     memset(&near, 0, sizeof near);
-    describe(m, 3, m->skin.corner[triangle], y, &on, &near);
+    describe_place(m, 3, m->skin.corner[triangle], y, &on, &near);
     near.contact.feature[0] = triangle;
     near.contact.feature[1] = FLOW_ON_TRIANGLE;
     if (!m->sweeps)
         near.contact.row.slip = (m->args->from - m->args->to) * on.velocity;
-    append(m, &near);
+    append_place(m, &near);
 }
 
 static void look_at_triangle(struct meeting *m, uint32_t triangle)
@@ -186,13 +188,13 @@ static void list_vertex(struct meeting *m, uint32_t point, const phys_vec x[3], 
 {
     struct contact_solid_point on;
     find_vertex(m, CONTACT_END, y, &on);
-    const double ahead = gap_ahead(m, x, y, &on);
+    const double ahead = gap_of_place_ahead(m, x, y, &on);
     if (!(on.gap < flow_contact_reach(m->model)) && !(ahead < m->model->contact.thickness))
         return;
-    describe(m, 1, &point, y, &on, near);
+    describe_place(m, 1, &point, y, &on, near);
     if (on.gap > m->model->contact.thickness)
         near->contact.row.firm = contact_row_firm_for(&near->contact.row, ahead);
-    append(m, near);
+    append_place(m, near);
 }
 
 static void look_at_vertex(struct meeting *m, uint32_t vertex)
@@ -210,9 +212,9 @@ static void look_at_vertex(struct meeting *m, uint32_t vertex)
     }
     struct contact_solid_point on;
     find_vertex(m, CONTACT_BEGIN, x, &on);
-    fail(m, 1, &point, x, y, &on, &near);
+    fail_place(m, 1, &point, x, y, &on, &near);
     near.presses = true;
-    append(m, &near);
+    append_place(m, &near);
 }
 
 /* ---- Contact that is not certified ---- */
@@ -226,11 +228,11 @@ static void list_place(struct meeting *m, uint32_t vertex, const struct contact_
     if (!(hit->gap < flow_contact_reach(m->model)))
         return;
     memset(&near, 0, sizeof near);
-    describe(m, 1, &point, m->y + point, &on, &near);
+    describe_place(m, 1, &point, m->y + point, &on, &near);
     near.contact.feature[0] = vertex;
     near.contact.feature[1] = FLOW_ON_VERTEX;
     near.contact.row.slip = (m->args->from - m->args->to) * hit->velocity;
-    append(m, &near);
+    append_place(m, &near);
 }
 
 /* Vertices are put out of obstacles. Those that follow each other are near to each other, so many
@@ -242,7 +244,7 @@ static void look_at_vertices(struct meeting *m)
     phys_vec place[AT_ONCE];
     struct contact_hit hit[AT_ONCE];
     for (uint32_t i = 0; i < m->skin.n_vertices; i++) {
-        if (!is_left_out(m, 1, m->skin.vertex + i)) {
+        if (!are_left_out(m, 1, m->skin.vertex + i)) {
             vertex[n] = i;
             place[n++] = m->y[m->skin.vertex[i]];
         }
@@ -261,34 +263,33 @@ static void look_at_places(struct meeting *m)
     for (uint32_t i = 0; i < m->skin.n_triangles && !m->shape->body; i++) {
         const uint32_t *point = m->skin.corner[i];
         const phys_vec y[3] = {m->y[point[0]], m->y[point[1]], m->y[point[2]]};
-        if (!is_left_out(m, 3, point))
+        if (!are_left_out(m, 3, point))
             list_triangle(m, i, y);
     }
     look_at_vertices(m);
 }
 
-static void look(struct meeting *m)
+static void look_at_shape(struct meeting *m)
 {
     for (uint32_t i = 0; i < m->skin.n_triangles; i++)
-        if (!is_left_out(m, 3, m->skin.corner[i]))
+        if (!are_left_out(m, 3, m->skin.corner[i]))
             look_at_triangle(m, i);
     for (uint32_t i = 0; i < m->skin.n_vertices; i++)
-        if (!is_left_out(m, 1, m->skin.vertex + i))
+        if (!are_left_out(m, 1, m->skin.vertex + i))
             look_at_vertex(m, i);
 }
 
 /* ---- The task ---- */
 
-/* Parameters: w the list, cw the counts, r the skin, its points. */
-enum { AT_LIST, AT_COUNTS, AT_SKIN, AT_POINTS };
-
-static int meet(const duite_call *call)
+FLOW_KERNEL(meet_shape, FLOW_COLLIDE, struct flow_meet_args,
+            (GIVEN_W(near), GIVEN_SUM(counts), R(skin), R(skin_x), R(skin_boxes)))
+static int meet_shape_body(const duite_call *call, const struct meet_shape_fields *on)
 {
-    const struct flow_meet_args *args = call->args;
+    const struct flow_meet_args *args = on->args;
     const struct flow *flow = flow_of(call);
     const struct contact_shape *shape =
         flow->model->obstacles + (args->side[1] - flow->tables.n_blocks);
-    struct flow_list *list = duite_out(call, AT_LIST, struct flow_list);
+    struct flow_list *list = on->near;
     struct meeting m = {.flow = flow,
                         .model = flow->model,
                         .sweeps = flow_contact_mode(flow->model)->sweeps,
@@ -298,37 +299,26 @@ static int meet(const duite_call *call)
                         .h = args->to - args->from,
                         .near = (struct flow_near *)(list + 1),
                         .room = args->room,
-                        .counts = duite_out(call, AT_COUNTS, double) +
-                                  (size_t)FLOW_COUNTS * args->number};
+                        .counts = on->counts + (size_t)FLOW_COUNTS * args->number};
     contact_pose_over(shape, flow->model->keys, &flow->model->bodies, args->from, args->to,
                       &m.pose);
     contact_solid_make(shape, &m.pose, &m.solid);
-    const struct flow_skin skin = flow_skin_open(duite_in(call, AT_SKIN, unsigned char));
+    const struct flow_skin skin = flow_skin_open(on->skin);
     m.skin = skin.skin;
     m.attached = skin.attached;
-    m.x = duite_in(call, AT_POINTS, phys_vec);
+    m.x = on->skin_x;
     m.y = m.x + m.skin.n_points;
     if (m.sweeps)
-        look(&m);
+        look_at_shape(&m);
     else
         look_at_places(&m);
     m.counts[FLOW_COUNT_ALL] = (double)m.n;
     m.counts[FLOW_COUNT_PASSES] = (double)m.passes;
     *list = (struct flow_list){.n = m.n < m.room ? m.n : m.room,
                                .side = {args->side[0], args->side[1]}};
-    return duite_resize(call, AT_LIST, flow_list_bytes(list->n, sizeof *m.near));
+    return duite_resize(call, FLOW_INDEX_OF(meet_shape, near),
+                        flow_list_bytes(list->n, sizeof *m.near));
 }
-
-static int meet_timed(const duite_call *call)
-{
-    return flow_timed(call, meet, FLOW_COLLIDE);
-}
-const duite_kernel flow_meet_shape = {.name = "meet_shape",
-                                      .body = meet_timed,
-                                      .access = {DUITE_W, DUITE_CW},
-                                      .law = {NULL, &duite_sum},
-                                      .variadic = DUITE_R,
-                                      .args_size = sizeof(struct flow_meet_args)};
 
 /* ---- Where a contact is ---- */
 

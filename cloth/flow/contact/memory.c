@@ -54,7 +54,7 @@ int flow_contact_room(struct flow_state *state, uint32_t n)
     meetings->all = cloth_alloc(meetings->room, sizeof *meetings->all, trouble);
     meetings->count = cloth_alloc(meetings->room, FLOW_COUNTS * sizeof *meetings->count, trouble);
     contact->refs =
-        cloth_alloc(2 * (size_t)meetings->room + state->head.n_blocks + DUITE_MAX_ACCESS,
+        cloth_alloc(2 * (size_t)meetings->room + state->head.n_blocks + FLOW_MAX_PARAMETERS,
                     sizeof *contact->refs, trouble);
     return flow_memory_agree(state);
 }

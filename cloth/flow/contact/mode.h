@@ -40,7 +40,7 @@ struct flow_contact_mode {
      * force of tie i, a contact whose point is there; left: part of the step's time. */
     void (*row)(const struct flow *flow, const struct flow_step_args *step,
                 const struct flow_contact *contact, struct contact_row *row);
-    void (*press)(const struct flow *flow, const struct flow_ties *ties,
+    void (*press)(const struct contact_spring *spring, const struct flow_ties *ties,
                   const struct flow_view *view, double h, double left, uint32_t i,
                   const phys_vec *point, struct flow_pressed *to);
     /* The springs of its contacts in a step of h, s; NULL: they are none, and bound no step. */

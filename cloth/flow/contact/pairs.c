@@ -8,14 +8,16 @@
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/mode.h"
-#include "cloth/flow/contact/skins.h"
+#include "cloth/flow/contact/skin.h"
 #include "cloth/flow/run/step.h"
 
 #include "cloth/contact/solid.h"
 
-/* m: boxes still meet if they are this much farther apart than a contact reaches. */
-static const double SPARE = 0.02;
-enum { LEAST_ROOM = 256, FLOW_MEET_OBJECTS = 3 };
+/* Thicknesses: boxes still meet if they are this much farther apart than a contact reaches. That is
+ * the way of some steps, so the set of meetings changes seldom; more of it costs queries that find
+ * nothing. */
+static const double SPARE = 20;
+enum { LEAST_ROOM = 256 }; /* items of a list, which doubles where it is short */
 
 /* ---- Boxes ---- */
 
@@ -46,7 +48,7 @@ static int roots_body(const duite_call *call, const struct roots_fields *on)
     return 0;
 }
 
-static int get_roots(struct flow_state *state)
+static int get_root_boxes(struct flow_state *state)
 {
     struct flow_block_args args;
     int code = flow_bodies_follow(state);
@@ -163,7 +165,8 @@ static int make_meetings(struct flow_state *state)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
     const uint32_t n_blocks = state->flow->tables.n_blocks, n_sides = count_sides(state);
-    const double reach = flow_contact_reach(state->flow->model) + SPARE;
+    const double reach =
+        flow_contact_reach(state->flow->model) + SPARE * state->flow->model->contact.thickness;
     flow_contact_part(state);
     const int code = flow_contact_room(state, count_near(state, reach));
     if (code)
@@ -209,8 +212,8 @@ static bool has_corners(const struct flow_state *state, uint32_t block, uint32_t
     return has;
 }
 
-static bool concerns(const struct flow_state *state, const struct flow_meeting *meeting,
-                     uint32_t block)
+static bool concerns_block(const struct flow_state *state, const struct flow_meeting *meeting,
+                           uint32_t block)
 {
     return has_corners(state, block, meeting->side[0]) ||
            has_corners(state, block, meeting->side[1]);
@@ -221,7 +224,7 @@ uint32_t flow_contact_lists(const struct flow_state *state, uint32_t block, duit
     const struct flow_meetings *meetings = &state->contact.meetings;
     uint32_t n = 0;
     for (uint32_t i = 0; i < meetings->n; i++)
-        if (concerns(state, meetings->all + i, block))
+        if (concerns_block(state, meetings->all + i, block))
             to[n++] = meetings->all[i].near;
     return n;
 }
@@ -232,46 +235,38 @@ void flow_contact_keepers(const struct flow_state *state, uint32_t block, unsign
     const uint32_t n_blocks = state->flow->tables.n_blocks;
     memset(keeps, 0, n_blocks);
     for (uint32_t i = 0; i < meetings->n; i++)
-        for (int k = 0; k < 2 && concerns(state, meetings->all + i, block); k++)
+        for (int k = 0; k < 2 && concerns_block(state, meetings->all + i, block); k++)
             if (meetings->all[i].side[k] < n_blocks)
                 keeps[meetings->all[i].side[k]] = 1;
 }
 
 /* ---- Their tasks ---- */
 
-/* The objects of a block, or of all bodies, that a meeting reads. Returns the end. */
-static duite_object *add_side(const struct flow_state *state, uint32_t side, duite_object *refs)
-{
-    const bool block = side < state->flow->tables.n_blocks;
-    *refs++ = block ? state->block[side].skin : state->run.body_skins;
-    *refs++ = block ? state->block[side].skin_x : state->run.body_points;
-    *refs++ = block ? state->block[side].skin_boxes : state->run.body_boxes;
-    return refs; /* FLOW_MEET_OBJECTS more */
-}
-
 static int fork_meeting(struct flow_state *state, uint32_t number)
 {
     const struct flow_meeting *meeting = state->contact.meetings.all + number;
-    const uint32_t *side = meeting->side;
-    const bool shape = is_shape(state, side[1]);
+    const uint32_t *side = meeting->side, n_blocks = state->flow->tables.n_blocks;
     const struct flow_step_args step = flow_attempt_args(state);
     const struct flow_meet_args args = {.side = {side[0], side[1]},
                                         .number = number,
                                         .room = meeting->room,
                                         .from = step.time - step.h,
                                         .to = step.time};
-    duite_object refs[3 + 2 * FLOW_MEET_OBJECTS] = {meeting->near, state->contact.meetings.counts};
-    duite_object *end = add_side(state, side[0], refs + 2);
-    if (side[0] != side[1] && !shape)
-        end = add_side(state, side[1], end);
-    if (!shape && side[1] >= state->flow->tables.n_blocks)
-        *end++ = state->run.body_fans;
-    return duite_fork(state->rt, shape ? &flow_meet_shape : &flow_meet, &args, (size_t)(end - refs),
-                      refs);
+    const struct flow_objects *other = state->block + (side[1] < n_blocks ? side[1] : 0);
+    const duite_object one[] = {meeting->near, state->contact.meetings.counts, other->skin,
+                                other->skin_x, other->skin_boxes};
+    const struct flow_kernel *kernel = &flow_kernel_meet;
+    if (side[0] == side[1])
+        kernel = &flow_kernel_meet_self;
+    else if (is_shape(state, side[1]))
+        kernel = &flow_kernel_meet_shape;
+    else if (side[1] >= n_blocks)
+        kernel = &flow_kernel_meet_figure;
+    return flow_fork_given(state, kernel, &args, &(struct flow_given){.one = one});
 }
 
 /* Forks all meetings and gets their counts. */
-static int meet(struct flow_state *state)
+static int fork_meetings(struct flow_state *state)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
     int code = duite_set(state->rt, meetings->counts, NULL);
@@ -337,12 +332,12 @@ int flow_contact_look(struct flow_state *state, struct flow_seen *seen)
     int code = flow_contact_mode(state->flow->model)->sweeps ? flow_skins_refit(state)
                                                              : flow_skins_place(state);
     if (!code)
-        code = get_roots(state);
+        code = get_root_boxes(state);
     place_shapes(state);
     if (!code && (!state->contact.meetings.counts.generation || !all_meet(state)))
         code = make_meetings(state);
     do
-        code = code ? code : meet(state);
+        code = code ? code : fork_meetings(state);
     while (!code && make_longer(state));
     sum_up(state, seen);
     return code;

@@ -2,6 +2,12 @@
  * touch.c, so the contacts of a feature are side by side. */
 #include "cloth/flow/contact/contact.h"
 
+/* Surfaces face much the same way if their normals have at least this cosine: 60 degrees. */
+static const double SAME_WAY = 0.5;
+/* Part of the thickness: points of a surface that are as near to each other are one, but for
+ * rounding. */
+static const double SAME_POINT = 1e-6;
+
 /* True if two contacts are of the same feature of the block. */
 static bool are_of_one(const struct flow_contact *a, const struct flow_contact *b)
 {
@@ -26,8 +32,8 @@ static bool is_met(const struct flow_contact *list, size_t n, size_t i)
     while (from > 0 && are_of_one(list + from - 1, contact))
         from--;
     for (size_t to = from; to < n && are_of_one(list + to, contact); to++)
-        met = met ||
-              (is_inside(list + to) && phys_dot(&list[to].row.normal, &contact->row.normal) > 0.5);
+        met = met || (is_inside(list + to) &&
+                      phys_dot(&list[to].row.normal, &contact->row.normal) > SAME_WAY);
     return met;
 }
 
@@ -47,7 +53,7 @@ size_t flow_contact_drop_aslant(struct flow_contact *list, size_t n, unsigned ch
 static bool are_same(const struct flow_contact *a, const struct flow_contact *b)
 {
     const phys_vec between = a->row.gap * a->row.normal - b->row.gap * b->row.normal;
-    const double most = 1e-6 * a->row.thickness;
+    const double most = SAME_POINT * a->row.thickness;
     return phys_dot(&between, &between) <= most * most;
 }
 

@@ -72,7 +72,7 @@ static bool is_met(const struct meeting *m, uint32_t row, uint32_t *cloth)
 }
 
 /* Puts out rows from .. to - 1 of cloths that meet the obstacle. Returns how many it moved. */
-static size_t project(const struct meeting *m, uint32_t from, uint32_t to)
+static size_t project_rows(const struct meeting *m, uint32_t from, uint32_t to)
 {
     size_t touched = 0;
     uint32_t cloth = 0;
@@ -105,7 +105,7 @@ static size_t obstacle_meets(const duite_call *call, const struct flow_step_args
     flow_pins_begin(call, t, step->time, &pins);
     for (uint32_t i = 0; i < t->n_sliding; i++) {
         const uint32_t row = t->sliding[i][0];
-        touched += project(m, from, row);
+        touched += project_rows(m, from, row);
         from = row + 1;
         if (!is_met(m, row, &cloth))
             continue;
@@ -115,7 +115,7 @@ static size_t obstacle_meets(const duite_call *call, const struct flow_step_args
         if (flow_slider_way(&slider.filter, &way))
             touched += contact_leave(&hit, &way, m->x + row, m->v + row);
     }
-    return touched + project(m, from, t->n);
+    return touched + project_rows(m, from, t->n);
 }
 
 FLOW_KERNEL(collide, FLOW_COLLIDE, struct flow_step_args,

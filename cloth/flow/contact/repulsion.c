@@ -7,8 +7,10 @@
 
 #include <math.h>
 
-static const double EXPLICIT = 0.1; /* k H^2 / m */
-static const double LIGHT = 0.25;   /* of the mean mass: that of a grid's corners */
+/* k H^2 / m of explicit steps, by default: two layers reach 4 times that (FLOW_REPULSION_MOST),
+ * well below the 4 where what they push bounces ever harder. */
+static const double EXPLICIT = 0.1;
+static const double LIGHT = 0.25; /* of the mean mass: that of a grid's corners */
 
 static double stiffness_of(const struct flow *flow)
 {
@@ -80,12 +82,11 @@ static void shift_point(const struct contact_row *row, double left, phys_vec *po
 
 /* The second side's motion is part of the slip, and so of the speed. Without velocities the speed
  * is the way from the row's origin, over h. */
-static void press_spring(const struct flow *flow, const struct flow_ties *ties,
+static void press_spring(const struct contact_spring *spring, const struct flow_ties *ties,
                          const struct flow_view *view, double h, double left, uint32_t i,
                          const phys_vec *point, struct flow_pressed *to)
 {
     const struct contact_row *row = view->contact_rows + i;
-    const struct contact_spring spring = spring_of(flow, h);
     struct contact_repelled repelled;
     const double rate = h > 0 ? 1 / h : 0;
     phys_vec at = *point;
@@ -94,7 +95,7 @@ static void press_spring(const struct flow *flow, const struct flow_ties *ties,
     if (view->v)
         flow_contact_speed(ties, view, i, &speed);
     speed += rate * row->slip;
-    contact_repel(&spring, row, &at, &speed, &repelled);
+    contact_repel(spring, row, &at, &speed, &repelled);
     to->force = repelled.force;
     to->against = sqrt(repelled.stiffness) * row->normal;
     contact_repelled_value(&repelled, &row->normal, h, &to->value);

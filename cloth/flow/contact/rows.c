@@ -15,25 +15,25 @@
 /* ---- Finding them ---- */
 
 /* The contacts of lists that have a corner in a block, in the order of the lists. */
-struct found {
+struct found_contacts {
     size_t n;
     const struct flow_contact **contact;
     struct flow_tie_corners *corners;
 };
 
-/* Finds them in the parameters from `at` on. Returns false without memory. */
-static bool find(const duite_call *call, size_t at, uint32_t block, struct found *to)
+/* Finds them in n_lists lists. Returns false without memory. */
+static bool find_contacts(size_t n_lists, const duite_param *lists, uint32_t n_blocks,
+                          uint32_t block, struct found_contacts *to)
 {
-    const uint32_t n_blocks = flow_of(call)->tables.n_blocks;
     size_t n = 0, all = 0;
-    for (size_t i = at; i < call->n_params; i++, all += n)
-        flow_contact_of(duite_in(call, i, struct flow_list), block, n_blocks, &n);
-    *to = (struct found){.contact = malloc((all + 1) * sizeof *to->contact),
-                         .corners = malloc((all + 1) * sizeof *to->corners)};
+    for (size_t i = 0; i < n_lists; i++, all += n)
+        flow_contact_of(lists[i].data, block, n_blocks, &n);
+    *to = (struct found_contacts){.contact = malloc((all + 1) * sizeof *to->contact),
+                                  .corners = malloc((all + 1) * sizeof *to->corners)};
     if (!to->contact || !to->corners)
         return false;
-    for (size_t i = at; i < call->n_params; i++) {
-        const struct flow_list *list = duite_in(call, i, struct flow_list);
+    for (size_t i = 0; i < n_lists; i++) {
+        const struct flow_list *list = lists[i].data;
         const struct flow_contact *contact = (const struct flow_contact *)(list + 1);
         const uint32_t *place = flow_contact_of(list, block, n_blocks, &n);
         for (size_t k = 0; k < n; k++) {
@@ -44,7 +44,7 @@ static bool find(const duite_call *call, size_t at, uint32_t block, struct found
     return true;
 }
 
-static void forget(struct found *found)
+static void forget_contacts(struct found_contacts *found)
 {
     free(found->contact);
     free(found->corners);
@@ -57,7 +57,7 @@ static int no_memory(const duite_call *call)
 
 /* All ties of a block: the joints of the step, then its contacts. */
 static struct flow_tie_list ties_of(const struct flow *flow, const struct flow_step_args *step,
-                                    const struct found *found)
+                                    const struct found_contacts *found)
 {
     return (struct flow_tie_list){.n_joints = flow->n_ties,
                                   .n = (uint32_t)found->n,
@@ -76,18 +76,19 @@ struct row_args {
 
 /* ---- The record of a block ---- */
 
-enum { AT_RECORD, AT_RECORD_LISTS };
-
-static int count(const duite_call *call)
+FLOW_KERNEL(tie_count, FLOW_COLLIDE, struct row_args, (W(tie_record), REST_R(keepers)))
+static int tie_count_body(const duite_call *call, const struct tie_count_fields *on)
 {
-    const struct row_args *args = call->args;
+    const struct row_args *args = on->args;
     const struct flow *flow = flow_of(call);
     const uint32_t max_links = flow->tables.n_blocks;
-    struct flow_tie_record *record = duite_out(call, AT_RECORD, struct flow_tie_record);
+    struct flow_tie_record *record = (struct flow_tie_record *)(void *)on->tie_record;
     struct flow_tie_link *link = (struct flow_tie_link *)(record + 1);
-    struct found found;
+    struct found_contacts found;
     uint64_t *scratch = NULL;
-    int code = find(call, AT_RECORD_LISTS, args->block, &found) ? 0 : no_memory(call);
+    int code = find_contacts(on->n_keepers, on->keepers, max_links, args->block, &found)
+                   ? 0
+                   : no_memory(call);
     const struct flow_tie_list list = ties_of(flow, &args->step, &found);
     if (!code)
         scratch = malloc((flow_ties_scratch(list.n_joints + found.n) + 1) * sizeof *scratch);
@@ -96,20 +97,11 @@ static int count(const duite_call *call)
     if (!code) /* links fit: there is room for all blocks */
         flow_ties_count(&list, args->block, scratch, max_links, record, link);
     free(scratch);
-    forget(&found);
+    forget_contacts(&found);
     return code ? code
-                : duite_resize(call, AT_RECORD, sizeof *record + record->n_links * sizeof *link);
+                : duite_resize(call, FLOW_INDEX_OF(tie_count, tie_record),
+                               sizeof *record + record->n_links * sizeof *link);
 }
-
-static int count_timed(const duite_call *call)
-{
-    return flow_timed(call, count, FLOW_COLLIDE);
-}
-const duite_kernel flow_count_ties = {.name = "tie_count",
-                                      .body = count_timed,
-                                      .access = {DUITE_W},
-                                      .variadic = DUITE_R,
-                                      .args_size = sizeof(struct row_args)};
 
 /* Joins the records of all blocks, on every rank. */
 FLOW_KERNEL_WITH(tie_say, FLOW_COLLIDE, struct flow_block_args, (W(tie_said), ALL(tie_record)),
@@ -126,7 +118,7 @@ static int tie_say_body(const duite_call *call, const struct tie_say_fields *on)
 }
 
 /* Takes it apart for flow_ties_adopt. */
-static void hear(struct flow_state *state)
+static void hear_records(struct flow_state *state)
 {
     struct flow_tie_records *said = &state->tied.said;
     const unsigned char *from = state->contact.said;
@@ -142,47 +134,40 @@ static void hear(struct flow_state *state)
     said->first[state->flow->tables.n_blocks] = n;
 }
 
-/* The lists of all blocks that may keep contacts with corners in one. Returns the end. */
-static duite_object *add_lists(const struct flow_state *state, uint32_t block, duite_object *refs)
+/* Forks a kernel with the lists of all blocks that may keep contacts with corners in one. */
+static int fork_with_keepers(struct flow_state *state, const struct flow_kernel *kernel,
+                             const struct row_args *args)
 {
+    duite_object *rest = flow_contact_rest(state), *end = rest;
     const struct flow_contact_state *contact = &state->contact;
-    flow_contact_keepers(state, block, contact->mark);
+    flow_contact_keepers(state, args->block, contact->mark);
     for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
         if (contact->mark[b])
-            *refs++ = contact->kept[b].list[contact->now];
-    return refs;
+            *end++ = contact->kept[b].list[contact->now];
+    return flow_fork_given(state, kernel, args,
+                           &(struct flow_given){.n = (size_t)(end - rest), .rest = rest});
 }
 
-static int fork_count(struct flow_state *state, const struct row_args *args)
-{
-    duite_object *refs = state->contact.refs;
-    refs[AT_RECORD] = state->block[args->block].tie_record;
-    const duite_object *end = add_lists(state, args->block, refs + AT_RECORD_LISTS);
-    return duite_fork(state->rt, &flow_count_ties, args, (size_t)(end - refs), refs);
-}
-
-static int say(struct flow_state *state, struct row_args *args)
+static int say_records(struct flow_state *state, struct row_args *args)
 {
     const struct flow_block_args all = {0};
     int code = DUITE_OK;
     for (args->block = 0; args->block < state->flow->tables.n_blocks && !code; args->block++)
-        code = fork_count(state, args);
+        code = fork_with_keepers(state, &flow_kernel_tie_count, args);
     if (!code)
         code = flow_fork_one(state, &flow_kernel_tie_say, &all);
     if (!code)
         code = duite_get(state->rt, state->run.tie_said, state->contact.said);
     if (!code)
-        hear(state);
+        hear_records(state);
     return code;
 }
 
 /* ---- Its table ---- */
 
-enum { AT_TABLE, AT_LINKS, AT_TIES, AT_ROWS, AT_OBSTACLES, AT_TABLE_LISTS };
-
 /* Writes every byte, also of unused rows. */
 static void write_rows(const struct flow *flow, const struct flow_step_args *step,
-                       const struct found *found, const struct flow_ties *ties,
+                       const struct found_contacts *found, const struct flow_ties *ties,
                        struct contact_row *row, uint32_t *obstacle)
 {
     const size_t room = ties->room.ties ? ties->room.ties : 1;
@@ -201,14 +186,19 @@ static void write_rows(const struct flow *flow, const struct flow_step_args *ste
     }
 }
 
-static int make_table(const duite_call *call)
+FLOW_KERNEL(tie_contacts, FLOW_COLLIDE, struct row_args,
+            (R(table), R(tie_links), W(tie_table), W(contact_rows), W(contact_obstacles),
+             REST_R(keepers)))
+static int tie_contacts_body(const duite_call *call, const struct tie_contacts_fields *on)
 {
-    const struct row_args *args = call->args;
+    const struct row_args *args = on->args;
     const struct flow *flow = flow_of(call);
-    const struct flow_table table = flow_table_in(call, duite_in(call, AT_TABLE, unsigned char));
-    const uint32_t(*links)[2] = (const uint32_t(*)[2])duite_in(call, AT_LINKS, uint32_t);
-    struct found found;
-    int code = find(call, AT_TABLE_LISTS, args->block, &found) ? 0 : no_memory(call);
+    const struct flow_table table = flow_table_in(call, on->table);
+    const uint32_t(*links)[2] = (const uint32_t(*)[2])on->tie_links;
+    struct found_contacts found;
+    int code = find_contacts(on->n_keepers, on->keepers, flow->tables.n_blocks, args->block, &found)
+                   ? 0
+                   : no_memory(call);
     const struct flow_tie_list list = ties_of(flow, &args->step, &found);
     const struct flow_ties_of of = {.block = args->block,
                                     .n_rows = table.n,
@@ -218,39 +208,20 @@ static int make_table(const duite_call *call)
                                     .others = links + 1,
                                     .list = &list,
                                     .room = args->room};
-    if (!code && !flow_ties_make(&of, call->param[AT_TIES].data))
+    if (!code && !flow_ties_make(&of, on->tie_table))
         code = duite_fail(call, FLOW_NO_MEMORY, "block %u has no room for its ties", of.block);
     if (!code) {
-        const struct flow_ties ties = flow_ties_open(call->param[AT_TIES].data);
-        write_rows(flow, &args->step, &found, &ties, duite_out(call, AT_ROWS, struct contact_row),
-                   duite_out(call, AT_OBSTACLES, uint32_t));
+        const struct flow_ties ties = flow_ties_open(on->tie_table);
+        write_rows(flow, &args->step, &found, &ties, on->contact_rows, on->contact_obstacles);
     }
-    forget(&found);
+    forget_contacts(&found);
     return code;
 }
 
-static int make_table_timed(const duite_call *call)
-{
-    return flow_timed(call, make_table, FLOW_COLLIDE);
-}
-const duite_kernel flow_tie_contacts = {.name = "tie_contacts",
-                                        .body = make_table_timed,
-                                        .access = {DUITE_R, DUITE_R, DUITE_W, DUITE_W, DUITE_W},
-                                        .variadic = DUITE_R,
-                                        .args_size = sizeof(struct row_args)};
-
 static int fork_table(struct flow_state *state, struct row_args *args)
 {
-    const struct flow_objects *of = state->block + args->block;
-    duite_object *refs = state->contact.refs;
     args->room = state->tied.now.room[args->block];
-    refs[AT_TABLE] = of->table;
-    refs[AT_LINKS] = of->tie_links;
-    refs[AT_TIES] = of->tie_table;
-    refs[AT_ROWS] = of->contact_rows;
-    refs[AT_OBSTACLES] = of->contact_obstacles;
-    const duite_object *end = add_lists(state, args->block, refs + AT_TABLE_LISTS);
-    return duite_fork(state->rt, &flow_tie_contacts, args, (size_t)(end - refs), refs);
+    return fork_with_keepers(state, &flow_kernel_tie_contacts, args);
 }
 
 int flow_contact_tie(struct flow_state *state)
@@ -258,7 +229,7 @@ int flow_contact_tie(struct flow_state *state)
     struct row_args args;
     memset(&args, 0, sizeof args);
     args.step = flow_attempt_args(state);
-    int code = say(state, &args);
+    int code = say_records(state, &args);
     if (!code)
         code = flow_ties_adopt(state);
     if (!code)
@@ -286,8 +257,8 @@ static void find_point(const struct flow_ties *ties, const struct flow_view *vie
 }
 
 /* Adds a force on the point, times `scale`, to the rows that are here. */
-static void spread(const struct flow_ties *ties, uint32_t i, double scale, const phys_vec *force,
-                   phys_vec *y)
+static void spread_force(const struct flow_ties *ties, uint32_t i, double scale,
+                         const phys_vec *force, phys_vec *y)
 {
     for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
         if (ties->corner[i][k] < ties->n_rows)
@@ -302,28 +273,44 @@ void flow_contact_speed(const struct flow_ties *ties, const struct flow_view *vi
         *speed += ties->weight[i][k] * *flow_tie_v(ties, view, ties->corner[i][k]);
 }
 
+/* The law of a run's contacts in a step of h. */
+struct law {
+    const struct flow_contact_mode *mode;
+    struct contact_spring spring;
+    double h;
+};
+
+static struct law law_of(const struct flow *flow, double h)
+{
+    const struct flow_contact_mode *mode = flow_contact_mode(flow->model);
+    struct law law = {.mode = mode, .h = h};
+    if (mode->spring)
+        law.spring = mode->spring(flow, h);
+    return law;
+}
+
 /* ahead: s, for which corners move on at their velocities. left: part of the step's time. */
-static void press(const struct flow_contact_mode *mode, const struct flow *flow,
-                  const struct flow_ties *ties, const struct flow_view *view, double h,
-                  double ahead, double left, uint32_t i, struct flow_pressed *to)
+static void press_contact(const struct law *law, const struct flow_ties *ties,
+                          const struct flow_view *view, double ahead, double left, uint32_t i,
+                          struct flow_pressed *to)
 {
     phys_vec point;
     find_point(ties, view, ahead, i, &point);
-    mode->press(flow, ties, view, h, left, i, &point, to);
+    law->mode->press(&law->spring, ties, view, law->h, left, i, &point, to);
 }
 
 void flow_contact_force(const struct flow *flow, const struct flow_view *view,
                         const struct flow_step_args *step, phys_vec *f)
 {
     const double left = step->h > 0 ? (step->time - step->now) / step->h : 0;
-    const struct flow_contact_mode *mode = flow_contact_mode(flow->model);
+    const struct law law = law_of(flow, step->h);
     const struct flow_ties ties = flow_ties_open(view->tie_table);
     for (uint32_t i = 0; i < ties.n; i++) {
         struct flow_pressed pressed;
         if (ties.of[i] < flow->n_ties)
             continue;
-        press(mode, flow, &ties, view, step->h, 0, left, i, &pressed);
-        spread(&ties, i, 1, &pressed.force, f);
+        press_contact(&law, &ties, view, 0, left, i, &pressed);
+        spread_force(&ties, i, 1, &pressed.force, f);
     }
 }
 
@@ -338,7 +325,7 @@ void flow_contact_solved(const struct flow *flow, const struct flow_view *view,
             continue;
         find_point(&ties, view, 0, i, &point);
         contact_row_force(view->contact_rows + i, &point, value + i, &force);
-        spread(&ties, i, 1, &force, f);
+        spread_force(&ties, i, 1, &force, f);
         for (int k = 0; k < SOLVE_TIE_CORNERS && obstacle[i]; k++)
             if (ties.corner[i][k] < ties.n_rows)
                 by_obstacle[obstacle[i] - 1] += ties.weight[i][k] * force;
@@ -346,31 +333,31 @@ void flow_contact_solved(const struct flow *flow, const struct flow_view *view,
 }
 
 /* For a right side that has the forces already: adds their loss while the step moves. */
-static void resist(const struct flow_ties *ties, const struct flow_view *view, double h, uint32_t i,
-                   const phys_vec *value, phys_vec *b)
+static void resist_motion(const struct flow_ties *ties, const struct flow_view *view, double h,
+                          uint32_t i, const phys_vec *value, phys_vec *b)
 {
     const phys_vec three = {1, 1, 1, 0};
     phys_vec speed, lost;
     flow_contact_speed(ties, view, i, &speed);
     solve_spring_times(value, &speed, &lost);
     lost *= three;
-    spread(ties, i, -h * h, &lost, b);
+    spread_force(ties, i, -h * h, &lost, b);
 }
 
 void flow_contact_system(const struct flow *flow, const struct flow_view *view, double h,
                          double push, phys_vec *b, phys_vec *value)
 {
-    const struct flow_contact_mode *mode = flow_contact_mode(flow->model);
+    const struct law law = law_of(flow, h);
     const struct flow_ties ties = flow_ties_open(view->tie_table);
     for (uint32_t i = 0; i < ties.n; i++) {
         struct flow_pressed pressed;
         if (ties.of[i] < flow->n_ties)
             continue;
-        press(mode, flow, &ties, view, h, b ? push : 0, 0, i, &pressed);
+        press_contact(&law, &ties, view, b ? push : 0, 0, i, &pressed);
         if (b && push > 0)
-            spread(&ties, i, h, &pressed.force, b);
+            spread_force(&ties, i, h, &pressed.force, b);
         else if (b)
-            resist(&ties, view, h, i, &pressed.against, b);
+            resist_motion(&ties, view, h, i, &pressed.against, b);
         value[i] = pressed.value * (phys_vec){h, h, h, h * h}; /* h^2 N: of w w' each w takes h */
     }
 }

@@ -1,6 +1,9 @@
-/* The arrays of a block's skin lie one after the other, each on a line of its own. */
+/* The arrays of a block's skin lie one after the other, each on a line of its own. Its points are
+ * rows of the block and of halos. Begin and end of a step are kept_x and x. The frame of the boxes
+ * moves as the mean of the points does, added up in their order. */
 #include "cloth/flow/contact/skin.h"
 
+#include "cloth/flow/state/bodies.h"
 #include "cloth/flow/state/room.h"
 
 struct contact_skin flow_skin_counts(const struct flow_table *table)
@@ -11,7 +14,8 @@ struct contact_skin flow_skin_counts(const struct flow_table *table)
                                  .n_vertices = table->skin.n_vertices};
 }
 
-static size_t lay(const struct contact_skin *skin, void *memory, struct flow_skin_arrays *arrays)
+static size_t lay_skin(const struct contact_skin *skin, void *memory,
+                       struct flow_skin_arrays *arrays)
 {
     struct flow_room room = {.base = memory};
     flow_room_next(&room, contact_skin_bytes(skin));
@@ -25,14 +29,14 @@ size_t flow_skin_bytes(const struct flow_table *table)
 {
     const struct contact_skin skin = flow_skin_counts(table);
     struct flow_skin_arrays arrays;
-    return lay(&skin, NULL, &arrays);
+    return lay_skin(&skin, NULL, &arrays);
 }
 
 struct flow_skin_arrays flow_skin_places(const struct flow_table *table, void *memory)
 {
     const struct contact_skin skin = flow_skin_counts(table);
     struct flow_skin_arrays arrays;
-    lay(&skin, memory, &arrays);
+    lay_skin(&skin, memory, &arrays);
     return arrays;
 }
 
@@ -40,9 +44,85 @@ struct flow_skin flow_skin_open(const void *memory)
 {
     struct flow_skin skin = {.skin = contact_skin_open(memory)};
     struct flow_skin_arrays arrays;
-    lay(&skin.skin, (void *)memory, &arrays); /* it is only read */
+    lay_skin(&skin.skin, (void *)memory, &arrays); /* it is only read */
     skin.from = arrays.from;
     skin.at = arrays.at;
     skin.attached = arrays.attached;
     return skin;
+}
+
+/* ---- In a step ---- */
+
+FLOW_KERNEL(keep_halo, FLOW_COLLIDE, struct flow_block_args, (R(halo_x), W(kept_halo_x)))
+static int keep_halo_body(const duite_call *call, const struct keep_halo_fields *on)
+{
+    const size_t bytes = duite_count(call, FLOW_INDEX_OF(keep_halo, halo_x)) * sizeof(double);
+    memcpy(on->kept_halo_x, on->halo_x, bytes);
+    return 0;
+}
+
+int flow_skins_keep(struct flow_state *state)
+{
+    struct flow_block_args args;
+    return flow_fork_each(state, &flow_kernel_keep_halo, &args);
+}
+
+/* Gathers the rows of the points. */
+static void gather_points(const struct flow_skin *skin, uint32_t n_neighbours, const phys_vec *own,
+                          const duite_param *halo, phys_vec *to)
+{
+    for (uint32_t i = 0; i < skin->skin.n_points; i++) {
+        const uint32_t s = skin->from[i];
+        to[i] = s == n_neighbours ? own[skin->at[i]] : flow_rows_of(halo, s)[skin->at[i]];
+    }
+}
+
+static void mean_way(uint32_t n, const phys_vec *x, const phys_vec *y, phys_vec *way)
+{
+    phys_vec sum = {0};
+    for (uint32_t i = 0; i < n; i++)
+        sum += y[i] - x[i];
+    *way = n ? sum / n : sum;
+}
+
+FLOW_KERNEL(skin_refit, FLOW_COLLIDE, struct flow_block_args,
+            (R(skin), R(kept_x), R(x), W(skin_x), W(skin_boxes), NEIGHBOURS(kept_halo_x),
+             NEIGHBOURS(halo_x)))
+static int skin_refit_body(const duite_call *call, const struct skin_refit_fields *on)
+{
+    const uint32_t n_neighbours = flow_shape_of(call)->n_neighbours;
+    const struct flow_skin skin = flow_skin_open(on->skin);
+    const uint32_t n = skin.skin.n_points;
+    phys_vec *y = on->skin_x + n, way;
+    gather_points(&skin, n_neighbours, on->kept_x, on->kept_halo_x, on->skin_x);
+    gather_points(&skin, n_neighbours, on->x, on->halo_x, y);
+    mean_way(n, on->skin_x, y, &way);
+    contact_refit(&skin.skin, on->skin_x, y, &way, on->skin_boxes);
+    return 0;
+}
+
+/* Points that stand still. */
+FLOW_KERNEL(skin_place, FLOW_COLLIDE, struct flow_block_args,
+            (R(skin), R(x), W(skin_x), W(skin_boxes), NEIGHBOURS(halo_x)))
+static int skin_place_body(const duite_call *call, const struct skin_place_fields *on)
+{
+    const struct flow_skin skin = flow_skin_open(on->skin);
+    const uint32_t n = skin.skin.n_points;
+    const phys_vec nowhere = {0};
+    gather_points(&skin, flow_shape_of(call)->n_neighbours, on->x, on->halo_x, on->skin_x);
+    memcpy(on->skin_x + n, on->skin_x, n * sizeof *on->skin_x);
+    contact_refit(&skin.skin, on->skin_x, on->skin_x, &nowhere, on->skin_boxes);
+    return 0;
+}
+
+int flow_skins_place(struct flow_state *state)
+{
+    struct flow_block_args args;
+    return flow_fork_each(state, &flow_kernel_skin_place, &args);
+}
+
+int flow_skins_refit(struct flow_state *state)
+{
+    struct flow_block_args args;
+    return flow_fork_each(state, &flow_kernel_skin_refit, &args);
 }

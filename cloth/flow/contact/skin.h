@@ -31,4 +31,19 @@ struct flow_skin_arrays flow_skin_places(const struct flow_table *table, void *m
 /* A block's skin by its shape, with counts alone, to measure by. */
 struct contact_skin flow_skin_counts(const struct flow_table *table);
 
+/* The skins of all blocks in a step, of runs that find contacts. Functions of the main program.
+ * Collective; they return what the runtime does. */
+struct flow_state;
+
+/* Forks the keeping of the halos of x, beside flow_keep: kept_halo_x becomes halo_x. */
+int flow_skins_keep(struct flow_state *state);
+
+/* Forks the tasks that make `skin_x`, the present x of the points, twice, and `skin_boxes` of
+ * them. */
+int flow_skins_place(struct flow_state *state);
+
+/* Forks the tasks that make `skin_x`, first kept_x and then x of each block's skin points, and
+ * `skin_boxes`, the boxes of the way between (contact_refit). */
+int flow_skins_refit(struct flow_state *state);
+
 #endif

@@ -8,6 +8,15 @@
 #include <float.h>
 #include <stdlib.h>
 
+/* Part of the thickness: a place that is farther by less is as near. */
+static const double HARDLY = 0.05;
+/* Contacts push much the same way if their normals have at least this cosine: 45 degrees. */
+static const double SAME_WAY = 0.7;
+/* A run begins with contacts that may rise by a tenth of the thickness d: k (d / 10)^2 / 2 in k
+ * d^2.
+ */
+static const double FIRST_ENERGY = 0.005;
+
 struct touch_args {
     uint32_t block, room;
     uint32_t accept; /* not zero: the step is over, near pairs become contacts; else the present
@@ -16,13 +25,15 @@ struct touch_args {
     double from, to; /* s: of the step */
 };
 
-/* Parameters: r the present contacts, w the next ones, r the block's own points, cw the energy of
- * the next contacts; then each meeting's list and, with another block, its points. */
-enum { AT_BEFORE, AT_AFTER, AT_POINTS, AT_ENERGY, AT_MEETINGS };
+/* The present contacts, the next ones, the energy of these; each meeting's list and, with another
+ * block, its points. */
+FLOW_KERNEL(touch, FLOW_COLLIDE, struct touch_args,
+            (GIVEN_R(before), GIVEN_W(after), R(skin_x), SUM(contact_energy), REST_R(meetings)))
 
 /* State of the body. */
 struct touching {
     const duite_call *call;
+    const struct touch_fields *on;
     const struct touch_args *args;
     bool carries; /* as the mode does (mode.h) */
     const struct flow_contact *before;
@@ -48,7 +59,7 @@ static int compare_first(const struct flow_contact *a, const struct flow_contact
     return kind ? kind : compare_u32(a->feature[0], b->feature[0]);
 }
 
-static int compare(const void *left, const void *right)
+static int compare_contacts(const void *left, const void *right)
 {
     const struct flow_contact *a = left, *b = right;
     const int first = compare_first(a, b);
@@ -65,7 +76,7 @@ static size_t lower_bound(const struct flow_contact *list, size_t n,
     size_t low = 0, high = n;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (compare(list + middle, contact) < 0)
+        if (compare_contacts(list + middle, contact) < 0)
             low = middle + 1;
         else
             high = middle;
@@ -75,11 +86,15 @@ static size_t lower_bound(const struct flow_contact *list, size_t n,
 
 /* ---- Where its corners are ---- */
 
-/* The points of a side at the end of the step: the block's own, or those in a parameter. */
-static const phys_vec *ends_in(const duite_call *call, size_t at)
+/* The points of a side at the end of the step. */
+static const phys_vec *ends_in(const duite_param *points)
 {
-    const size_t n = duite_count(call, at) / 8; /* begin and end of each, four numbers */
-    return duite_in(call, at, phys_vec) + n;
+    const size_t n = points->count / 8; /* begin and end of each, four numbers */
+    return (const phys_vec *)points->data + n;
+}
+static const phys_vec *own_ends(const struct touching *t)
+{
+    return ends_in(t->call->param + FLOW_INDEX_OF(touch, skin_x));
 }
 
 /* True if a meeting is of two blocks: the other one's points follow its list. */
@@ -91,14 +106,14 @@ static bool is_between_blocks(const duite_call *call, const struct flow_list *li
 /* The points of the block that a contact meets, or of its own. */
 static const phys_vec *ends_of(const struct touching *t, uint32_t side)
 {
-    const duite_call *call = t->call;
+    const struct touch_fields *on = t->on;
     if (side == t->args->block)
-        return ends_in(call, AT_POINTS);
-    for (size_t at = AT_MEETINGS; at < call->n_params; at++) {
-        const struct flow_list *list = duite_in(call, at, struct flow_list);
-        const bool points = is_between_blocks(call, list);
+        return own_ends(t);
+    for (size_t at = 0; at < on->n_meetings; at++) {
+        const struct flow_list *list = on->meetings[at].data;
+        const bool points = is_between_blocks(t->call, list);
         if (points && (list->side[0] == side || list->side[1] == side))
-            return ends_in(call, at + 1);
+            return ends_in(on->meetings + at + 1);
         at += points;
     }
     return NULL;
@@ -109,7 +124,7 @@ static const phys_vec *ends_of(const struct touching *t, uint32_t side)
 static bool find_point(const struct touching *t, const struct flow_contact *contact,
                        phys_vec *point)
 {
-    const phys_vec *y[2] = {ends_in(t->call, AT_POINTS), NULL};
+    const phys_vec *y[2] = {own_ends(t), NULL};
     *point = (phys_vec){0};
     if (contact->first < contact->at.n && !(y[1] = ends_of(t, contact->side[1])))
         return false;
@@ -119,8 +134,8 @@ static bool find_point(const struct touching *t, const struct flow_contact *cont
 }
 
 /* The row of a contact as the solve of the step had it. */
-static void find_row(const struct touching *t, const struct flow_contact *contact,
-                     struct contact_row *row)
+static void find_solved_row(const struct touching *t, const struct flow_contact *contact,
+                            struct contact_row *row)
 {
     *row = contact->row;
     contact_row_begin(row, t->args->stiffness, t->args->to - t->args->from);
@@ -129,11 +144,11 @@ static void find_row(const struct touching *t, const struct flow_contact *contac
 
 /* ---- To be solved once more ---- */
 
-static void press(const struct touching *t, struct flow_contact *contact)
+static void press_again(const struct touching *t, struct flow_contact *contact)
 {
     struct contact_row row;
     phys_vec point;
-    find_row(t, contact, &row);
+    find_solved_row(t, contact, &row);
     if (!find_point(t, contact, &point))
         return;
     contact_row_press(&row, &point);
@@ -145,7 +160,7 @@ static void press(const struct touching *t, struct flow_contact *contact)
 static size_t find_before(const struct touching *t, const struct flow_contact *contact)
 {
     const size_t at = lower_bound(t->before, t->n_before, contact);
-    return at < t->n_before && !compare(t->before + at, contact) ? at : t->n_before;
+    return at < t->n_before && !compare_contacts(t->before + at, contact) ? at : t->n_before;
 }
 
 /* Contacts that fail although they are there are marked. */
@@ -167,14 +182,14 @@ static void end_again(struct touching *t)
         *contact = t->before[i];
         if (t->used[i])
             contact_row_stiffen(&contact->row);
-        press(t, contact);
+        press_again(t, contact);
     }
-    qsort(t->after, t->n, sizeof *t->after, compare);
+    qsort(t->after, t->n, sizeof *t->after, compare_contacts);
 }
 
 /* ---- The end of a step ---- */
 
-static void accept(struct touching *t, const struct flow_near *near)
+static void take_near(struct touching *t, const struct flow_near *near)
 {
     if (!near->fails)
         t->after[t->n++] = near->contact;
@@ -188,30 +203,30 @@ static void hand_over(struct touching *t, size_t from, size_t to)
     phys_vec point;
     if (!find_point(t, before, &point))
         return;
-    find_row(t, before, &row);
+    find_solved_row(t, before, &row);
     contact_row_end(&row, &point, after);
     t->lent += contact_row_lent(&row, &point, before->row.energy, after->energy);
     t->used[from] = t->used[t->n_before + to] = 1;
 }
 
 /* Ends a contact without a successor. */
-static void part(struct touching *t, const struct flow_contact *before)
+static void end_contact(struct touching *t, const struct flow_contact *before)
 {
     struct contact_row row;
     phys_vec point;
     if (!find_point(t, before, &point))
         return;
-    find_row(t, before, &row);
+    find_solved_row(t, before, &row);
     t->lent += contact_row_lent(&row, &point, before->row.energy, 0);
 }
 
 /* The place in a triangle that is nearest to a shape jumps along it if both are almost parallel. A
  * contact stays at its place if that is hardly farther: else resting cloth would rock from step to
  * step. */
-static void stay(const struct touching *t, const struct flow_contact *before,
-                 struct flow_contact *after)
+static void stay_at_place(const struct touching *t, const struct flow_contact *before,
+                          struct flow_contact *after)
 {
-    const double hardly = 0.05 * after->row.thickness;
+    const double hardly = HARDLY * after->row.thickness;
     struct contact_row there = after->row;
     if (before->kind != FLOW_CONTACT_SHAPE || before->feature[1] != FLOW_ON_TRIANGLE)
         return;
@@ -225,7 +240,7 @@ static void stay(const struct touching *t, const struct flow_contact *before,
 
 /* The pair that a contact slid on to: of the same first feature, on much the same side, and new.
  * Returns n if there is none. */
-static size_t successor(const struct touching *t, const struct flow_contact *before)
+static size_t find_successor(const struct touching *t, const struct flow_contact *before)
 {
     struct flow_contact least = *before;
     least.side[1] = least.feature[1] = 0;
@@ -237,51 +252,51 @@ static size_t successor(const struct touching *t, const struct flow_contact *bef
             continue; /* the vertex is another body's */
         if (before->kind == FLOW_CONTACT_SHAPE && after->feature[1] != before->feature[1])
             continue; /* a vertex and a triangle of that number */
-        if (!t->used[t->n_before + i] && phys_dot(&after->row.normal, &before->row.normal) > 0.7)
+        if (!t->used[t->n_before + i] &&
+            phys_dot(&after->row.normal, &before->row.normal) > SAME_WAY)
             return i;
     }
     return t->n;
 }
 
-/* At a run's start, contacts about to rest are in the first solve, though without load. They have
- * the energy to rise by a tenth of the thickness. */
+/* At a run's start, contacts about to rest are in the first solve, though without load. */
 static void begin_all(struct touching *t)
 {
     const double k = flow_contact_stiffness(flow_of(t->call), flow_of(t->call)->model->h);
     for (size_t i = 0; i < t->n; i++) {
         struct contact_row *row = &t->after[i].row;
         row->load = DBL_MIN;
-        row->energy = 0.005 * k * row->thickness * row->thickness;
+        row->energy = FIRST_ENERGY * k * row->thickness * row->thickness;
     }
 }
 
 static void end_accept(struct touching *t)
 {
-    qsort(t->after, t->n, sizeof *t->after, compare);
+    qsort(t->after, t->n, sizeof *t->after, compare_contacts);
     t->n = flow_contact_drop_aslant(t->after, t->n, t->used + t->n_before);
     if (!t->carries)
         t->n = flow_contact_drop_repeated(t->after, t->n);
     for (size_t i = 0; i < t->n; i++) {
         const size_t at = find_before(t, t->after + i);
         if (at < t->n_before) {
-            stay(t, t->before + at, t->after + i);
+            stay_at_place(t, t->before + at, t->after + i);
             hand_over(t, at, i);
         }
     }
     for (size_t i = 0; i < t->n_before; i++) {
         if (t->used[i])
             continue;
-        const size_t next = successor(t, t->before + i);
+        const size_t next = find_successor(t, t->before + i);
         if (next < t->n)
             hand_over(t, i, next);
         else
-            part(t, t->before + i);
+            end_contact(t, t->before + i);
     }
     if (!(t->args->to > t->args->from))
         begin_all(t);
 }
 
-static void sum_energy(const struct touching *t, double held[FLOW_HELD])
+static void sum_held_energy(const struct touching *t, double held[FLOW_HELD])
 {
     for (size_t i = 0; i < t->n; i++)
         held[FLOW_HELD_ALL] += contact_row_holds(&t->after[i].row);
@@ -291,31 +306,32 @@ static void sum_energy(const struct touching *t, double held[FLOW_HELD])
 /* ---- Both ---- */
 
 /* Takes the pairs that the block's meetings listed for it. */
-static void take_lists(struct touching *t)
+static void take_meetings(struct touching *t)
 {
-    const duite_call *call = t->call;
-    for (size_t at = AT_MEETINGS; at < call->n_params; at++) {
-        const struct flow_list *list = duite_in(call, at, struct flow_list);
+    const struct touch_fields *on = t->on;
+    for (size_t at = 0; at < on->n_meetings; at++) {
+        const struct flow_list *list = on->meetings[at].data;
         const struct flow_near *near = (const struct flow_near *)(list + 1);
         for (uint64_t i = 0; i < list->n; i++) {
             if (near[i].contact.side[0] != t->args->block)
                 continue;
             if (t->args->accept)
-                accept(t, near + i);
+                take_near(t, near + i);
             else
                 add_failing(t, near + i);
         }
-        at += is_between_blocks(call, list);
+        at += is_between_blocks(t->call, list);
     }
 }
 
-static int touch(const duite_call *call)
+static int touch_body(const duite_call *call, const struct touch_fields *on)
 {
-    const struct touch_args *args = call->args;
-    const struct flow_list *before = duite_in(call, AT_BEFORE, struct flow_list);
-    struct flow_list *after = duite_out(call, AT_AFTER, struct flow_list);
+    const struct touch_args *args = on->args;
+    const struct flow_list *before = on->before;
+    struct flow_list *after = on->after;
     const bool carries = flow_contact_mode(flow_of(call)->model)->carries;
     struct touching t = {.call = call,
+                         .on = on,
                          .args = args,
                          .before = (const struct flow_contact *)(before + 1),
                          .carries = carries,
@@ -324,28 +340,18 @@ static int touch(const duite_call *call)
     t.used = calloc(t.n_before + args->room + 1, 1);
     if (!t.used)
         return duite_fail(call, FLOW_NO_MEMORY, "out of memory for contacts");
-    take_lists(&t);
+    take_meetings(&t);
     if (args->accept)
         end_accept(&t);
     else
         end_again(&t);
     if (args->accept)
-        sum_energy(&t, duite_out(call, AT_ENERGY, double));
+        sum_held_energy(&t, on->contact_energy);
     free(t.used);
     *after = (struct flow_list){.n = t.n};
-    return duite_resize(call, AT_AFTER, flow_contact_index(after, flow_of(call)->tables.n_blocks));
+    return duite_resize(call, FLOW_INDEX_OF(touch, after),
+                        flow_contact_index(after, flow_of(call)->tables.n_blocks));
 }
-
-static int touch_timed(const duite_call *call)
-{
-    return flow_timed(call, touch, FLOW_COLLIDE);
-}
-const duite_kernel flow_touch = {.name = "touch",
-                                 .body = touch_timed,
-                                 .access = {DUITE_R, DUITE_W, DUITE_R, DUITE_CW},
-                                 .law = {[AT_ENERGY] = &duite_sum},
-                                 .variadic = DUITE_R,
-                                 .args_size = sizeof(struct touch_args)};
 
 /* ---- Forks ---- */
 
@@ -383,23 +389,23 @@ int flow_contact_none(struct flow_state *state)
     return code;
 }
 
-/* Adds the meetings of a block and the points of their other blocks. Returns the end. */
-static duite_object *add_meetings(const struct flow_state *state, uint32_t block,
-                                  duite_object *refs)
+/* Puts the meetings of a block and the points of their other blocks into `to`. Returns how many. */
+static size_t list_meetings(const struct flow_state *state, uint32_t block, duite_object *to)
 {
+    duite_object *end = to;
     const struct flow_meetings *meetings = &state->contact.meetings;
     for (uint32_t i = 0; i < meetings->n; i++) {
         const uint32_t *side = meetings->all[i].side;
         if (side[0] != block && side[1] != block)
             continue;
-        *refs++ = meetings->all[i].near;
+        *end++ = meetings->all[i].near;
         if (side[0] != side[1] && side[1] < state->flow->tables.n_blocks)
-            *refs++ = state->block[side[side[0] == block]].skin_x;
+            *end++ = state->block[side[side[0] == block]].skin_x;
     }
-    return refs;
+    return (size_t)(end - to);
 }
 
-static int fork_block(struct flow_state *state, struct touch_args *args, unsigned to)
+static int fork_touch(struct flow_state *state, struct touch_args *args, unsigned to)
 {
     struct flow_contact_state *contact = &state->contact;
     struct flow_kept_contacts *kept = contact->kept + args->block;
@@ -407,12 +413,11 @@ static int fork_block(struct flow_state *state, struct touch_args *args, unsigne
     kept->n[to] = args->accept ? found : kept->n[contact->now] + found;
     make_list(state, args->block, to, kept->n[to]);
     args->room = kept->room[to];
-    contact->refs[AT_BEFORE] = kept->list[contact->now];
-    contact->refs[AT_AFTER] = kept->list[to];
-    contact->refs[AT_POINTS] = state->block[args->block].skin_x;
-    contact->refs[AT_ENERGY] = state->run.contact_energy;
-    const duite_object *end = add_meetings(state, args->block, contact->refs + AT_MEETINGS);
-    return duite_fork(state->rt, &flow_touch, args, (size_t)(end - contact->refs), contact->refs);
+    duite_object *rest = flow_contact_rest(state);
+    const duite_object one[] = {kept->list[contact->now], kept->list[to]};
+    const struct flow_given given = {
+        .one = one, .n = list_meetings(state, args->block, rest), .rest = rest};
+    return flow_fork_given(state, &flow_kernel_touch, args, &given);
 }
 
 /* The list that is written is neither that of the step's begin nor the one that is read. */
@@ -428,7 +433,7 @@ static int fork_blocks(struct flow_state *state, bool accept)
                               .to = step.time};
     int code = duite_set(state->rt, state->run.contact_energy, NULL);
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
-        code = fork_block(state, &args, to);
+        code = fork_touch(state, &args, to);
     contact->now = to;
     return code;
 }

@@ -33,11 +33,12 @@ static size_t apart_bytes(const struct model *model)
     return model->contact.apart.apart ? model->n_cloths * sizeof(uint32_t) + n_frictions(model) : 0;
 }
 
-static int broadcast_head(const duite_call *call)
+FLOW_KERNEL(broadcast_head, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(head)))
+static int broadcast_head_body(const duite_call *call, const struct broadcast_head_fields *on)
 {
     const struct flow *flow = flow_of(call);
     const struct flow_source *source = &flow->source;
-    struct flow_head *head = duite_out(call, 0, struct flow_head);
+    struct flow_head *head = on->head;
     memset(head, 0, sizeof *head);
     memcpy(&head->model, flow->model, sizeof head->model);
     head->n_steps = flow->n_steps;
@@ -81,8 +82,6 @@ static int broadcast_head(const duite_call *call)
     }
     return 0;
 }
-const duite_kernel flow_broadcast_head = {
-    .name = "broadcast_head", .body = broadcast_head, .access = {DUITE_W}};
 
 static char *put_bytes(char *to, const void *from, size_t bytes)
 {
@@ -142,11 +141,12 @@ static char *put_blocks(char *to, const struct flow_source *source)
     return put_bytes(to, all->joins, all->n_neighbours * sizeof *all->joins);
 }
 
-static int broadcast_shared(const duite_call *call)
+FLOW_KERNEL(broadcast_shared, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(shared)))
+static int broadcast_shared_body(const duite_call *call, const struct broadcast_shared_fields *on)
 {
     const struct flow *flow = flow_of(call);
     const struct contact_apart *apart = &flow->model->contact.apart;
-    char *to = put_model(duite_out(call, 0, char), flow);
+    char *to = put_model(on->shared, flow);
     to = put_blocks(to, &flow->source);
     if (apart->apart) {
         to = put_bytes(to, apart->end, flow->model->n_cloths * sizeof *apart->end);
@@ -154,17 +154,16 @@ static int broadcast_shared(const duite_call *call)
     }
     return 0;
 }
-const duite_kernel flow_broadcast_shared = {
-    .name = "broadcast_shared", .body = broadcast_shared, .access = {DUITE_W}};
 
 /* Gives all ranks an object of so many bytes, which a task on rank 0 writes. */
-static int broadcast_all(struct flow_state *state, const duite_kernel *kernel, size_t bytes,
+static int broadcast_all(struct flow_state *state, const struct flow_kernel *kernel, size_t bytes,
                          void *received)
 {
+    const struct flow_block_args all = {0};
     duite_object object;
     int code = duite_new(state->rt, DUITE_BYTE, bytes, &object);
     if (!code)
-        code = duite_fork_at(state->rt, 0, kernel, NULL, 1, &object);
+        code = flow_fork_given_at(state, 0, kernel, &all, &(struct flow_given){.one = &object});
     if (!code)
         code = duite_get(state->rt, object, received);
     const int freed = object.generation ? duite_free(state->rt, object) : DUITE_OK;
@@ -175,7 +174,7 @@ int flow_share_head(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     const struct flow_head *head = &state->head;
-    const int code = broadcast_all(state, &flow_broadcast_head, sizeof *head, &state->head);
+    const int code = broadcast_all(state, &flow_kernel_broadcast_head, sizeof *head, &state->head);
     flow->n_ties = code ? 0 : head->n_ties;
     if (code || duite_rank(state->rt) == 0)
         return code;
@@ -267,8 +266,8 @@ static void unpack(struct flow_state *state)
 
 int flow_share(struct flow_state *state)
 {
-    const int code =
-        broadcast_all(state, &flow_broadcast_shared, state->head.shared_bytes, state->flow->shared);
+    const int code = broadcast_all(state, &flow_kernel_broadcast_shared, state->head.shared_bytes,
+                                   state->flow->shared);
     if (!code)
         unpack(state);
     return code;

@@ -103,25 +103,28 @@ static void take_all(struct flow_state *state)
         take_room(state);
 }
 
-static int ready(const duite_call *call)
+FLOW_KERNEL(ready, FLOW_NO_PART, struct flow_block_args, (GIVEN_SUM(lacks)))
+static int ready_body(const duite_call *call, const struct ready_fields *on)
 {
     const struct cloth_error *trouble = &flow_of(call)->trouble;
+    (void)on;
     return trouble->code
                ? duite_fail(call, FLOW_NO_MEMORY, "rank %d: %s", call->rank, trouble->text)
                : 0;
 }
-const duite_kernel flow_ready = {.name = "ready", .body = ready, .access = {DUITE_CW}};
 
 int flow_memory_agree(struct flow_state *state)
 {
-    duite_object all;
+    const struct flow_block_args none = {0};
+    duite_object lacks;
     int32_t nothing;
-    int code = duite_new(state->rt, DUITE_I32, 1, &all);
+    int code = duite_new(state->rt, DUITE_I32, 1, &lacks);
     for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++)
-        code = duite_fork_at(state->rt, rank, &flow_ready, NULL, 1, &all);
+        code = flow_fork_given_at(state, rank, &flow_kernel_ready, &none,
+                                  &(struct flow_given){.one = &lacks});
     if (!code)
-        code = duite_get(state->rt, all, &nothing);
-    const int freed = duite_free(state->rt, all);
+        code = duite_get(state->rt, lacks, &nothing);
+    const int freed = duite_free(state->rt, lacks);
     return code ? code : freed;
 }
 

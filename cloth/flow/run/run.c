@@ -29,24 +29,7 @@ const duite_kernel *const *flow_kernels(void)
 {
 #define TASK(name)      &flow_kernel_##name.task,
 #define TASK_LESS(name) &flow_kernel_##name##_less,
-    static const duite_kernel *const all[FLOW_KERNELS_LISTED + 1] = {
-        FLOW_KERNELS(TASK) FLOW_KERNELS_IF(TASK_LESS) & flow_broadcast_head,
-        &flow_broadcast_shared,
-        &flow_ready,
-        &flow_pack,
-        &flow_group_factor,
-        &flow_group_start,
-        &flow_group_solve,
-        &flow_meet,
-        &flow_meet_shape,
-        &flow_touch,
-        &flow_cut_ways,
-        &flow_count_ties,
-        &flow_tie_contacts,
-        &flow_save_block,
-        &flow_send_main,
-        &flow_load_block,
-        NULL};
+    static const duite_kernel *const all[] = {FLOW_KERNELS(TASK) FLOW_KERNELS_IF(TASK_LESS) NULL};
     return all;
 }
 

@@ -11,6 +11,7 @@
 /* ---- The group of a task ---- */
 
 struct group_args {
+    uint32_t block; /* 0: it has none */
     uint32_t level, group;
 };
 
@@ -23,9 +24,9 @@ struct group {
     uint32_t depth, number, among_all; /* which level; among the groups of the level; of all */
 };
 
-static struct group group_of(const duite_call *call, const double *lift)
+static struct group group_of(const duite_call *call, const struct group_args *args,
+                             const double *lift)
 {
-    const struct group_args *args = call->args;
     const struct flow *flow = flow_of(call);
     const struct solve_level *level = flow->level + args->level;
     return (struct group){.flow = flow,
@@ -54,13 +55,14 @@ static bool is_own(const struct group *group, uint32_t place)
     return group->level->group[group->cover->node[place]] == group->number;
 }
 
-/* Appends the objects that a group covers to refs: parts of blocks or of groups below, or
- * couplings. Returns the new number of objects. */
-static size_t add_covered(const struct flow_state *state, const struct group_args *args,
-                          bool couplings, size_t n)
+/* Puts the objects that a group covers into `to`: parts of blocks or of groups below, or couplings.
+ * Returns how many. */
+static size_t list_covered(const struct flow_state *state, const struct group_args *args,
+                           bool couplings, duite_object *to)
 {
     const struct flow *flow = state->flow;
     const struct solve_cover *cover = flow->level[args->level].cover + args->group;
+    size_t n = 0;
     for (uint32_t i = 0; i < cover->n; i++) {
         const uint32_t from = flow_levels_holder(flow, args->level, cover->node[i]);
         if (i && from == flow_levels_holder(flow, args->level, cover->node[i - 1]))
@@ -68,51 +70,49 @@ static size_t add_covered(const struct flow_state *state, const struct group_arg
         if (args->level) {
             const struct flow_group *below =
                 state->groups.all + flow->first_group[args->level - 1] + from;
-            state->refs[n++] = couplings ? below->coupling : below->part;
+            to[n++] = couplings ? below->coupling : below->part;
         } else {
             const struct flow_objects *block = state->block + from;
-            state->refs[n++] = couplings ? block->coupling : block->part;
+            to[n++] = couplings ? block->coupling : block->part;
         }
     }
     return n;
 }
 
-/* Forks one of the kernels below on all groups of all levels. */
-static int fork_groups(struct flow_state *state, const duite_kernel *kernel)
+/* Forks one of the kernels below on all groups of all levels. makes: it makes factors, of
+ * couplings; else it solves with them, for parts. */
+static int fork_groups(struct flow_state *state, const struct flow_kernel *kernel, bool makes)
 {
     const struct flow *flow = state->flow;
-    const bool factor = kernel == &flow_group_factor;
+    duite_object *rest = state->refs + FLOW_MAX_PARAMETERS;
     int code = DUITE_OK;
     for (uint32_t level = 0; level < flow->n_levels; level++)
         for (uint32_t g = 0; g < flow->level[level].n_groups && !code; g++) {
-            const struct group_args args = {level, g};
+            const struct group_args args = {.level = level, .group = g};
             const struct flow_group *group = state->groups.all + flow->first_group[level] + g;
-            size_t n = 0;
-            state->refs[n++] = factor ? group->factor : group->motion;
-            state->refs[n++] = factor ? group->coupling : group->part;
-            state->refs[n++] = state->run.lift;
-            if (!factor)
-                state->refs[n++] = group->factor;
-            if (kernel == &flow_group_solve)
-                state->refs[n++] = flow_field_object(state, FLOW_FIELD_scalars, 0);
-            n = add_covered(state, &args, factor, n);
-            code = duite_fork(state->rt, kernel, &args, n, state->refs);
+            const duite_object made[] = {group->factor, group->coupling};
+            const duite_object solved[] = {group->motion, group->part, group->factor};
+            const struct flow_given given = {.one = makes ? made : solved,
+                                             .n = list_covered(state, &args, makes, rest),
+                                             .rest = rest};
+            code = flow_fork_given(state, kernel, &args, &given);
         }
     return code;
 }
 
 /* ---- Factors ---- */
 
-static int factor_group(const duite_call *call)
+FLOW_KERNEL(group_factor, FLOW_CG, struct group_args,
+            (GIVEN_W(group_factor), GIVEN_W(group_coupling), R(lift), REST_R(covered)))
+static int group_factor_body(const duite_call *call, const struct group_factor_fields *on)
 {
-    enum { FACTOR, COUPLING, LIFT, COVERED };
-    const struct group group = group_of(call, duite_in(call, LIFT, double));
+    const struct group group = group_of(call, on->args, on->lift);
     const struct solve_cover *cover = group.cover;
-    double *factor = duite_out(call, FACTOR, double), *to = duite_out(call, COUPLING, double);
-    memset(to, 0, duite_count(call, COUPLING) * sizeof *to);
+    double *factor = on->group_factor, *to = on->group_coupling;
+    memset(to, 0, duite_count(call, FLOW_INDEX_OF(group_factor, group_coupling)) * sizeof *to);
     solve_coarse_clear(&cover->pattern, factor);
     for (uint32_t i = 0, at = 0; i < cover->n; i++) {
-        const double *coupling = numbers_at(&group, call->param + COVERED, i, &at) +
+        const double *coupling = numbers_at(&group, on->covered, i, &at) +
                                  flow_levels_coupling_at(group.flow, group.depth, cover->node[i]);
         solve_coarse_fill(&cover->pattern, cover->first, cover->neighbour, i, coupling, factor);
         if (is_own(&group, i))
@@ -122,19 +122,9 @@ static int factor_group(const duite_call *call)
     return 0;
 }
 
-static int factor_task(const duite_call *call)
-{
-    return flow_timed(call, factor_group, FLOW_CG);
-}
-const duite_kernel flow_group_factor = {.name = "group_factor",
-                                        .body = factor_task,
-                                        .access = {DUITE_W, DUITE_W, DUITE_R},
-                                        .variadic = DUITE_R,
-                                        .args_size = sizeof(struct group_args)};
-
 int flow_levels_factor(struct flow_state *state)
 {
-    return fork_groups(state, &flow_group_factor);
+    return fork_groups(state, &flow_kernel_group_factor, true);
 }
 
 /* ---- Between a pass and its scalars ---- */
@@ -181,62 +171,50 @@ static void solve_group(const struct group *group, const double *factor, const d
     }
 }
 
-enum { SOLVE_MOTION, SOLVE_PART, SOLVE_LIFT, SOLVE_FACTOR, SOLVE_COVERED };
+FLOW_KERNEL(group_start, FLOW_CG, struct group_args,
+            (GIVEN_W(group_motion), GIVEN_W(group_part), GIVEN_R(group_factor), R(lift),
+             REST_R(covered)))
+FLOW_KERNEL(group_solve, FLOW_CG, struct group_args,
+            (GIVEN_W(group_motion), GIVEN_W(group_part), GIVEN_R(group_factor), R(lift), R(scalars),
+             REST_R(covered)))
 
-/* param: the parts of the cover. */
-static void solve_or_sum(const duite_call *call, bool moves, const duite_param *param)
+/* Both kernels begin with the same parameters. moves: there is a motion to solve for. */
+static void solve_or_sum(const duite_call *call, bool moves, const struct group_start_fields *on)
 {
-    const struct group group = group_of(call, duite_in(call, SOLVE_LIFT, double));
-    double *motion = duite_out(call, SOLVE_MOTION, double);
-    double *part = duite_out(call, SOLVE_PART, double);
-    memset(part, 0, duite_count(call, SOLVE_PART) * sizeof *part);
-    memset(motion, 0, duite_count(call, SOLVE_MOTION) * sizeof *motion);
+    const struct group group = group_of(call, on->args, on->lift);
+    double *motion = on->group_motion, *part = on->group_part;
+    memset(part, 0, duite_count(call, FLOW_INDEX_OF(group_start, group_part)) * sizeof *part);
+    memset(motion, 0, duite_count(call, FLOW_INDEX_OF(group_start, group_motion)) * sizeof *motion);
     motion[0] = group.among_all;
-    add_dots(&group, param, part);
+    add_dots(&group, on->covered, part);
     if (moves)
-        solve_group(&group, duite_in(call, SOLVE_FACTOR, double), param, motion + FLOW_MOTION,
-                    part);
+        solve_group(&group, on->group_factor, on->covered, motion + FLOW_MOTION, part);
 }
 
-static int start_group(const duite_call *call)
+static int group_start_body(const duite_call *call, const struct group_start_fields *on)
 {
-    solve_or_sum(call, true, call->param + SOLVE_COVERED);
+    solve_or_sum(call, true, on);
     return 0;
 }
 
-static int start_task(const duite_call *call)
+static int group_solve_body(const duite_call *call, const struct group_solve_fields *on)
 {
-    return flow_timed(call, start_group, FLOW_CG);
-}
-const duite_kernel flow_group_start = {.name = "group_start",
-                                       .body = start_task,
-                                       .access = {DUITE_W, DUITE_W, DUITE_R, DUITE_R},
-                                       .variadic = DUITE_R,
-                                       .args_size = sizeof(struct group_args)};
-
-static int continue_group(const duite_call *call)
-{
-    const struct solve_scalars *scalars = call->param[SOLVE_COVERED].data;
-    solve_or_sum(call, flow_coarse_moves(scalars), call->param + SOLVE_COVERED + 1);
+    const struct group_start_fields start = {.args = on->args,
+                                             .group_motion = on->group_motion,
+                                             .group_part = on->group_part,
+                                             .group_factor = on->group_factor,
+                                             .lift = on->lift,
+                                             .covered = on->covered};
+    solve_or_sum(call, flow_coarse_moves(on->scalars), &start);
     return 0;
 }
-
-static int solve_task(const duite_call *call)
-{
-    return flow_timed(call, continue_group, FLOW_CG);
-}
-const duite_kernel flow_group_solve = {.name = "group_solve",
-                                       .body = solve_task,
-                                       .access = {DUITE_W, DUITE_W, DUITE_R, DUITE_R, DUITE_R},
-                                       .variadic = DUITE_R,
-                                       .args_size = sizeof(struct group_args)};
 
 int flow_levels_start(struct flow_state *state)
 {
-    return fork_groups(state, &flow_group_start);
+    return fork_groups(state, &flow_kernel_group_start, false);
 }
 
 int flow_levels_solve(struct flow_state *state)
 {
-    return fork_groups(state, &flow_group_solve);
+    return fork_groups(state, &flow_kernel_group_solve, false);
 }

@@ -150,32 +150,29 @@ void flow_halo_make(struct flow_state *state)
     packed->first[tables->n_blocks] = packed->n;
 }
 
+struct pack_args {
+    uint32_t block, halo; /* halo: among all that are packed */
+};
+
+FLOW_KERNEL(cg_pack, FLOW_CG, struct pack_args, (GIVEN_R(whole_halo), GIVEN_W(packed_halo)))
+static int cg_pack_body(const duite_call *call, const struct cg_pack_fields *on)
+{
+    const struct flow_packed_halo *halo = flow_of(call)->packed_halo + on->args->halo;
+    double *to = on->packed_halo;
+    for (uint32_t k = 0; k < halo->n; k++, to += 3)
+        memcpy(to, on->whole_halo + 3 * (size_t)halo->row[k], 3 * sizeof *to);
+    return 0;
+}
+
 int flow_halo_pack(struct flow_state *state, uint32_t b, int to)
 {
     const struct flow_packed *packed = &state->packed;
     int code = DUITE_OK;
-    for (uint32_t i = packed->first[b]; i < packed->first[b + 1] && !code; i++)
-        code = DUITE_FORK(state->rt, &flow_pack, &i, state->block[b].halo_q[to],
-                          packed->halo[i].object[to]);
+    for (uint32_t i = packed->first[b]; i < packed->first[b + 1] && !code; i++) {
+        const struct pack_args args = {.block = b, .halo = i};
+        const duite_object one[] = {state->block[b].halo_q[to], packed->halo[i].object[to]};
+        code =
+            flow_fork_given(state, &flow_kernel_cg_pack, &args, &(struct flow_given){.one = one});
+    }
     return code;
 }
-
-static int pack_rows(const duite_call *call)
-{
-    const uint32_t *i = call->args;
-    const struct flow_packed_halo *halo = flow_of(call)->packed_halo + *i;
-    const double *from = duite_in(call, 0, double);
-    double *to = duite_out(call, 1, double);
-    for (uint32_t k = 0; k < halo->n; k++, to += 3)
-        memcpy(to, from + 3 * (size_t)halo->row[k], 3 * sizeof *to);
-    return 0;
-}
-
-static int pack_task(const duite_call *call)
-{
-    return flow_timed(call, pack_rows, FLOW_CG);
-}
-const duite_kernel flow_pack = {.name = "cg_pack",
-                                .body = pack_task,
-                                .access = {DUITE_R, DUITE_W},
-                                .args_size = sizeof(uint32_t)};

@@ -36,6 +36,12 @@ static void find_places(const struct flow_state *state, const struct flow_kernel
     places->n = 0;
     for (const struct flow_parameter *p = kernel->parameter; p->whose != FLOW_NOBODY; p++) {
         const enum flow_field_id field = given_for(as, p->field);
+        if (p->whose == FLOW_REST_OF_FORK)
+            continue;
+        if (p->whose == FLOW_OF_FORK) {
+            places->of[places->n++].whose = p->whose;
+            continue;
+        }
         if (!is_there(state, p->whose, field))
             continue;
         places->of[places->n].whose = p->whose;
@@ -70,9 +76,9 @@ static duite_object *add_others(const struct flow_state *state, uint32_t block,
     return refs;
 }
 
-/* Puts the objects of a fork into `refs`. Returns how many. */
+/* Puts the objects of a fork into `refs`, but those of REST. Returns how many. one: of GIVEN. */
 static size_t list_objects(const struct flow_state *state, const struct places *places,
-                           uint32_t block, duite_object *refs)
+                           uint32_t block, const duite_object *one, duite_object *refs)
 {
     duite_object *end = refs;
     for (size_t i = 0; i < places->n; i++) {
@@ -80,6 +86,8 @@ static size_t list_objects(const struct flow_state *state, const struct places *
         const size_t at = places->of[i].at;
         if (whose == FLOW_OWN || whose == FLOW_OWN_IF_MADE || whose == FLOW_IF_MADE)
             *end++ = object_at(state, at, block);
+        else if (whose == FLOW_OF_FORK)
+            *end++ = *one++;
         else
             end = add_others(state, block, whose, places->of[i].field, at, end);
     }
@@ -96,7 +104,7 @@ size_t flow_kernel_objects(struct flow_state *state, const struct flow_kernel *k
 {
     struct places places;
     find_places(state, kernel, as, &places);
-    return list_objects(state, &places, block, state->refs);
+    return list_objects(state, &places, block, NULL, state->refs);
 }
 
 int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
@@ -152,7 +160,7 @@ int flow_fork_range_as(struct flow_state *state, const struct flow_kernel *kerne
             continue;
         if (b + FLOW_FORKS_AHEAD < end)
             fetch_names(state, &places, b + FLOW_FORKS_AHEAD);
-        n[turn] = list_objects(state, &places, b, refs);
+        n[turn] = list_objects(state, &places, b, NULL, refs);
         duite_prefetch(state->rt, n[turn], refs);
     }
     return code;
@@ -177,4 +185,35 @@ int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *k
     const uint32_t *block = args;
     const size_t n = flow_kernel_objects(state, kernel, *block, as);
     return duite_fork_at(state->rt, rank, flow_task_of(state, kernel), args, n, state->refs);
+}
+
+/* The objects of a fork that gives some, one after the other. Returns the first; *n: how many. */
+static duite_object *gather_given(const struct flow_state *state, const struct flow_kernel *kernel,
+                                  const void *args, const struct flow_given *given,
+                                  duite_object room[FLOW_MAX_PARAMETERS], size_t *n)
+{
+    const uint32_t *block = args;
+    struct places places;
+    find_places(state, kernel, NULL, &places);
+    duite_object *first = given->rest ? given->rest - places.n : room;
+    *n = given->n + list_objects(state, &places, block ? *block : 0, given->one, first);
+    return first;
+}
+
+int flow_fork_given(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
+                    const struct flow_given *given)
+{
+    duite_object room[FLOW_MAX_PARAMETERS];
+    size_t n;
+    const duite_object *first = gather_given(state, kernel, args, given, room, &n);
+    return duite_fork(state->rt, &kernel->task, args, n, first);
+}
+
+int flow_fork_given_at(struct flow_state *state, int rank, const struct flow_kernel *kernel,
+                       const void *args, const struct flow_given *given)
+{
+    duite_object room[FLOW_MAX_PARAMETERS];
+    size_t n;
+    const duite_object *first = gather_given(state, kernel, args, given, room, &n);
+    return duite_fork_at(state->rt, rank, &kernel->task, args, n, first);
 }

@@ -31,10 +31,14 @@
  *                NULL
  *     TIED       reads this field of each block that ties (ties.h) join this one with, ascending,
  *                if it exists in the run; a member tied_field. IF_MADE(tie_table) comes before it
+ *     GIVEN_R GIVEN_W GIVEN_SUM    an object of FLOW_OBJECTS, which the fork gives
+ *     REST_R REST_W                reads, or overwrites, all further ones that the fork gives; the
+ *                                  last parameter, and a member n_object says how many
  *
  * W_IF, RW_IF and SUM_ELSE, then NEIGHBOURS, IF_MADE and TIED come behind the others, in this
- * order; ALL comes last. A body gets NEIGHBOURS, ALL and TIED as parameters: flow_rows_of,
+ * order; ALL comes last. A body gets NEIGHBOURS, ALL, TIED and REST as parameters: flow_rows_of,
  * flow_numbers_of.
+ *
  * FLOW_INDEX_OF(velocity, v) is the index of a parameter, for calls of the runtime that want one.
  *
  * The arguments are a struct whose first member is `uint32_t block`: that alone (struct
@@ -52,7 +56,7 @@
     FLOW_KERNEL_OPEN(name, part, arguments, fields)                                                \
     const struct flow_kernel flow_kernel_##name = {                                                \
         .task = FLOW_TASK(name, #name, WITH, arguments, fields, __VA_ARGS__),                      \
-        .parameter = {FLOW_EACH(FLOW_GIVEN, name, fields)}};
+        .parameter = {FLOW_EACH(FLOW_PARAMETER, name, fields)}};
 
 /* A kernel with W_IF, RW_IF, SUM_ELSE, which exist together with this field. The runtime knows two,
  * name and name_less: it is in the list FLOW_KERNELS_IF, too. */
@@ -64,7 +68,7 @@
         .task = FLOW_TASK(name, #name, WITH, arguments, fields, __VA_ARGS__),                      \
         .less = &flow_kernel_##name##_less,                                                        \
         .with = FLOW_FIELD_##field,                                                                \
-        .parameter = {FLOW_EACH(FLOW_GIVEN, name, fields)}};
+        .parameter = {FLOW_EACH(FLOW_PARAMETER, name, fields)}};
 
 #define FLOW_INDEX_OF(name, field) name##_at_##field
 
@@ -78,7 +82,9 @@ enum flow_whose {
     FLOW_OF_NEIGHBOURS,
     FLOW_IF_MADE,
     FLOW_OF_TIED,
-    FLOW_OF_ALL
+    FLOW_OF_ALL,
+    FLOW_OF_FORK,
+    FLOW_REST_OF_FORK
 };
 
 struct flow_parameter {
@@ -144,17 +150,24 @@ struct flow_kernel {
 #define FLOW_WORD_NEIGHBOURS(field) MANY, const, , , FLOW_OF_NEIGHBOURS, field
 #define FLOW_WORD_ALL(field)        MANY, const, , , FLOW_OF_ALL, field
 #define FLOW_WORD_TIED(field)       TIED, const, , , FLOW_OF_TIED, field
+#define FLOW_WORD_GIVEN_R(object)   GIVEN, const, DUITE_R, NULL, FLOW_OF_FORK, object
+#define FLOW_WORD_GIVEN_W(object)   GIVEN, , DUITE_W, NULL, FLOW_OF_FORK, object
+#define FLOW_WORD_GIVEN_SUM(object) GIVEN, , DUITE_CW, &duite_sum, FLOW_OF_FORK, object
+#define FLOW_WORD_REST_R(object)    REST, const, DUITE_R, , FLOW_REST_OF_FORK, object
+#define FLOW_WORD_REST_W(object)    REST, const, DUITE_W, , FLOW_REST_OF_FORK, object
 #define FLOW_SPREAD(f, ...)         f(__VA_ARGS__)
 
 /* name_at_field, of parameters that are always there. */
 #define FLOW_INDEX(k, word) FLOW_SPREAD(FLOW_INDEX_IN, k, FLOW_WORD_##word)
 #define FLOW_INDEX_IN(k, kind, only, mode, law, whose, field) FLOW_INDEX_##kind(k, field)
 #define FLOW_INDEX_FIXED(k, field) FLOW_INDEX_OF(k, field),
+#define FLOW_INDEX_GIVEN(k, field) FLOW_INDEX_OF(k, field),
 #define FLOW_INDEX_WITH(k, field)
 #define FLOW_INDEX_LESS(k, field)
 #define FLOW_INDEX_READ(k, field)
 #define FLOW_INDEX_MANY(k, field)
 #define FLOW_INDEX_TIED(k, field)
+#define FLOW_INDEX_REST(k, field)
 
 /* Members of struct name_fields. */
 #define FLOW_HAS(k, word) FLOW_SPREAD(FLOW_HAS_IN, k, FLOW_WORD_##word)
@@ -165,6 +178,8 @@ struct flow_kernel {
 #define FLOW_HAS_READ(only, field)  only flow_type_of_##field *field;
 #define FLOW_HAS_MANY(only, field)  only duite_param *field;
 #define FLOW_HAS_TIED(only, field)  only duite_param *tied_##field;
+#define FLOW_HAS_GIVEN(only, field) only flow_type_of_##field *field;
+#define FLOW_HAS_REST(only, field)  only duite_param *field; size_t n_##field;
 
 /* Fills them. */
 #define FLOW_OPEN(k, word) FLOW_SPREAD(FLOW_OPEN_IN, k, FLOW_WORD_##word)
@@ -180,6 +195,10 @@ struct flow_kernel {
 #define FLOW_OPEN_TIED(k, whose, field)                                                            \
     on.tied_##field = call->param + next;                                                          \
     next += flow_of(call)->made[FLOW_FIELD_##field] ? flow_ties_others(on.tie_table) : 0;
+#define FLOW_OPEN_GIVEN(k, whose, field) FLOW_OPEN_FIXED(k, whose, field)
+#define FLOW_OPEN_REST(k, whose, field)                                                            \
+    on.field = call->param + next;                                                                 \
+    on.n_##field = call->n_params - next;
 
 /* Members of the runtime's kernel, of the form WITH or LESS what a run may lack. */
 #define FLOW_MODE(form, word) FLOW_SPREAD(FLOW_MODE_IN, form, FLOW_WORD_##word)
@@ -198,12 +217,34 @@ struct flow_kernel {
 #define FLOW_MANY_IN_LESS(member)
 #define FLOW_TIED_IN_WITH(member)
 #define FLOW_TIED_IN_LESS(member)
+#define FLOW_GIVEN_IN_WITH(member) member,
+#define FLOW_GIVEN_IN_LESS(member) member,
+#define FLOW_REST_IN_WITH(member)
+#define FLOW_REST_IN_LESS(member)
 
+/* clang-format off */
 /* The parameters at the fork. */
-#define FLOW_GIVEN(k, word) FLOW_SPREAD(FLOW_GIVEN_IN, k, FLOW_WORD_##word)
-#define FLOW_GIVEN_IN(k, kind, only, mode, law, whose, field) {whose, FLOW_FIELD_##field},
+#define FLOW_PARAMETER(k, word) FLOW_SPREAD(FLOW_PARAMETER_IN, k, FLOW_WORD_##word)
+#define FLOW_PARAMETER_IN(k, kind, only, mode, law, whose, field) {whose, FLOW_ID_##kind(field)},
+#define FLOW_ID_FIXED(field) FLOW_FIELD_##field
+#define FLOW_ID_WITH(field)  FLOW_FIELD_##field
+#define FLOW_ID_LESS(field)  FLOW_FIELD_##field
+#define FLOW_ID_READ(field)  FLOW_FIELD_##field
+#define FLOW_ID_MANY(field)  FLOW_FIELD_##field
+#define FLOW_ID_TIED(field)  FLOW_FIELD_##field
+#define FLOW_ID_GIVEN(field) FLOW_FIELDS_OF_ALL
+#define FLOW_ID_REST(field)  FLOW_FIELDS_OF_ALL
+/* The mode of those whose number varies: one for all of a kernel. */
 #define FLOW_FURTHER(k, word) FLOW_SPREAD(FLOW_FURTHER_IN, k, FLOW_WORD_##word)
-#define FLOW_FURTHER_IN(k, kind, only, mode, law, whose, field) || whose > FLOW_OWN_IF_MADE
+#define FLOW_FURTHER_IN(k, kind, only, mode, law, whose, field) FLOW_FURTHER_##kind(mode)
+#define FLOW_FURTHER_FIXED(mode)
+#define FLOW_FURTHER_WITH(mode)
+#define FLOW_FURTHER_LESS(mode)
+#define FLOW_FURTHER_GIVEN(mode)
+#define FLOW_FURTHER_READ(mode) | DUITE_R
+#define FLOW_FURTHER_MANY(mode) | DUITE_R
+#define FLOW_FURTHER_TIED(mode) | DUITE_R
+#define FLOW_FURTHER_REST(mode) | mode
 /* clang-format on */
 
 #define FLOW_KERNEL_OPEN(name, part, arguments, fields)                                            \
@@ -230,10 +271,10 @@ struct flow_kernel {
                    "a kernel is in the list, and its arguments begin with the block");
 #define FLOW_TASK(k, text, form, arguments, fields, ...)                                           \
     {                                                                                              \
-        .name = text, .body = k##_task, .access = {FLOW_EACH(FLOW_MODE, form, fields)},            \
-        .law = {FLOW_EACH(FLOW_LAW, form, fields)},                                                \
-        .variadic = (0 FLOW_EACH(FLOW_FURTHER, k, fields)) ? DUITE_R : DUITE_NONE,                 \
-        .args_size = sizeof(arguments), __VA_ARGS__                                                \
+        .name = text, .body = k##_task, .access = {FLOW_EACH(FLOW_MODE, form, fields) DUITE_NONE}, \
+        .law = {FLOW_EACH(FLOW_LAW, form, fields) NULL},                                           \
+        .variadic = 0 FLOW_EACH(FLOW_FURTHER, k, fields), .args_size = sizeof(arguments),          \
+        __VA_ARGS__                                                                                \
     }
 
 /* flow_type_of_name: the C type of a field's object. */
@@ -244,6 +285,39 @@ struct flow_kernel {
     typedef type flow_type_of_##name, flow_type_of_##name##_next;
 #define FLOW_FIELD_TYPE_BY_PASS(name, type) FLOW_FIELD_TYPE_BY_STEP(name, type)
 FLOW_FIELDS(FLOW_FIELD_TYPE)
+
+/* Objects that are no fields: their number follows from the run, or they live for a moment. */
+#define FLOW_OBJECTS(X)                                                                            \
+    /* set-up: of rank 0 for all; what a rank lacks; a checkpoint's main program, its objects */   \
+    X(head, struct flow_head)                                                                      \
+    X(shared, char)                                                                                \
+    X(lacks, int32_t)                                                                              \
+    X(main_program, unsigned char)                                                                 \
+    X(saved_objects, unsigned char)                                                                \
+    /* contact (contact.h): a meeting's list, the counts of all; of its second side; the contacts  \
+     * of a block before and after, those of blocks */                                             \
+    X(near, struct flow_list)                                                                      \
+    X(counts, double)                                                                              \
+    X(other_skin, unsigned char)                                                                   \
+    X(other_x, phys_vec)                                                                           \
+    X(other_boxes, unsigned char)                                                                  \
+    X(before, struct flow_list)                                                                    \
+    X(after, struct flow_list)                                                                     \
+    X(meetings, struct flow_list)                                                                  \
+    X(keepers, struct flow_list)                                                                   \
+    /* the solver: rows of s that another rank reads (halo.c); a group, what it covers (groups.c)  \
+     */                                                                                            \
+    X(whole_halo, double)                                                                          \
+    X(packed_halo, double)                                                                         \
+    X(group_factor, double)                                                                        \
+    X(group_coupling, double)                                                                      \
+    X(group_motion, double)                                                                        \
+    X(group_part, double)                                                                          \
+    X(covered, double)
+struct flow_head;
+struct flow_list;
+#define FLOW_OBJECT_TYPE(name, type) typedef type flow_type_of_##name;
+FLOW_OBJECTS(FLOW_OBJECT_TYPE)
 
 /* ---- Forks ---- */
 
@@ -278,6 +352,18 @@ int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *k
 
 /* The runtime's kernel of a run. */
 const duite_kernel *flow_task_of(const struct flow_state *state, const struct flow_kernel *kernel);
+
+/* The objects that a fork gives: those of GIVEN words, in order; n of REST. As many objects as a
+ * kernel has parameters may be written before `rest`. */
+struct flow_given {
+    const duite_object *one;
+    size_t n;
+    duite_object *rest; /* NULL: none */
+};
+int flow_fork_given(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
+                    const struct flow_given *given);
+int flow_fork_given_at(struct flow_state *state, int rank, const struct flow_kernel *kernel,
+                       const void *args, const struct flow_given *given);
 
 /* Puts the objects that a fork of the kernel on a block gives into state->refs. Returns how many:
  * for forks that give others in place of some. */

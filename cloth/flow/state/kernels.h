@@ -3,14 +3,15 @@
 
 #include "cloth/flow/state/kernel.h"
 
-/* All kernels that declare their fields (state/kernel.h), in the order of a run: set-up, state,
+/* All kernels (state/kernel.h), in the order of a run: set-up, state,
  * forces and pins, contact, integrators, the solver, observation of a run. */
 /* clang-format off */
 #define FLOW_KERNELS(X)                                                                            \
-    X(table_make) X(table_keep) X(skin_make) X(skin_keep)                                          \
-    X(initial) X(resume) X(keep) X(restore) X(status) X(tie) X(tie_show)                                     \
+    X(broadcast_head) X(broadcast_shared) X(ready) X(table_make) X(table_keep) X(skin_make) X(skin_keep)                                          \
+    X(initial) X(resume_main) X(resume_load) X(resume) X(keep) X(restore) X(status) X(tie) X(tie_show)                                     \
     X(force) X(force_free) X(prescribe_velocity) X(prescribe_position)                             \
-    X(keep_halo) X(skin_refit) X(skin_place) X(root) X(roots) X(tie_say) X(filter) X(constrain) X(collide)        \
+    X(keep_halo) X(skin_refit) X(skin_place) X(root) X(roots) X(meet) X(meet_self) X(meet_figure) X(meet_shape) X(touch) X(cut)                \
+    X(tie_count) X(tie_contacts) X(tie_say) X(filter) X(constrain) X(collide)        \
     X(body_skin) X(body_refit) X(map_draw) X(map_draw_again)                                                                    \
     X(euler) X(euler_next) X(verlet_first) X(verlet_second) X(runge)                               \
     X(edge_start) X(edge_begin) X(edge_round) X(edge_next) X(edge_end)                             \
@@ -19,9 +20,10 @@
     X(basis) X(basis_ghosts) X(patch_frame) X(lift) X(couple) X(factor_coarse)                     \
     X(cg_begin) X(cg_motion) X(cg_start) X(cg_guess) X(cg_pass)                              \
     X(tie_pack) X(tie_pack_pass) X(tie_show_basis)            \
+    X(cg_pack) X(group_factor) X(group_start) X(group_solve)                \
     X(cg_scalars) X(piece_sums) X(piece_shift)         \
     X(stretch) X(energy) X(level) X(watch) X(seams) X(contact_force) X(probe) X(row)                         \
-    X(frame) X(frame_beside) X(frame_force) X(collect) X(seconds) X(broadcast) X(system_part) X(system_save)
+    X(frame) X(frame_beside) X(frame_force) X(collect) X(seconds) X(broadcast) X(system_part) X(system_save) X(save)
 /* clang-format on */
 
 /* Those of them that are two to the runtime. */
@@ -33,24 +35,5 @@ enum { FLOW_KERNELS(FLOW_KERNEL_NUMBER) FLOW_KERNELS_OF_ALL };
 FLOW_KERNELS(FLOW_KERNEL_EXTERN)
 #define FLOW_KERNEL_EXTERN_LESS(name) extern const duite_kernel flow_kernel_##name##_less;
 FLOW_KERNELS_IF(FLOW_KERNEL_EXTERN_LESS)
-
-/* Kernels of objects that are not fields. */
-extern const duite_kernel flow_broadcast_head; /* w head: on rank 0 */
-extern const duite_kernel
-    flow_broadcast_shared; /* w shared: obstacles, motions, shapes, neighbours; on rank 0 */
-extern const duite_kernel flow_ready; /* cw ready: fails if this rank cannot begin */
-extern const duite_kernel flow_pack;  /* r halo of s, w packed halo */
-
-/* Groups in the coarse part of a preconditioner: solver/levels.h. */
-extern const duite_kernel flow_group_factor, flow_group_start, flow_group_solve;
-
-/* Sides that meet: contact/contact.h. */
-extern const duite_kernel flow_meet, flow_meet_shape, flow_touch, flow_cut_ways, flow_count_ties,
-    flow_tie_contacts;
-
-/* Checkpoints: checkpoint/checkpoint.h. */
-extern const duite_kernel flow_save_block, flow_send_main, flow_load_block;
-
-enum { FLOW_KERNELS_LISTED = FLOW_KERNELS_OF_ALL + 19 }; /* by flow_kernels (run.h) */
 
 #endif

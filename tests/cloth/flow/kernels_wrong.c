@@ -22,6 +22,9 @@ struct other {
     uint64_t block;
 };
 FLOW_KERNEL(implicit, FLOW_POSITION, struct other, (R(table), R(v), RW(x), W(halo_x)))
+#elif WRONG == 12                /* an object that is no field, and that no list has */
+FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_step_args,
+            (R(table), R(v), RW(x), W(halo_x), GIVEN_R(surprise)))
 #elif WRONG == 10 || WRONG == 11 /* the block alone */
 FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_block_args, (R(table), R(v), RW(x), W(halo_x)))
 #else

@@ -208,19 +208,25 @@ UNIT_LOOP(work_is_written_before_it_is_read, 0, KINDS)
     ck_assert_uint_eq(run_changed(_i, FLOW_WORK, -1, to_nothing), hash);
 }
 
+/* The place of a parameter: objects that the fork gives stand among the task's own. */
+static enum flow_whose place_of(const struct flow_parameter *p)
+{
+    return p->whose == FLOW_OF_FORK ? FLOW_OWN : p->whose;
+}
+
 /* A body's pointers are counted on from the last object of the task's own: behind those come the
- * ones of neighbours, then those that may not be there; behind those of all blocks comes nothing.
- */
+ * ones of neighbours, then those that may not be there; behind those of all blocks, and behind all
+ * others that the fork gives, comes nothing. */
 UNIT_LOOP(parameters_stand_in_order, 0, FLOW_KERNELS_OF_ALL)
 {
 #define ADDRESS(name) &flow_kernel_##name,
     const struct flow_kernel *const all[] = {FLOW_KERNELS(ADDRESS)};
     const struct flow_parameter *p = all[_i]->parameter;
     for (; p->whose != FLOW_NOBODY && p[1].whose != FLOW_NOBODY; p++) {
-        ck_assert_msg(p->whose <= p[1].whose, "%s: parameter %d", all[_i]->task.name,
+        ck_assert_msg(place_of(p) <= place_of(p + 1), "%s: parameter %d", all[_i]->task.name,
                       (int)(p - all[_i]->parameter) + 1);
-        ck_assert_msg(p->whose != FLOW_OF_ALL, "%s: parameter %d", all[_i]->task.name,
-                      (int)(p - all[_i]->parameter));
+        ck_assert_msg(p->whose != FLOW_OF_ALL && p->whose != FLOW_REST_OF_FORK, "%s: parameter %d",
+                      all[_i]->task.name, (int)(p - all[_i]->parameter));
     }
 }
 

@@ -31,3 +31,4 @@ ok "a field as another type does not" wrong 8 'incompatible pointer'
 ok "arguments whose block is of another type do not" wrong 9 'begin with the block'
 ok "a shared function that asks for arguments of a step does not, where there are none" wrong 10 'incompatible pointer'
 ok "a member of them does not" wrong 11 "no member named .now"
+ok "an object that is in no list does not" wrong 12 flow_type_of_surprise

@@ -109,8 +109,8 @@ struct command {
     bool done;  /* nothing is to be run: help, version, keys */
 };
 
-static int whole_number(struct argp_state *state, const char *option, const char *text,
-                        uint64_t min, uint64_t max, uint64_t *value)
+static int cloth_cli_whole_number(struct argp_state *state, const char *option, const char *text,
+                                  uint64_t min, uint64_t max, uint64_t *value)
 {
     char *end;
     errno = 0;
@@ -166,7 +166,8 @@ static int add_set(struct command *command, const char *text, const char *option
 }
 
 /* An option that stands for a key of the scene: the schema checks it, errors name the option. */
-static int add_key(struct command *command, const char *option, const char *key, const char *value)
+static int cloth_cli_add_key(struct command *command, const char *option, const char *key,
+                             const char *value)
 {
     char **texts = realloc(command->texts, (command->n_texts + 2) * sizeof *texts);
     if (!texts)
@@ -225,13 +226,13 @@ static int answer(struct command *command, struct argp_state *state, int key)
     return 0;
 }
 
-static error_t parse_number(struct command *command, struct argp_state *state, int key,
-                            const char *value)
+static error_t cloth_cli_parse_number(struct command *command, struct argp_state *state, int key,
+                                      const char *value)
 {
     uint64_t number = 0;
     bool threads = key == THREADS;
-    int code = whole_number(state, threads ? "threads" : "seed", value, threads ? 1 : 0,
-                            threads ? DUITE_MAX_THREADS : UINT64_MAX, &number);
+    int code = cloth_cli_whole_number(state, threads ? "threads" : "seed", value, threads ? 1 : 0,
+                                      threads ? DUITE_MAX_THREADS : UINT64_MAX, &number);
     if (code)
         return code;
     if (threads)
@@ -287,7 +288,8 @@ static error_t parse_checkpoint(struct command *command, struct argp_state *stat
     return EINVAL;
 }
 
-static error_t parse_scene(struct command *command, struct argp_state *state, const char *path)
+static error_t cloth_cli_parse_scene(struct command *command, struct argp_state *state,
+                                     const char *path)
 {
     if (command->run.scene) {
         argp_failure(state, 0, 0, "%s: a second scene file; one is expected", path);
@@ -296,7 +298,7 @@ static error_t parse_scene(struct command *command, struct argp_state *state, co
     return parse_name(state, "scene file", path, &command->run.scene);
 }
 
-static error_t parse(int key, char *value, struct argp_state *state)
+static error_t cloth_cli_parse(int key, char *value, struct argp_state *state)
 {
     struct command *command = state->input;
     switch (key) {
@@ -323,9 +325,9 @@ static error_t parse(int key, char *value, struct argp_state *state)
         command->run.quiet = true;
         return 0;
     case END:
-        return add_key(command, "end", "time.end", value);
+        return cloth_cli_add_key(command, "end", "time.end", value);
     case GRAIN:
-        return add_key(command, "grain", "grain", value);
+        return cloth_cli_add_key(command, "grain", "grain", value);
     case KEYS:
         return print_keys(command, state, value);
     case SET:
@@ -338,14 +340,14 @@ static error_t parse(int key, char *value, struct argp_state *state)
         return choose_balance(state, &command->run, value);
     case THREADS:
     case SEED:
-        return parse_number(command, state, key, value);
+        return cloth_cli_parse_number(command, state, key, value);
     case SCENES:
     case USAGE:
     case 'V':
     case '?':
         return answer(command, state, key);
     case ARGP_KEY_ARG:
-        return parse_scene(command, state, value);
+        return cloth_cli_parse_scene(command, state, value);
     default:
         return ARGP_ERR_UNKNOWN;
     }
@@ -353,7 +355,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
 
 static const struct argp ARGP = {
     .options = OPTIONS,
-    .parser = parse,
+    .parser = cloth_cli_parse,
     .help_filter = environment_help,
     .args_doc = "SCENE.yaml",
     .doc = "Simulates the cloths of a scene file. Run it under mpirun for several ranks; the "

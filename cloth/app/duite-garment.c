@@ -70,7 +70,7 @@ static int parse_count(const char *text, uint32_t *count)
     return *text < '0' || *text > '9' || *end || errno || n < 3 || n > UINT32_MAX;
 }
 
-static void finish(const struct options *options, struct argp_state *state)
+static void garment_cli_finish(const struct options *options, struct argp_state *state)
 {
     if (options->listed)
         return;
@@ -127,7 +127,7 @@ static error_t parse_own(int key, const char *arg, struct argp_state *state)
     }
 }
 
-static error_t parse(int key, char *arg, struct argp_state *state)
+static error_t garment_cli_parse(int key, char *arg, struct argp_state *state)
 {
     struct options *options = state->input;
     switch (key) {
@@ -168,7 +168,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         options->pattern = arg;
         return 0;
     case ARGP_KEY_END:
-        finish(options, state);
+        garment_cli_finish(options, state);
         return 0;
     default:
         return parse_own(key, arg, state);
@@ -228,7 +228,7 @@ static void say_seam(const struct garment *garment, const struct garment_pattern
         seam->distance[seam->reversed], seam->distance[!seam->reversed]);
 }
 
-static void warn(const struct garment *garment)
+static void garment_cli_warn(const struct garment *garment)
 {
     uint32_t n = 0;
     for (uint32_t s = 0; s < garment->n_seams; s++)
@@ -244,7 +244,7 @@ static void warn(const struct garment *garment)
               stderr);
 }
 
-static void say(const struct garment *garment, const struct garment_pattern *pattern)
+static void garment_cli_say(const struct garment *garment, const struct garment_pattern *pattern)
 {
     uint32_t below;
     const double least = garment_least_angle(garment, &below);
@@ -282,8 +282,8 @@ static int set_measure(const struct garment_own *own, const char *text, double *
     return CLOTH_OK;
 }
 
-static int take_pattern(struct garment_pattern *pattern, const struct options *options,
-                        struct cloth_error *error)
+static int garment_cli_take_pattern(struct garment_pattern *pattern, const struct options *options,
+                                    struct cloth_error *error)
 {
     double value[GARMENT_MEASURES];
     char unusual[200];
@@ -336,19 +336,19 @@ static int write_mesh(const struct options *options, const char *seams,
     if (!code && options->body)
         code = compare_body(&garment, options->body, error);
     if (!code)
-        warn(&garment);
+        garment_cli_warn(&garment);
     if (!code && !options->quiet)
-        say(&garment, pattern);
+        garment_cli_say(&garment, pattern);
     garment_free(&garment);
     return code;
 }
 
-static int run(const struct options *options, struct cloth_error *error)
+static int garment_cli_run(const struct options *options, struct cloth_error *error)
 {
     struct garment_pattern pattern = {0};
     char *seams = options->output ? seams_path(options) : NULL;
     int code = options->output && !seams ? cloth_fail(error, CLOTH_E_MEMORY, "no memory for a name")
-                                         : take_pattern(&pattern, options, error);
+                                         : garment_cli_take_pattern(&pattern, options, error);
     code = code ? code : check_paths(options, seams, error);
     if (!code && options->written)
         code = output_pattern(options->written, &pattern, error);
@@ -375,7 +375,7 @@ static void list_measures(const struct garment_own *own)
 int main(int argc, char **argv)
 {
     static const struct argp argp = {OPTIONS,
-                                     parse,
+                                     garment_cli_parse,
                                      "PATTERN\n--own GARMENT",
                                      "Makes the mesh of a garment from the sewing pattern PATTERN, "
                                      "a JSON file, or from measures: panels, and which vertices "
@@ -391,7 +391,7 @@ int main(int argc, char **argv)
     if (options.listed)
         list_measures(options.listed);
     else
-        code = run(&options, &error);
+        code = garment_cli_run(&options, &error);
     if (!code && (fflush(stdout) != 0 || ferror(stdout)))
         code =
             cloth_fail(&error, CLOTH_E_IO, "cannot write to standard output: %s", strerror(errno));

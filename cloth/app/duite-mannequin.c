@@ -62,7 +62,7 @@ static void parse_measure(struct options *options, char *arg, struct argp_state 
         argp_error(state, "the measure %s takes a length above 0 in metres, not `%s'", arg, value);
 }
 
-static void finish(struct options *options, struct argp_state *state)
+static void mannequin_cli_finish(struct options *options, struct argp_state *state)
 {
     if (!options->output)
         argp_error(state, "say where the mesh goes: --output FILE");
@@ -74,7 +74,7 @@ static void finish(struct options *options, struct argp_state *state)
                    options->walk * options->fps);
 }
 
-static error_t parse(int key, char *arg, struct argp_state *state)
+static error_t mannequin_cli_parse(int key, char *arg, struct argp_state *state)
 {
     struct options *options = state->input;
     switch (key) {
@@ -109,14 +109,14 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         argp_error(state, "nothing is read: `%s' is one too many", arg);
         return 0;
     case ARGP_KEY_END:
-        finish(options, state);
+        mannequin_cli_finish(options, state);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
 
-static void say(const struct mesh *mesh, const double *girth)
+static void mannequin_cli_say(const struct mesh *mesh, const double *girth)
 {
     double low[3], high[3];
     mesh_box(mesh, low, high);
@@ -135,7 +135,7 @@ struct walking {
     double fps;
 };
 
-static void place(const void *context, uint32_t frame, double (*x)[3])
+static void mannequin_cli_place(const void *context, uint32_t frame, double (*x)[3])
 {
     static const struct mannequin_walk walk = {0};
     const struct walking *walking = context;
@@ -155,7 +155,7 @@ static int write_walk(const struct options *options, const struct mannequin_rig 
     const struct output_shapes shapes = {.n_points = mesh->n_vertices,
                                          .n_frames =
                                              (uint32_t)(options->walk * options->fps + 0.5) + 1,
-                                         .place = place,
+                                         .place = mannequin_cli_place,
                                          .context = &walking};
     char *path = NULL;
     if (asprintf(&path, "%.*s.pc2", stem, output) < 0)
@@ -165,7 +165,7 @@ static int write_walk(const struct options *options, const struct mannequin_rig 
     return code;
 }
 
-static int run(const struct options *options, struct cloth_error *error)
+static int mannequin_cli_run(const struct options *options, struct cloth_error *error)
 {
     struct mesh mesh = {0};
     struct mannequin_rig rig = {0};
@@ -175,7 +175,7 @@ static int run(const struct options *options, struct cloth_error *error)
     if (!code && options->walk > 0)
         code = write_walk(options, &rig, &mesh, error);
     if (!code && !options->quiet)
-        say(&mesh, girth);
+        mannequin_cli_say(&mesh, girth);
     mesh_free(&mesh);
     mannequin_rig_free(&rig);
     return code;
@@ -184,7 +184,7 @@ static int run(const struct options *options, struct cloth_error *error)
 int main(int argc, char **argv)
 {
     static const struct argp argp = {OPTIONS,
-                                     parse,
+                                     mannequin_cli_parse,
                                      NULL,
                                      "Makes the closed mesh of a standing figure, made to measure, "
                                      "for garments to be put on.",
@@ -195,7 +195,7 @@ int main(int argc, char **argv)
     struct cloth_error error = {0};
     argp_err_exit_status = 2;
     argp_parse(&argp, argc, argv, 0, NULL, &options);
-    int code = run(&options, &error);
+    int code = mannequin_cli_run(&options, &error);
     if (!code && (fflush(stdout) != 0 || ferror(stdout)))
         code =
             cloth_fail(&error, CLOTH_E_IO, "cannot write to standard output: %s", strerror(errno));

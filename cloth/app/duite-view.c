@@ -67,7 +67,7 @@ static const struct argp_option OPTIONS[] = {
     {0}};
 
 /* A number of a frame, from the text up to *end. */
-static int parse_number(const char *text, long long *frame, char **end)
+static int view_cli_parse_number(const char *text, long long *frame, char **end)
 {
     errno = 0;
     *frame = strtoll(text, end, 10);
@@ -78,7 +78,8 @@ static int parse_frame(const char *text, struct options *options)
 {
     char *end = NULL;
     options->frame = LAST_FRAME;
-    return strcmp(text, "last") != 0 && (parse_number(text, &options->frame, &end) || *end);
+    return strcmp(text, "last") != 0 &&
+           (view_cli_parse_number(text, &options->frame, &end) || *end);
 }
 
 /* A:B, where A or B may be left out. */
@@ -87,12 +88,12 @@ static int parse_frames(const char *text, struct options *options)
     char *end = (char *)(uintptr_t)text;
     options->first = 0;
     options->last = LAST_FRAME;
-    if (*text != ':' && parse_number(text, &options->first, &end))
+    if (*text != ':' && view_cli_parse_number(text, &options->first, &end))
         return 1;
     if (*end++ != ':')
         return 1;
     text = end;
-    if (*text && (parse_number(text, &options->last, &end) || *end))
+    if (*text && (view_cli_parse_number(text, &options->last, &end) || *end))
         return 1;
     return options->last != LAST_FRAME && options->last < options->first;
 }
@@ -224,7 +225,7 @@ static error_t parse_film(int key, char *arg, struct argp_state *state)
     }
 }
 
-static error_t parse(int key, char *arg, struct argp_state *state)
+static error_t view_cli_parse(int key, char *arg, struct argp_state *state)
 {
     struct options *options = state->input;
     const char *wrong;
@@ -278,8 +279,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 }
 
 /* The number of a frame that is asked for. */
-static int find_frame(const struct output_cache *cache, const struct options *options,
-                      long long wanted, uint64_t *frame, struct cloth_error *error)
+static int view_cli_find_frame(const struct output_cache *cache, const struct options *options,
+                               long long wanted, uint64_t *frame, struct cloth_error *error)
 {
     const uint64_t n = cache->n_frames;
     if (n == 0)
@@ -297,7 +298,7 @@ static int write_picture(struct view_show *show, const struct output_cache *cach
     struct view_picture picture = {options->wish.width, options->wish.height, NULL};
     struct view_context *context = NULL;
     uint64_t frame = 0;
-    int code = find_frame(cache, options, options->frame, &frame, error);
+    int code = view_cli_find_frame(cache, options, options->frame, &frame, error);
     code = code ? code : view_show_frame(show, frame, error);
     code = code ? code : view_context_open(&context, error);
     code = code ? code : view_show_picture(show, &picture, error);
@@ -317,8 +318,8 @@ static int write_film(struct view_show *show, const struct output_cache *cache,
                                  .width = options->wish.width,
                                  .height = options->wish.height,
                                  .fps = options->fps > 0 ? options->fps : cache->fps};
-    int code = find_frame(cache, options, options->last, &frames.last, error);
-    code = code ? code : find_frame(cache, options, options->first, &frames.first, error);
+    int code = view_cli_find_frame(cache, options, options->last, &frames.last, error);
+    code = code ? code : view_cli_find_frame(cache, options, options->first, &frames.first, error);
     return code ? code : view_frames_film(show, &frames, error);
 }
 
@@ -327,7 +328,7 @@ static int open_window(struct view_show *show, const struct output_cache *cache,
 {
 #ifdef HAVE_WINDOW
     uint64_t frame = 0;
-    const int code = find_frame(cache, options, options->frame, &frame, error);
+    const int code = view_cli_find_frame(cache, options, options->frame, &frame, error);
     return code ? code : view_window(show, cache, &options->wish, frame, error);
 #else
     (void)show, (void)cache, (void)options;
@@ -340,7 +341,7 @@ static int show_frames(struct output_cache *cache, const struct options *options
 {
     struct view_show *show = NULL;
     uint64_t any;
-    int code = find_frame(cache, options, LAST_FRAME, &any, error);
+    int code = view_cli_find_frame(cache, options, LAST_FRAME, &any, error);
     code = code ? code : view_show_open(&show, cache, &options->wish, error);
     if (!code && options->png)
         code = write_picture(show, cache, options, error);
@@ -353,7 +354,8 @@ static int show_frames(struct output_cache *cache, const struct options *options
 }
 
 /* The exit code if nothing failed. */
-static int check_frames(struct output_cache *cache, int *exit_code, struct cloth_error *error)
+static int view_cli_check_frames(struct output_cache *cache, int *exit_code,
+                                 struct cloth_error *error)
 {
     struct intersections_found found = {0};
     const int code = intersections_of_folder(cache, "duite-view", &found, error);
@@ -367,7 +369,7 @@ static int check_frames(struct output_cache *cache, int *exit_code, struct cloth
 }
 
 /* Prints the error, returns the exit code. */
-static int say(int code, const struct cloth_error *error)
+static int view_cli_say(int code, const struct cloth_error *error)
 {
     if (code)
         fprintf(stderr, "duite-view: %s\n", error->text);
@@ -380,24 +382,24 @@ static int draw_trace(struct options *options, struct cloth_error *error)
         options->chart.width = options->wish.width;
         options->chart.height = options->wish.height;
     }
-    return say(view_trace(options->trace, &options->chart, options->svg, options->png, error),
-               error);
+    return view_cli_say(
+        view_trace(options->trace, &options->chart, options->svg, options->png, error), error);
 }
 
 static int show_live(struct options *options, struct cloth_error *error)
 {
     options->wish.folder = options->live.host;
-    return say(options->png
-                   ? view_live_picture(&options->wish, options->png, options->live.seconds, error)
-                   : view_live_window(&options->wish, error),
-               error);
+    return view_cli_say(
+        options->png ? view_live_picture(&options->wish, options->png, options->live.seconds, error)
+                     : view_live_window(&options->wish, error),
+        error);
 }
 
 int main(int argc, char **argv)
 {
     static const struct argp argp = {
         OPTIONS,
-        parse,
+        view_cli_parse,
         "DIR\n--connect HOST:PORT\n--trace FILE",
         "Shows a simulated cloth in a window, makes a picture or a film of it, or checks all "
         "frames; DIR "
@@ -425,7 +427,7 @@ int main(int argc, char **argv)
     if (!code && (options.png || options.mp4 || opens_window(&options)))
         code = show_frames(&cache, &options, &error);
     if (!code && options.check_intersections)
-        code = check_frames(&cache, &exit_code, &error);
+        code = view_cli_check_frames(&cache, &exit_code, &error);
     output_cache_close(&cache);
-    return code ? say(code, &error) : exit_code;
+    return code ? view_cli_say(code, &error) : exit_code;
 }

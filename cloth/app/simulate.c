@@ -63,7 +63,7 @@ static int say_lost(const struct run *run, const struct cloth_error *error)
 }
 
 /* Puts the scene before an error. */
-static void name_scene(const char *scene, struct cloth_error *error)
+static void simulate_name_scene(const char *scene, struct cloth_error *error)
 {
     struct cloth_error named = {0};
     cloth_fail(&named, error->code, "%.200s: %.800s", scene, error->text);
@@ -104,7 +104,7 @@ static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
     flow_run(run->flow, rt, wants ? &output : NULL, &progress, &run->report, error);
     progress_end(&run->progress);
     if (error->code == CLOTH_E_INPUT) /* a start that only the first look finds to touch */
-        name_scene(options->scene, error);
+        simulate_name_scene(options->scene, error);
 }
 
 static void say_stopped(const struct run *run)
@@ -135,7 +135,7 @@ static void warn_of_motion(const struct run *run)
                 run->model->end, rest->speed, rest->hold);
 }
 
-static void warn_of_edges(const struct run *run)
+static void simulate_warn_of_edges(const struct run *run)
 {
     const struct flow_report *report = &run->phases.total;
     if (report->corrections_unmet)
@@ -225,7 +225,7 @@ static void find_bounds(const char *trace, double *path, double *lower)
     trace_run_free(traced);
 }
 
-static int conclude(struct run *run)
+static int simulate_conclude(struct run *run)
 {
     struct cloth_error error = {0};
     struct rusage usage = {0};
@@ -263,7 +263,7 @@ static int conclude(struct run *run)
         intersections_say(&outputs->found, "duite-cloth");
         if (!run->stopped_before) /* else it has warned */
             warn_of_motion(run);
-        warn_of_edges(run);
+        simulate_warn_of_edges(run);
         if (run->options->report)
             summary_write(&summary, run->options->report, &error);
         if (!run->options->quiet)
@@ -304,7 +304,7 @@ int simulate(const struct simulate_options *options)
     else if (!failure) {
         failure = run_phases(&run);
         if (!failure)
-            failure = conclude(&run);
+            failure = simulate_conclude(&run);
         const int done = run.intersects ? SIMULATE_INTERSECTS : SIMULATE_OK;
         const bool stopped = run.report.stopped || run.stopped_before;
         code = code_of(failure, stopped ? SIMULATE_STOPPED : done);

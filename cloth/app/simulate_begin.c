@@ -17,8 +17,8 @@
 #include <xxhash.h>
 
 /* Checks a file before the run, so that later output is not lost. */
-static int check_file(const struct run *run, const char *option, const char *path,
-                      struct cloth_error *error)
+static int simulate_begin_check_file(const struct run *run, const char *option, const char *path,
+                                     struct cloth_error *error)
 {
     struct cloth_error inner = {0};
     struct stat file, read;
@@ -63,7 +63,7 @@ static int find_elastic(struct run *run, struct cloth_error *error)
 }
 
 /* Rank 0 cuts the cloths of the phase into blocks; the others are sent theirs by the run. */
-static int cut(struct run *run, struct cloth_error *error)
+static int simulate_begin_cut(struct run *run, struct cloth_error *error)
 {
     struct untangle_result untangled = {0}, *all = &run->untangled;
     int code = flow_prepare(&run->flow, run->model, run->ranks, error);
@@ -95,13 +95,13 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
         code = restart_read(&run->restart, options->restart, &run->phases, error);
     run->model = phases_model(&run->phases);
     if (!code && !simulate_stops(NULL))
-        code = cut(run, error);
+        code = simulate_begin_cut(run, error);
     if (!code && options->restart && run->flow)
         code = restart_resume(&run->restart, run->flow, error);
     if (!code && options->report)
-        code = check_file(run, "--report", options->report, error);
+        code = simulate_begin_check_file(run, "--report", options->report, error);
     if (!code && options->trace)
-        code = check_file(run, "--trace (or DUITE_TRACE)", options->trace, error);
+        code = simulate_begin_check_file(run, "--trace (or DUITE_TRACE)", options->trace, error);
     return code;
 }
 
@@ -126,7 +126,7 @@ static bool is_known(const struct run *run, const char *warning)
 }
 
 /* Prints, on rank 0, the warnings of the phase that begins. */
-static void warn(const struct run *run)
+static void simulate_begin_warn(const struct run *run)
 {
     const char *warning, *name = run->phases.done[run->phases.now].name;
     char phase[100] = "";
@@ -153,7 +153,7 @@ static void agree_on_frames(struct run *run)
 static void open_outputs(struct run *run, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
-    warn(run);
+    simulate_begin_warn(run);
     if (run->model->n_probes && !options->output)
         fprintf(stderr, "duite-cloth: warning: the scene has probes, whose table is written into "
                         "the folder of --output; there is none\n");
@@ -204,9 +204,9 @@ static void begin_phase(struct run *run, struct cloth_error *error)
     flow_free(run->flow);
     run->flow = NULL;
     if (!error->code)
-        cut(run, error);
+        simulate_begin_cut(run, error);
     if (!error->code)
-        warn(run);
+        simulate_begin_warn(run);
     if (!error->code && strcmp(columns, flow_header(run->flow) ? flow_header(run->flow) : "") != 0)
         cloth_fail(error, CLOTH_E_INPUT,
                    "%s: its probes have other columns than those of the first phase",

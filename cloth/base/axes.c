@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Makes entry (i, j) of m zero. */
-static void turn(double small, double m[3][3], double axes[3][3], int i, int j)
+static void base_axes_turn(double small, double m[3][3], double axes[3][3], int i, int j)
 {
     if (fabs(m[i][j]) <= small)
         return;
@@ -34,8 +34,8 @@ void cloth_axes(double small, double m[3][3], double axes[3][3])
     const double start[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     memcpy(axes, start, sizeof start);
     for (int sweep = 0; sweep < 12; sweep++) {
-        turn(small, m, axes, 0, 1);
-        turn(small, m, axes, 0, 2);
-        turn(small, m, axes, 1, 2);
+        base_axes_turn(small, m, axes, 0, 1);
+        base_axes_turn(small, m, axes, 0, 2);
+        base_axes_turn(small, m, axes, 1, 2);
     }
 }

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-static void *out_of_memory(size_t n, size_t size, struct cloth_error *error)
+static void *base_memory_out_of(size_t n, size_t size, struct cloth_error *error)
 {
     cloth_fail(error, CLOTH_E_MEMORY, "out of memory: %zu items of %zu bytes cannot be had", n,
                size);
@@ -15,16 +15,16 @@ static void *out_of_memory(size_t n, size_t size, struct cloth_error *error)
 void *cloth_alloc(size_t n, size_t size, struct cloth_error *error)
 {
     if (size && n > SIZE_MAX / size)
-        return out_of_memory(n, size, error);
+        return base_memory_out_of(n, size, error);
     void *block = calloc(n ? n : 1, size ? size : 1);
-    return block ? block : out_of_memory(n, size, error);
+    return block ? block : base_memory_out_of(n, size, error);
 }
 
 void *cloth_list_add(struct cloth_list *list, size_t size, size_t count, struct cloth_error *error)
 {
     size_t max = SIZE_MAX / size;
     if (count > max - list->n)
-        return out_of_memory(count, size, error);
+        return base_memory_out_of(count, size, error);
     size_t needed = list->n + count;
     if (needed > list->capacity || !list->items) {
         size_t capacity = needed < 16 ? 16 : needed;
@@ -32,7 +32,7 @@ void *cloth_list_add(struct cloth_list *list, size_t size, size_t count, struct 
             capacity = 2 * list->capacity;
         void *items = capacity <= max ? realloc(list->items, capacity * size) : NULL;
         if (!items)
-            return out_of_memory(capacity, size, error);
+            return base_memory_out_of(capacity, size, error);
         list->items = items;
         list->capacity = capacity;
     }

@@ -24,7 +24,7 @@ static enum cloth_simd widest(void)
 }
 
 /* The value that DUITE_SIMD asks for; N_NAMES: an unknown one. */
-static int wanted(void)
+static int simd_wanted(void)
 {
     const char *name = getenv("DUITE_SIMD");
     int i = name && *name ? 0 : (int)widest();
@@ -36,7 +36,7 @@ static int wanted(void)
 __attribute__((constructor)) static void choose(void)
 {
     const enum cloth_simd max = widest();
-    const int asked = wanted();
+    const int asked = simd_wanted();
     cloth_simd = asked <= (int)max ? (enum cloth_simd)asked : max;
 }
 
@@ -47,7 +47,7 @@ const char *cloth_simd_name(void)
 
 int cloth_simd_check(struct cloth_error *error)
 {
-    const int asked = wanted();
+    const int asked = simd_wanted();
     if (asked == N_NAMES)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "DUITE_SIMD is '%s'; none, avx2 and avx512 are allowed",

@@ -251,7 +251,8 @@ struct box {
     double low[3], high[3];
 };
 
-static bool boxes_meet(const struct box *box, const struct contact_node *node, int part)
+static bool contact_body_boxes_meet(const struct box *box, const struct contact_node *node,
+                                    int part)
 {
     bool meet = true;
     for (int c = 0; c < 3; c++)
@@ -269,7 +270,7 @@ static bool body_leaves(const struct contact_body *body, const struct box *box)
     while (n) {
         const struct contact_node *node = nodes + stack[--n];
         for (int i = 0; i < 4; i++) {
-            if (!boxes_meet(box, node, i))
+            if (!contact_body_boxes_meet(box, node, i))
                 continue;
             if (node->child[i] & CONTACT_IS_LEAF)
                 return false;

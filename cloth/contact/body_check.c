@@ -68,7 +68,7 @@ static int by_ends(const void *left, const void *right)
     return (a->triangle > b->triangle) - (a->triangle < b->triangle);
 }
 
-static void sort_sides(struct contact_making *making)
+static void body_check_sort_sides(struct contact_making *making)
 {
     for (uint32_t t = 0; t < making->n; t++)
         for (uint32_t i = 0; i < 3; i++) {
@@ -80,7 +80,7 @@ static void sort_sides(struct contact_making *making)
 }
 
 /* The number of sides that have the edge of this one, the first of them. */
-static size_t count_sides(const struct contact_making *making, size_t first)
+static size_t body_check_count_sides(const struct contact_making *making, size_t first)
 {
     size_t n = 1;
     while (first + n < 3 * (size_t)making->n &&
@@ -94,7 +94,7 @@ static int fail_open(const struct contact_making *making, size_t first, size_t n
     const uint64_t ends = making->side[first].ends;
     size_t others = 0;
     for (size_t i = first, count; i < 3 * (size_t)making->n; i += count)
-        others += (count = count_sides(making, i)) != 2;
+        others += (count = body_check_count_sides(making, i)) != 2;
     return cloth_fail(making->error, CLOTH_E_INPUT,
                       "the mesh is not closed: the edge between vertices %u and %u has %zu "
                       "triangle%s where 2 are expected, as %zu edge%s in all (vertices count from "
@@ -131,10 +131,10 @@ static bool are_folded(const struct contact_making *making, const struct contact
 
 static int join_sides(struct contact_making *making)
 {
-    sort_sides(making);
+    body_check_sort_sides(making);
     for (size_t i = 0; i < 3 * (size_t)making->n; i += 2) {
         const struct contact_making_side *side = making->side + i;
-        const size_t n = count_sides(making, i);
+        const size_t n = body_check_count_sides(making, i);
         if (n != 2)
             return fail_open(making, i, n);
         if (side[0].rises == side[1].rises)
@@ -205,12 +205,12 @@ static int orient(struct contact_making *making, bool *turned)
 
 /* The parts of a mesh are joined by edges. By number of the triangle, until the tree takes its
  * room: `order` leads to the first triangle of the part, whose normal has its volume in lane 3. */
-static uint32_t part_of(const struct contact_making *making, uint32_t t)
+static uint32_t body_check_part_of(const struct contact_making *making, uint32_t t)
 {
     return cloth_sets_root(making->order, t);
 }
 
-static void find_parts(struct contact_making *making)
+static void body_check_find_parts(struct contact_making *making)
 {
     cloth_sets_start(making->order, making->n);
     for (uint32_t t = 0; t < making->n; t++)
@@ -221,7 +221,7 @@ static void find_parts(struct contact_making *making)
 static void measure_parts(struct contact_making *making)
 {
     for (uint32_t t = 0; t < making->n; t++) {
-        const uint32_t part = part_of(making, t);
+        const uint32_t part = body_check_part_of(making, t);
         phys_vec origin, x[3], area;
         contact_load(making, making->corner[part][0], &origin);
         see(making, t, &origin, x);
@@ -241,7 +241,7 @@ static double windings_of(const struct contact_making *making, uint32_t part)
     for (uint32_t t = 0; t < making->n; t++) {
         phys_vec x[3], area;
         double length[3];
-        if (part_of(making, t) == part)
+        if (body_check_part_of(making, t) == part)
             continue;
         see(making, t, &from, x);
         for (int i = 0; i < 3; i++)
@@ -258,7 +258,7 @@ static double windings_of(const struct contact_making *making, uint32_t part)
 static int check_parts(struct contact_making *making)
 {
     int code = CLOTH_OK;
-    find_parts(making);
+    body_check_find_parts(making);
     measure_parts(making);
     for (uint32_t t = 0; t < making->n; t++) {
         if (!code && making->normal[t][3] < 0 && windings_of(making, t) < 1)

@@ -55,7 +55,7 @@ bool contact_body_opens(const struct contact_body *body, const uint32_t *fan, co
     return opens;
 }
 
-static void find_normal(const struct contact_facet *facet, const phys_vec *y, phys_vec *n)
+static void body_fan_find_normal(const struct contact_facet *facet, const phys_vec *y, phys_vec *n)
 {
     const phys_vec a = y[facet->corner[1]] - y[facet->corner[0]];
     const phys_vec b = y[facet->corner[2]] - y[facet->corner[0]];
@@ -83,7 +83,7 @@ bool contact_body_bends(const struct contact_body *body, const uint32_t *fan, co
         const uint32_t next = facet[f].corner[(k + 1) % 3], last = facet[f].corner[(k + 2) % 3];
         if (n_vertices == 1 || next == vertex[1] || last == vertex[1]) {
             phys_vec normal;
-            find_normal(facet + f, y, &normal);
+            body_fan_find_normal(facet + f, y, &normal);
             bends = bends || (any && is_bent(&before, &normal));
             before = any ? before : normal;
             any = true;

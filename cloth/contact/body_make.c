@@ -51,7 +51,7 @@ static void add_normals(const struct contact_making *making, phys_vec *normal)
 
 /* ---- The body ---- */
 
-static uint64_t whole_lines(uint64_t bytes)
+static uint64_t body_make_whole_lines(uint64_t bytes)
 {
     return (bytes + CONTACT_ALIGN - 1) / CONTACT_ALIGN * CONTACT_ALIGN;
 }
@@ -59,7 +59,7 @@ static uint64_t whole_lines(uint64_t bytes)
 static uint64_t frames_bytes(const struct contact_making *making)
 {
     const uint64_t places = (uint64_t)making->frames->n * making->mesh->n_vertices;
-    return whole_lines(places * sizeof *making->frames->place);
+    return body_make_whole_lines(places * sizeof *making->frames->place);
 }
 
 static void lay_out(const struct contact_making *making, struct contact_body *body)
@@ -67,12 +67,14 @@ static void lay_out(const struct contact_making *making, struct contact_body *bo
     *body = (struct contact_body){.n_vertices = making->mesh->n_vertices,
                                   .n_triangles = making->n,
                                   .n_nodes = contact_tree_nodes(making->n)};
-    body->vertices = whole_lines(sizeof *body);
-    body->vertex_normals = body->vertices + whole_lines(body->n_vertices * sizeof(phys_vec));
-    body->facets = body->vertex_normals + whole_lines(body->n_vertices * sizeof(phys_vec));
+    body->vertices = body_make_whole_lines(sizeof *body);
+    body->vertex_normals =
+        body->vertices + body_make_whole_lines(body->n_vertices * sizeof(phys_vec));
+    body->facets =
+        body->vertex_normals + body_make_whole_lines(body->n_vertices * sizeof(phys_vec));
     body->facet_normals =
-        body->facets + whole_lines(body->n_triangles * sizeof(struct contact_facet));
-    body->nodes = body->facet_normals + whole_lines(body->n_triangles * sizeof(phys_vec));
+        body->facets + body_make_whole_lines(body->n_triangles * sizeof(struct contact_facet));
+    body->nodes = body->facet_normals + body_make_whole_lines(body->n_triangles * sizeof(phys_vec));
     body->bytes = body->nodes + body->n_nodes * sizeof(struct contact_node);
     if (!making->frames)
         return;
@@ -80,11 +82,11 @@ static void lay_out(const struct contact_making *making, struct contact_body *bo
     body->first = making->frames->first;
     body->rate = making->frames->rate;
     body->velocities = body->bytes;
-    body->frames = body->velocities + whole_lines(body->n_vertices * sizeof(phys_vec));
+    body->frames = body->velocities + body_make_whole_lines(body->n_vertices * sizeof(phys_vec));
     body->bytes = body->frames + frames_bytes(making);
 }
 
-static void put_vertices(const struct contact_making *making, struct contact_body *body)
+static void body_make_put_vertices(const struct contact_making *making, struct contact_body *body)
 {
     phys_vec *to = (void *)((char *)body + body->vertices);
     double most = 0;
@@ -120,13 +122,13 @@ static void put_facets(const struct contact_making *making, struct contact_body 
 }
 
 /* Appends the body to memory that has room for it. */
-static int put_body(struct contact_making *making, struct contact_body *body)
+static int body_make_put_body(struct contact_making *making, struct contact_body *body)
 {
     const int code = contact_tree_build(making->n, making->order, making->low, making->high,
                                         (void *)((char *)body + body->nodes), making->error);
     if (code)
         return code;
-    put_vertices(making, body);
+    body_make_put_vertices(making, body);
     put_facets(making, body);
     if (making->frames)
         memcpy((char *)body + body->frames, making->frames->place,
@@ -136,8 +138,8 @@ static int put_body(struct contact_making *making, struct contact_body *body)
 
 /* Makes room for so many bytes, at least twice what there was: so each body is moved only a few
  * times. */
-static int make_room(struct contact_bodies *bodies, uint64_t bytes,
-                     const struct contact_making *making)
+static int body_make_room(struct contact_bodies *bodies, uint64_t bytes,
+                          const struct contact_making *making)
 {
     const uint64_t room = bytes > 2 * bodies->room ? bytes : 2 * bodies->room;
     if (bytes <= bodies->room)
@@ -154,17 +156,17 @@ static int make_room(struct contact_bodies *bodies, uint64_t bytes,
     return CLOTH_OK;
 }
 
-static int append(struct contact_bodies *bodies, struct contact_making *making)
+static int body_make_append(struct contact_bodies *bodies, struct contact_making *making)
 {
     struct contact_body laid;
     lay_out(making, &laid);
-    int code = make_room(bodies, bodies->bytes + laid.bytes, making);
+    int code = body_make_room(bodies, bodies->bytes + laid.bytes, making);
     if (code)
         return code;
     char *body = (char *)bodies->memory + bodies->bytes;
     memset(body, 0, laid.bytes);
     memcpy(body, &laid, sizeof laid);
-    code = put_body(making, (void *)body);
+    code = body_make_put_body(making, (void *)body);
     if (code)
         return code;
     bodies->bytes += laid.bytes;
@@ -172,7 +174,7 @@ static int append(struct contact_bodies *bodies, struct contact_making *making)
     return CLOTH_OK;
 }
 
-static int take_room(struct contact_making *making)
+static int body_make_take_room(struct contact_making *making)
 {
     const uint32_t n = making->n;
     making->corner = cloth_alloc(n, sizeof *making->corner, making->error);
@@ -180,7 +182,8 @@ static int take_room(struct contact_making *making)
     making->side = cloth_alloc(n, 3 * sizeof *making->side, making->error);
     making->order = cloth_alloc(n, sizeof *making->order, making->error);
     making->place = cloth_alloc(n, sizeof *making->place, making->error);
-    making->normal = aligned_alloc(CONTACT_ALIGN, whole_lines(3 * n * sizeof *making->normal));
+    making->normal =
+        aligned_alloc(CONTACT_ALIGN, body_make_whole_lines(3 * n * sizeof *making->normal));
     if (!making->normal)
         return cloth_fail(making->error, CLOTH_E_MEMORY, "no memory for a body of %u triangles", n);
     making->low = making->normal + n;
@@ -200,7 +203,7 @@ static void free_room(struct contact_making *making)
 }
 
 /* Checks that all vertices of all frames are within the bound of a mesh. */
-static int check_frames(const struct contact_making *making)
+static int body_make_check_frames(const struct contact_making *making)
 {
     const uint32_t n = making->mesh->n_vertices;
     for (uint32_t k = 0; k < making->frames->n; k++)
@@ -231,10 +234,10 @@ int contact_bodies_add_frames(struct contact_bodies *bodies, const struct mesh *
         .mesh = mesh, .frames = frames, .n = mesh->n_triangles, .error = &own};
     int code = contact_body_check_vertices(&making);
     if (!code && frames)
-        code = check_frames(&making);
-    code = code ? code : take_room(&making);
+        code = body_make_check_frames(&making);
+    code = code ? code : body_make_take_room(&making);
     code = code ? code : contact_body_check(&making, turned);
-    code = code ? code : append(bodies, &making);
+    code = code ? code : body_make_append(bodies, &making);
     free_room(&making);
     if (!code && frames)
         contact_bodies_move(bodies, 0, 0);

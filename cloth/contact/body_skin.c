@@ -97,7 +97,8 @@ int contact_body_skin_make(const struct contact_body *body, uint32_t first_id, v
     return code;
 }
 
-static void place_points(const struct phys_pose *pose, size_t n, const phys_vec *from, phys_vec *to)
+static void body_skin_place_points(const struct phys_pose *pose, size_t n, const phys_vec *from,
+                                   phys_vec *to)
 {
     for (size_t i = 0; i < n; i++)
         phys_pose_point(pose, from + i, to + i);
@@ -121,8 +122,8 @@ void contact_body_ends(const struct contact_body *body, const struct contact_pos
         memcpy(y, vertex, body->n_vertices * sizeof *y);
         return;
     }
-    place_points(&pose->from, body->n_vertices, vertex, x);
-    place_points(&pose->to, body->n_vertices, vertex, y);
+    body_skin_place_points(&pose->from, body->n_vertices, vertex, x);
+    body_skin_place_points(&pose->to, body->n_vertices, vertex, y);
     for (int c = 0; c < 3; c++)
         middle[c] = (body->low[c] + body->high[c]) / 2;
     phys_pose_point(&pose->from, &middle, &was);

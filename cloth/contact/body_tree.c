@@ -38,7 +38,7 @@ uint32_t contact_tree_nodes(uint32_t n_triangles)
     return n;
 }
 
-static int by_key(const void *left, const void *right)
+static int body_tree_by_key(const void *left, const void *right)
 {
     const struct item *a = left, *b = right;
     if (a->key < b->key || a->key > b->key)
@@ -65,7 +65,7 @@ static void sort_range(struct tree *tree, uint32_t from, uint32_t to)
         tree->item[i].key = tree->low[triangle][axis] + tree->high[triangle][axis];
         tree->item[i].triangle = triangle;
     }
-    qsort(tree->item + from, to - from, sizeof *tree->item, by_key);
+    qsort(tree->item + from, to - from, sizeof *tree->item, body_tree_by_key);
     for (uint32_t i = from; i < to; i++)
         tree->order[i] = tree->item[i].triangle;
 }

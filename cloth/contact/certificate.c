@@ -244,7 +244,7 @@ PHYS_INLINE bool is_first(const struct cut *cut, int corner)
     return corner < (cut->pair == CONTACT_VT ? 1 : 2);
 }
 
-static bool is_held(const struct cut *cut, int corner)
+static bool certificate_is_held(const struct cut *cut, int corner)
 {
     return cut->held >> corner & 1;
 }
@@ -286,7 +286,7 @@ static void cut_bounds(struct cut *cut)
     cut->low = -INFINITY;
     cut->high = INFINITY;
     for (int k = 0; k < 4; k++) {
-        const double at = is_held(cut, k) ? cut->end[k] : cut->begin[k];
+        const double at = certificate_is_held(cut, k) ? cut->end[k] : cut->begin[k];
         if (is_first(cut, k))
             cut->high = fmin(cut->high, at - cut->half);
         else
@@ -299,7 +299,7 @@ static double cut_plane(const struct cut *cut)
 {
     double first = 0, second = 0;
     for (int k = 0; k < 4; k++) {
-        const double rise = is_held(cut, k) ? 0 : cut->end[k] - cut->begin[k];
+        const double rise = certificate_is_held(cut, k) ? 0 : cut->end[k] - cut->begin[k];
         if (is_first(cut, k))
             first = fmax(first, -rise);
         else
@@ -316,7 +316,7 @@ static void cut_corners(const struct cut *cut, double plane, double t[4])
         const double side = is_first(cut, k) ? 1 : -1;
         const double from = side * (cut->begin[k] - plane), to = side * (cut->end[k] - plane);
         const double least = fmax(cut->half, 0.1 * from), all = from - side * cut->shared;
-        if (!is_held(cut, k) && to < least - 0.5 * cut->off)
+        if (!certificate_is_held(cut, k) && to < least - 0.5 * cut->off)
             t[k] = fmin(t[k], fmax((all - least) / (all - to), 0));
     }
 }
@@ -327,11 +327,11 @@ static bool cut_all(const struct cut *cut, const phys_vec x[4], const phys_vec y
 {
     phys_vec end[4];
     for (int k = 0; k < 4; k++)
-        end[k] = is_held(cut, k) ? y[k] : x[k];
+        end[k] = certificate_is_held(cut, k) ? y[k] : x[k];
     if (!contact_certify(cut->pair, x, end, thickness))
         return false;
     for (int k = 0; k < 4; k++)
-        if (!is_held(cut, k))
+        if (!certificate_is_held(cut, k))
             t[k] = 0;
     return true;
 }

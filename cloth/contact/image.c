@@ -13,7 +13,7 @@ struct looking {
     double low[3], pitch, per;
 };
 
-static void look_along(const struct contact_image *image, struct looking *at)
+static void contact_image_look_along(const struct contact_image *image, struct looking *at)
 {
     const struct contact_view *view = &image->view;
     const double *low = image->body->low;
@@ -30,7 +30,7 @@ static void look_along(const struct contact_image *image, struct looking *at)
         at->shift++;
 }
 
-static void miss(struct contact_hit *hit)
+static void contact_image_miss(struct contact_hit *hit)
 {
     *hit = (struct contact_hit){.gap = INFINITY, .normal = {0, 1, 0, 0}};
 }
@@ -84,7 +84,7 @@ PHYS_INLINE void look_up(const struct looking *at, const struct place *place,
 {
     const struct contact_pixel *pixel = place->pixel;
     if (!pixel || !(pixel->depth[0] > -INFINITY)) {
-        miss(hit);
+        contact_image_miss(hit);
         return;
     }
     const double front = map_gap(at, pixel, 0, place->away);
@@ -108,7 +108,7 @@ void contact_image_closest(const struct contact_image *image, size_t n, const ph
 {
     struct looking at;
     struct place place[AT_ONCE];
-    look_along(image, &at);
+    contact_image_look_along(image, &at);
     for (size_t from = 0; from < n; from += AT_ONCE) {
         const size_t some = n - from < AT_ONCE ? n - from : AT_ONCE;
         for (size_t i = 0; i < some; i++)

@@ -88,7 +88,7 @@ static bool see_facet(const struct drawing *d, uint32_t f, struct seen *seen)
 
 /* ---- Its pixels ---- */
 
-static double blend(const double weight[3], const double of[3][3], uint32_t c)
+static double image_draw_blend(const double weight[3], const double of[3][3], uint32_t c)
 {
     return weight[0] * of[0][c] + weight[1] * of[1][c] + weight[2] * of[2][c];
 }
@@ -97,8 +97,9 @@ static void put_pixel(const struct drawing *d, const struct seen *seen, const do
                       size_t at)
 {
     const uint32_t axis = d->view->axis, u = d->u, v = d->v;
-    const double x = blend(weight, seen->normal, u), y = blend(weight, seen->normal, v);
-    const double out = blend(weight, seen->normal, axis), towards = seen->side ? -1 : 1;
+    const double x = image_draw_blend(weight, seen->normal, u),
+                 y = image_draw_blend(weight, seen->normal, v);
+    const double out = image_draw_blend(weight, seen->normal, axis), towards = seen->side ? -1 : 1;
     const double z = towards * out < LEAST_FACING ? towards * LEAST_FACING : out;
     const double part = 1 / sqrt(x * x + y * y + z * z);
     float *normal = d->pixel[at].normal[seen->side];
@@ -106,7 +107,7 @@ static void put_pixel(const struct drawing *d, const struct seen *seen, const do
     normal[v] = (float)(part * y);
     normal[axis] = (float)(part * z);
     for (uint32_t c = 0; d->velocity && c < 3; c++)
-        d->velocity[at].of[seen->side][c] = (float)blend(weight, seen->velocity, c);
+        d->velocity[at].of[seen->side][c] = (float)image_draw_blend(weight, seen->velocity, c);
 }
 
 /* Draws a pixel. If depths are equal, the first triangle of the tree stays. */
@@ -126,7 +127,7 @@ static void try_pixel(const struct drawing *d, const struct seen *seen, const in
 }
 
 /* Pixels whose middles lie from the least to the largest of three numbers; bounded by 0 .. n - 1 */
-static void find_range(const struct seen *seen, int way, int64_t n, int64_t range[2])
+static void image_draw_find_range(const struct seen *seen, int way, int64_t n, int64_t range[2])
 {
     const int64_t a = seen->at[0][way], b = seen->at[1][way], c = seen->at[2][way];
     const int64_t ab = a < b ? a : b, low = ab < c ? ab : c;
@@ -142,8 +143,8 @@ static void draw_facet(const struct drawing *d, uint32_t f)
     int64_t column[2], row[2], start[3], across[3], own[3];
     if (!see_facet(d, f, &seen))
         return;
-    find_range(&seen, 0, d->view->width, column);
-    find_range(&seen, 1, d->first + d->n, row);
+    image_draw_find_range(&seen, 0, d->view->width, column);
+    image_draw_find_range(&seen, 1, d->first + d->n, row);
     row[0] = row[0] > d->first ? row[0] : d->first;
     const int64_t first[2] = {column[0] * FINE + FINE / 2, row[0] * FINE + FINE / 2};
     for (int k = 0; k < 3; k++) { /* of the edge that corner k is not on */
@@ -177,7 +178,7 @@ static void clear_strip(const struct drawing *d)
 }
 
 /* True if a part of a node may have pixels in the strip. */
-static bool is_near(const struct drawing *d, const struct contact_node *node, int part)
+static bool image_draw_is_near(const struct drawing *d, const struct contact_node *node, int part)
 {
     const double low = d->body->low[d->v], pitch = d->view->pitch;
     return (double)node->high[d->v][part] >= low + ((double)d->first - 1) * pitch &&
@@ -198,7 +199,7 @@ static void draw_facets(const struct drawing *d)
         }
         const struct contact_node *node = contact_body_nodes(d->body) + child;
         for (int part = 3; part >= 0; part--)
-            if (node->low[0][part] <= node->high[0][part] && is_near(d, node, part))
+            if (node->low[0][part] <= node->high[0][part] && image_draw_is_near(d, node, part))
                 stack[n++] = node->child[part];
     }
 }

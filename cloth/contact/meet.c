@@ -16,8 +16,8 @@ bool contact_leave(const struct contact_hit *hit, const phys_vec *way, phys_vec 
 }
 
 /* True if a cheap test shows that none of at most AT_ONCE points is on or in the shape. */
-static bool are_apart(const struct contact_shape *shape, const struct contact_pose *pose, size_t n,
-                      const phys_vec *x)
+static bool contact_meet_are_apart(const struct contact_shape *shape,
+                                   const struct contact_pose *pose, size_t n, const phys_vec *x)
 {
     const struct contact_kind *kind = contact_kinds[shape->kind];
     phys_vec own[AT_ONCE];
@@ -35,7 +35,7 @@ size_t contact_project(const struct contact_shape *shape, const struct contact_p
     size_t touched = 0;
     for (size_t from = 0; from < n; from += AT_ONCE) {
         const size_t some = n - from < AT_ONCE ? n - from : AT_ONCE;
-        if (are_apart(shape, pose, some, x + from))
+        if (contact_meet_are_apart(shape, pose, some, x + from))
             continue;
         contact_closest(shape, pose, some, x + from, hit);
         for (size_t i = 0; i < some; i++)

@@ -154,8 +154,8 @@ PHYS_INLINE void weigh_end(enum contact_pair pair, double part, int lane, double
 }
 
 /* A direction across both features where they touch at the edge. */
-static void find_normal(enum contact_pair pair, const phys_vec x[4], const phys_vec *edge,
-                        phys_vec *n)
+static void pair_find_normal(enum contact_pair pair, const phys_vec x[4], const phys_vec *edge,
+                             phys_vec *n)
 {
     phys_vec a, b, axis = {0};
     contact_ways(pair, x, &a, &b);
@@ -183,7 +183,7 @@ static void nearest_close(enum contact_pair pair, const phys_vec x[4],
     contact_direction_best(pair, x, &to->normal);
     contact_along(lanes, &to->normal, &along);
     if (!(contact_apart(pair, &along) > 0))
-        find_normal(pair, x, edge, &to->normal);
+        pair_find_normal(pair, x, edge, &to->normal);
     to->gap = fmax(phys_dot(&to->normal, &way), 0);
 }
 

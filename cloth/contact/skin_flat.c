@@ -61,7 +61,7 @@ static float find_direction(const struct contact_point_box *hull, double directi
 }
 
 /* Two directions across it and each other. */
-static void look_along(const double direction[3], struct view *view)
+static void skin_flat_look_along(const double direction[3], struct view *view)
 {
     double *u = view->axis[0], *v = view->axis[1], square = 0;
     int c = fabs(direction[0]) < fabs(direction[1]) ? 0 : 1;
@@ -331,7 +331,7 @@ static void set_view(const struct contact_patch *patch, const double direction[3
 {
     const struct contact_boxes_head *head = patch->side->boxes;
     const phys_vec *origin = patch->side->x + patch->side->skin->along[patch->loop->first];
-    look_along(direction, view);
+    skin_flat_look_along(direction, view);
     memcpy(view->way, head->way, sizeof view->way);
     for (int c = 0; c < 3; c++)
         view->origin[c] = (*origin)[c];

@@ -11,7 +11,7 @@ enum { FEW = 40 }; /* sides that are sorted one by one */
 #define NONE UINT32_MAX
 
 /* A side: its ends, the lower one above, and its direction: 1 from the higher one. */
-static uint64_t side_of(uint32_t a, uint32_t b)
+static uint64_t skin_loops_side_of(uint32_t a, uint32_t b)
 {
     return a < b ? (uint64_t)a << 32 | (uint64_t)b << 1 : (uint64_t)b << 32 | (uint64_t)a << 1 | 1;
 }
@@ -42,7 +42,7 @@ static int by_side(const void *a, const void *b)
     return (left > right) - (left < right);
 }
 
-static void sort_sides(uint64_t *side, size_t n)
+static void skin_loops_sort_sides(uint64_t *side, size_t n)
 {
     if (n > FEW) {
         qsort(side, n, sizeof *side, by_side);
@@ -62,7 +62,7 @@ static void reduce(struct making *making, size_t from)
 {
     uint64_t *side = making->side;
     size_t kept = from;
-    sort_sides(side + from, making->n - from);
+    skin_loops_sort_sides(side + from, making->n - from);
     for (size_t i = from; i < making->n;) {
         const uint64_t ends = side[i] >> 1;
         long net = 0;
@@ -75,7 +75,7 @@ static void reduce(struct making *making, size_t from)
 }
 
 /* Appends the line that n sides make. Returns true if it is one simple line. */
-static bool walk(struct making *making, const uint64_t *side, size_t n)
+static bool skin_loops_walk(struct making *making, const uint64_t *side, size_t n)
 {
     uint32_t *along = making->along + making->n_along, at = n ? begin_of(side[0]) : 0;
     bool simple = n >= 3 && making->n_along + n <= making->room;
@@ -93,10 +93,10 @@ static bool walk(struct making *making, const uint64_t *side, size_t n)
     return simple;
 }
 
-static void put_loop(struct making *making, size_t from, struct contact_loop *loop)
+static void skin_loops_put_loop(struct making *making, size_t from, struct contact_loop *loop)
 {
     const size_t n = making->n - from;
-    if (!walk(making, making->side + from, n))
+    if (!skin_loops_walk(making, making->side + from, n))
         return;
     *loop = (struct contact_loop){(uint32_t)making->n_along, (uint32_t)n};
     making->n_along += n;
@@ -106,8 +106,8 @@ static void push_leaf(struct making *making, const struct contact_leaf *leaf)
 {
     for (uint32_t t = leaf->triangle; t < leaf->triangle + leaf->n_triangles; t++)
         for (int k = 0; k < 3; k++)
-            making->side[making->n++] =
-                side_of(making->skin->corner[t][k], making->skin->corner[t][(k + 1) % 3]);
+            making->side[making->n++] = skin_loops_side_of(making->skin->corner[t][k],
+                                                           making->skin->corner[t][(k + 1) % 3]);
 }
 
 /* Leaves the border of a node on the stack. */
@@ -122,7 +122,7 @@ static void push_node(struct making *making, uint32_t node, struct contact_loop 
             push_node(making, child, making->loop + contact_loop_at(making->skin, node, k));
     }
     reduce(making, from);
-    put_loop(making, from, loop);
+    skin_loops_put_loop(making, from, loop);
 }
 
 int contact_loops_make(const struct contact_skin *skin, uint64_t room, struct contact_loop *loop,

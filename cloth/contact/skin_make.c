@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static uint64_t whole_lines(uint64_t bytes)
+static uint64_t skin_make_whole_lines(uint64_t bytes)
 {
     return (bytes + CONTACT_ALIGN - 1) / CONTACT_ALIGN * CONTACT_ALIGN;
 }
@@ -46,24 +46,25 @@ void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head 
                                        .n_vertices = skin->n_vertices,
                                        .n_nodes = n_nodes,
                                        .n_leaves = leaves_of(n_nodes)};
-    head->corner = whole_lines(sizeof *head);
-    head->edge = head->corner + whole_lines(head->n_triangles * sizeof *skin->corner);
-    head->beside = head->edge + whole_lines(head->n_edges * sizeof *skin->edge);
-    head->vertex = head->beside + whole_lines(head->n_edges * sizeof *skin->beside);
-    const uint64_t by_point = whole_lines(head->n_points * sizeof *skin->id);
-    head->number = head->vertex + whole_lines(head->n_vertices * sizeof *skin->vertex);
-    head->id = head->number + whole_lines(head->n_triangles * sizeof *skin->number);
+    head->corner = skin_make_whole_lines(sizeof *head);
+    head->edge = head->corner + skin_make_whole_lines(head->n_triangles * sizeof *skin->corner);
+    head->beside = head->edge + skin_make_whole_lines(head->n_edges * sizeof *skin->edge);
+    head->vertex = head->beside + skin_make_whole_lines(head->n_edges * sizeof *skin->beside);
+    const uint64_t by_point = skin_make_whole_lines(head->n_points * sizeof *skin->id);
+    head->number = head->vertex + skin_make_whole_lines(head->n_vertices * sizeof *skin->vertex);
+    head->id = head->number + skin_make_whole_lines(head->n_triangles * sizeof *skin->number);
     head->joined = head->id + by_point;
     head->block = head->joined + by_point;
     head->row = head->block + by_point;
     head->cloth = head->row + by_point;
     head->held = head->cloth + by_point;
-    head->child = head->held + whole_lines(head->n_points);
-    head->leaf = head->child + whole_lines(head->n_nodes * sizeof *skin->child);
-    head->loop = head->leaf + whole_lines(head->n_leaves * sizeof *skin->leaf);
-    head->along = head->loop + whole_lines((4 * (uint64_t)n_nodes + 1) * sizeof *skin->loop);
+    head->child = head->held + skin_make_whole_lines(head->n_points);
+    head->leaf = head->child + skin_make_whole_lines(head->n_nodes * sizeof *skin->child);
+    head->loop = head->leaf + skin_make_whole_lines(head->n_leaves * sizeof *skin->leaf);
+    head->along =
+        head->loop + skin_make_whole_lines((4 * (uint64_t)n_nodes + 1) * sizeof *skin->loop);
     head->n_along = ALONG * (uint64_t)head->n_triangles;
-    head->bytes = head->along + whole_lines(head->n_along * sizeof *skin->along);
+    head->bytes = head->along + skin_make_whole_lines(head->n_along * sizeof *skin->along);
 }
 
 size_t contact_skin_bytes(const struct contact_skin *skin)
@@ -79,11 +80,12 @@ void contact_boxes_lay(const struct contact_skin *skin, struct contact_boxes_hea
     const uint32_t n_nodes = count_nodes(skin->n_triangles);
     const uint64_t n_groups = 3 * (uint64_t)leaves_of(n_nodes) + contact_groups(skin->n_triangles) +
                               contact_groups(skin->n_vertices) + contact_groups(skin->n_edges);
-    *head = (struct contact_boxes_head){.nodes = whole_lines(sizeof *head)};
+    *head = (struct contact_boxes_head){.nodes = skin_make_whole_lines(sizeof *head)};
     head->slopes = head->nodes + n_nodes * sizeof(struct contact_boxes);
     head->groups = head->slopes + n_nodes * sizeof(struct contact_slopes);
     head->points = head->groups + n_groups * sizeof(struct contact_boxes);
-    head->bytes = whole_lines(head->points + skin->n_points * sizeof(struct contact_point_box));
+    head->bytes =
+        skin_make_whole_lines(head->points + skin->n_points * sizeof(struct contact_point_box));
 }
 
 size_t contact_boxes_bytes(const struct contact_skin *skin)
@@ -155,7 +157,8 @@ static void bound_triangles(struct making *making)
 }
 
 /* The points beside an edge, of which there may be more than two: the first two. */
-static void find_beside(const struct making *making, const uint32_t edge[2], uint32_t beside[2])
+static void skin_make_find_beside(const struct making *making, const uint32_t edge[2],
+                                  uint32_t beside[2])
 {
     const struct third key = third_of(edge[0], edge[1], 0);
     size_t low = 0, high = 3 * (size_t)making->from->n_triangles;
@@ -188,7 +191,7 @@ static void add_features(struct making *making, uint32_t triangle, struct contac
             edge[0] = corner[k];
             edge[1] = corner[(k + 1) % 3];
             uint32_t *beside = making->beside[making->n_edges++];
-            find_beside(making, edge, beside);
+            skin_make_find_beside(making, edge, beside);
             if (beside[1] == CONTACT_NO_POINT && shared >> k & 1)
                 beside[1] = CONTACT_FAR_POINT;
             leaf->n_edges++;
@@ -216,15 +219,16 @@ static uint32_t add_leaf(struct making *making, uint32_t first, uint32_t n)
 
 /* Those of a node of the tree that has n triangles from `from` on, in the order of their triangles.
  * Returns its number here. */
-static uint32_t add_node(struct making *making, uint32_t of, uint32_t from, uint32_t n)
+static uint32_t skin_make_add_node(struct making *making, uint32_t of, uint32_t from, uint32_t n)
 {
     const uint32_t number = making->n_nodes++;
     for (int k = 0; k < 4; k++) {
         const uint32_t begin = from + contact_tree_part(n, k);
         const uint32_t size = from + contact_tree_part(n, k + 1) - begin;
-        making->child[number][k] = size > CONTACT_SKIN_LEAF
-                                       ? add_node(making, making->node[of].child[k], begin, size)
-                                       : CONTACT_IS_LEAF | add_leaf(making, begin, size);
+        making->child[number][k] =
+            size > CONTACT_SKIN_LEAF
+                ? skin_make_add_node(making, making->node[of].child[k], begin, size)
+                : CONTACT_IS_LEAF | add_leaf(making, begin, size);
     }
     return number;
 }
@@ -245,7 +249,7 @@ static int make_scratch(struct making *making, struct cloth_error *error)
     const size_t bytes = n_nodes * sizeof *making->node + 2 * (size_t)n * sizeof *making->low;
     making->order = cloth_alloc(n, sizeof *making->order, error);
     making->third = cloth_alloc(3 * (size_t)n, sizeof *making->third, error);
-    making->node = aligned_alloc(CONTACT_ALIGN, whole_lines(bytes));
+    making->node = aligned_alloc(CONTACT_ALIGN, skin_make_whole_lines(bytes));
     if (!making->node || !making->order || !making->third)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for a skin of %u triangles", n);
     making->low = (void *)(making->node + n_nodes);
@@ -283,7 +287,7 @@ static int put_skin(struct making *making, const struct contact_skin_head *head,
     making->number = (void *)(table + head->number);
     making->child = (void *)(table + head->child);
     making->leaf = (void *)(table + head->leaf);
-    add_node(making, 0, 0, from->n_triangles);
+    skin_make_add_node(making, 0, 0, from->n_triangles);
     const struct contact_skin skin = contact_skin_open(table);
     return contact_loops_make(&skin, head->n_along, (void *)(table + head->loop),
                               (void *)(table + head->along), error);

@@ -128,7 +128,7 @@ static bool parts_are_flat(const struct query *query, struct part a, struct part
 
 /* ---- Features ---- */
 
-static void add(struct query *query, uint32_t kind, uint32_t a, uint32_t b)
+static void skin_query_add(struct query *query, uint32_t kind, uint32_t a, uint32_t b)
 {
     if (query->n == CONTACT_BATCH) {
         query->visit(query->to, query->n, query->candidate);
@@ -146,19 +146,19 @@ static void add_vertex(struct query *query, int k, uint32_t vertex, uint32_t tri
     if (is == with[corner[0]] || is == with[corner[1]] || is == with[corner[2]])
         return;
     if (k && !query->self)
-        add(query, CONTACT_TV, triangle, vertex);
+        skin_query_add(query, CONTACT_TV, triangle, vertex);
     else
-        add(query, CONTACT_VT, vertex, triangle);
+        skin_query_add(query, CONTACT_VT, vertex, triangle);
 }
 
-static void add_edges(struct query *query, uint32_t a, uint32_t b)
+static void skin_query_add_edges(struct query *query, uint32_t a, uint32_t b)
 {
     const uint32_t *first = query->skin[0]->joined, *second = query->skin[1]->joined;
     const uint32_t *of = query->skin[0]->edge[a], *with = query->skin[1]->edge[b];
     const uint32_t a0 = first[of[0]], a1 = first[of[1]];
     const uint32_t b0 = second[with[0]], b1 = second[with[1]];
     if (a0 != b0 && a0 != b1 && a1 != b0 && a1 != b1)
-        add(query, CONTACT_EE, a, b);
+        skin_query_add(query, CONTACT_EE, a, b);
 }
 
 /* A leaf of skin k, and which of its features may be near to the other leaf: a bit each. */
@@ -248,7 +248,8 @@ static void meet_edges(struct query *query, const struct leaf_near *a, const str
             if (self && k <= i)
                 bits &= ~1u << i % 4;
             for (; bits; bits &= bits - 1)
-                add_edges(query, of->edge + i, other->edge + k + (uint32_t)__builtin_ctz(bits));
+                skin_query_add_edges(query, of->edge + i,
+                                     other->edge + k + (uint32_t)__builtin_ctz(bits));
         }
     }
 }

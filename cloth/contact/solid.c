@@ -7,8 +7,8 @@ enum { APPROACHES = 4 };
 
 /* ---- The solid ---- */
 
-static void put_place(const struct contact_core *core, const struct phys_pose *pose,
-                      struct contact_place *place)
+static void solid_put_place(const struct contact_core *core, const struct phys_pose *pose,
+                            struct contact_place *place)
 {
     const phys_vec origin = {0};
     phys_pose_point(&core->axes, &origin, &place->at);
@@ -50,8 +50,8 @@ void contact_solid_make(const struct contact_shape *shape, const struct contact_
     }
     if (pose->moves)
         solid->size += pose_size(&pose->from) + pose_size(&pose->to);
-    put_place(&core, pose->moves ? &pose->from : NULL, solid->place + CONTACT_BEGIN);
-    put_place(&core, pose->moves ? &pose->to : NULL, solid->place + CONTACT_END);
+    solid_put_place(&core, pose->moves ? &pose->from : NULL, solid->place + CONTACT_BEGIN);
+    solid_put_place(&core, pose->moves ? &pose->to : NULL, solid->place + CONTACT_END);
 }
 
 /* ---- The certificate ---- */

@@ -30,7 +30,7 @@ static int count_surfaces(struct contact_soup *soup, const struct mesh *const *m
     return CLOTH_OK;
 }
 
-static void take_cloth(struct contact_soup *soup, uint32_t cloth, const struct mesh *mesh)
+static void soup_take_cloth(struct contact_soup *soup, uint32_t cloth, const struct mesh *mesh)
 {
     const struct contact_surface first = soup->surface[cloth];
     for (uint32_t t = 0; t < mesh->n_triangles; t++) {
@@ -43,7 +43,8 @@ static void take_cloth(struct contact_soup *soup, uint32_t cloth, const struct m
     }
 }
 
-static void take_body(struct contact_soup *soup, uint32_t surface, const struct contact_body *body)
+static void soup_take_body(struct contact_soup *soup, uint32_t surface,
+                           const struct contact_body *body)
 {
     const struct contact_surface first = soup->surface[surface];
     for (uint32_t t = 0; body && t < body->n_triangles; t++)
@@ -66,9 +67,9 @@ int contact_soup_make(struct contact_soup *soup, uint32_t n_cloths, const struct
     if (!soup->corner || !soup->welded)
         return CLOTH_E_MEMORY;
     for (uint32_t i = 0; i < n_cloths; i++)
-        take_cloth(soup, i, mesh[i]);
+        soup_take_cloth(soup, i, mesh[i]);
     for (uint32_t i = 0; i < n_obstacles; i++)
-        take_body(soup, n_cloths + i, contact_bodies_at(bodies, obstacles[i].body));
+        soup_take_body(soup, n_cloths + i, contact_bodies_at(bodies, obstacles[i].body));
     return CLOTH_OK;
 }
 

@@ -71,8 +71,8 @@ static void join_side(uint32_t side, uint32_t first, uint32_t (*triangle)[3])
 }
 
 /* Corners are drawn round where the body bends little, else as the edges that they are. */
-static void build_body(const struct contact_body *body, double (*vertex)[6],
-                       uint32_t (*triangle)[3])
+static void contact_surface_build_body(const struct contact_body *body, double (*vertex)[6],
+                                       uint32_t (*triangle)[3])
 {
     const struct contact_facet *facet = contact_body_facets(body);
     const phys_vec *at = contact_body_vertices(body), *round = contact_body_normals(body);
@@ -104,7 +104,7 @@ void contact_surface(const struct contact_shape *shape, const struct contact_bod
     struct phys_pose axes;
     double half[3];
     if (body) {
-        build_body(body, vertex, triangle);
+        contact_surface_build_body(body, vertex, triangle);
         return;
     }
     contact_kinds[shape->kind]->around(shape->value, &axes, half);

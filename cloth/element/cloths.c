@@ -218,7 +218,7 @@ static int check_cloth(const struct element_cloths *cloths, uint32_t c, struct c
     return code;
 }
 
-static int make_cloth(struct element_cloths *cloths, uint32_t c, struct cloth_error *error)
+static int cloths_make_cloth(struct element_cloths *cloths, uint32_t c, struct cloth_error *error)
 {
     const struct model *model = cloths->model;
     const struct model_cloth *cloth = model->cloths + c;
@@ -245,7 +245,7 @@ int element_cloths_make(struct element_cloths *cloths, const struct model *model
     cloths->axis = cloth_alloc(model->n_cloths, sizeof *cloths->axis, error);
     int code = cloths->edges && cloths->axis ? CLOTH_OK : CLOTH_E_MEMORY;
     for (uint32_t c = 0; c < model->n_cloths && !code; c++)
-        code = make_cloth(cloths, c, error);
+        code = cloths_make_cloth(cloths, c, error);
     if (!code)
         code = element_folds_make(cloths, error);
     if (code)

@@ -24,8 +24,8 @@ static int compare_folds(const void *va, const void *vb)
     return order ? order : cloth_compare_u32(a->b, b->b);
 }
 
-static const struct element_fold *find(const struct element_cloths *cloths, uint32_t cloth,
-                                       uint32_t a, uint32_t b)
+static const struct element_fold *folds_find(const struct element_cloths *cloths, uint32_t cloth,
+                                             uint32_t a, uint32_t b)
 {
     const struct element_fold wanted = {.cloth = cloth, .a = a < b ? a : b, .b = a < b ? b : a};
     return cloths->n_folds
@@ -41,14 +41,14 @@ static const struct element_fold *fold_of(const struct element_cloths *cloths,
 {
     const struct element_fold *fold = NULL;
     if (!element->seam) {
-        fold = find(cloths, element->cloth, element->corner[0], element->corner[1]);
+        fold = folds_find(cloths, element->cloth, element->corner[0], element->corner[1]);
         *s = fold ? fold->s : 0;
         return fold;
     }
     for (int k = 0; k < 2 && !fold; k++) {
         const struct element_side *side = element->seam->side + k;
         const bool along = side->corner[0] < side->corner[1];
-        fold = find(cloths, side->cloth, side->corner[0], side->corner[1]);
+        fold = folds_find(cloths, side->cloth, side->corner[0], side->corner[1]);
         *s = !fold ? 0 : along == (k == 0) ? fold->s : -fold->s;
     }
     return fold;
@@ -76,8 +76,8 @@ static void turn_folds(struct element_cloths *cloths, uint32_t c)
         mesh_corners(mesh, t, corner);
         for (int i = 0; i < 3; i++) {
             const uint32_t a = corner[i], b = corner[(i + 1) % 3];
-            struct element_fold *fold =
-                a > b ? (struct element_fold *)find(cloths, c, a, b) : NULL; /* they are ours */
+            struct element_fold *fold = a > b ? (struct element_fold *)folds_find(cloths, c, a, b)
+                                              : NULL; /* they are ours */
             if (fold && mesh_edges_get(cloths->edges + c, a, b)->opposite[0] == corner[(i + 2) % 3])
                 fold->s = -fold->s;
         }
@@ -119,7 +119,7 @@ static int check_bending(const struct model *model, const struct model_cloth *cl
                       bends->name, cloth->name);
 }
 
-static int check_once(const struct element_cloths *cloths, struct cloth_error *error)
+static int folds_check_once(const struct element_cloths *cloths, struct cloth_error *error)
 {
     for (uint32_t i = 1; i < cloths->n_folds; i++) {
         const struct element_fold *fold = cloths->fold + i;
@@ -150,7 +150,7 @@ int element_folds_make(struct element_cloths *cloths, struct cloth_error *error)
     for (uint32_t c = 0; c < model->n_cloths; c++)
         add_folds(cloths, c);
     qsort(cloths->fold, cloths->n_folds, sizeof *cloths->fold, compare_folds);
-    code = check_once(cloths, error);
+    code = folds_check_once(cloths, error);
     for (uint32_t c = 0; c < model->n_cloths && !code; c++)
         if (model->cloths[c].n_folds)
             turn_folds(cloths, c);
@@ -167,7 +167,7 @@ static int mark_seams(const struct element_cloths *cloths, unsigned char *mark,
         const struct element_fold *fold[2];
         for (int k = 0; k < 2; k++) {
             const struct element_side *side = cloths->seam[s].side + k;
-            fold[k] = find(cloths, side->cloth, side->corner[0], side->corner[1]);
+            fold[k] = folds_find(cloths, side->cloth, side->corner[0], side->corner[1]);
             if (fold[k])
                 mark[fold[k] - cloths->fold] = 1;
         }

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int take(struct element_strains *strains, const struct model *model,
-                struct cloth_error *error)
+static int strain_take(struct element_strains *strains, const struct model *model,
+                       struct cloth_error *error)
 {
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct mesh *mesh = &model->cloths[c].mesh;
@@ -50,8 +50,8 @@ static void add_triangle(struct element_strains *strains, const struct element_c
     strains->corner[t][3] = element_material(cloths, element, 3);
 }
 
-static void add_edge(struct element_strains *strains, const struct element_cloths *cloths,
-                     const struct element *element, uint32_t e)
+static void strain_add_edge(struct element_strains *strains, const struct element_cloths *cloths,
+                            const struct element *element, uint32_t e)
 {
     for (int i = 0; i < 2; i++)
         strains->edge[e][i] = element->first + element->corner[i];
@@ -72,7 +72,7 @@ static void add_cloths(struct element_strains *strains, const struct element_clo
         element.triangle[0] = element.triangle[1] = UINT32_MAX;
         for (uint32_t i = 0; i < mesh->n_bare_edges; i++) {
             memcpy(element.corner, mesh->lone_edge + 2 * (size_t)i, 2 * sizeof *element.corner);
-            add_edge(strains, cloths, &element, e++);
+            strain_add_edge(strains, cloths, &element, e++);
         }
         element.first += mesh->n_vertices;
     }
@@ -83,7 +83,7 @@ int element_strains_make(struct element_strains *strains, const struct model *mo
 {
     struct element_cloths cloths;
     *strains = (struct element_strains){0};
-    int code = take(strains, model, error);
+    int code = strain_take(strains, model, error);
     if (code)
         return code;
     code = element_cloths_make(&cloths, model, error);
@@ -110,7 +110,7 @@ void element_strains_free(struct element_strains *strains)
     *strains = (struct element_strains){0};
 }
 
-static void find_edges(const struct element_strains *strains, double *strain)
+static void strain_find_edges(const struct element_strains *strains, double *strain)
 {
     static const unsigned char counts = 1;
     for (uint32_t e = 0; e < strains->n_edges; e++) {
@@ -133,7 +133,7 @@ void element_strains_find(const struct element_strains *strains, const double *p
     for (size_t v = 0; v < strains->n_vertices; v++)
         strains->x[v] = (phys_vec){position[3 * v], position[3 * v + 1], position[3 * v + 2], 0};
     phys_triangles_strain(&triangles, &sight, strain, stress);
-    find_edges(strains, strain + strains->n_triangles);
+    strain_find_edges(strains, strain + strains->n_triangles);
     for (size_t t = 0; t < strains->n_triangles; t++) {
         const bool known = strains->area[t] > 0;
         strain[t] = known ? strain[t] : NAN;

@@ -41,7 +41,7 @@ static int check_loop(const struct garment_panel *panel, struct cloth_error *err
     return code;
 }
 
-static int check_edges(const struct garment_panel *panel, struct cloth_error *error)
+static int garment_check_edges(const struct garment_panel *panel, struct cloth_error *error)
 {
     for (uint32_t e = 0; e < panel->n_edges; e++) {
         const struct garment_edge *edge = &panel->edge[e];
@@ -68,8 +68,8 @@ struct outline {
     double size; /* m: the longer side of its box */
 };
 
-static int draw(struct outline *outline, const struct garment_panel *panel,
-                struct cloth_error *error)
+static int garment_check_draw(struct outline *outline, const struct garment_panel *panel,
+                              struct cloth_error *error)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     outline->start = cloth_alloc((size_t)panel->n_edges + 1, sizeof *outline->start, error);
@@ -123,8 +123,8 @@ static int check_panel(const struct garment_panel *panel, struct cloth_error *er
 {
     struct outline outline = {0};
     int code = check_loop(panel, error);
-    code = code ? code : check_edges(panel, error);
-    code = code ? code : draw(&outline, panel, error);
+    code = code ? code : garment_check_edges(panel, error);
+    code = code ? code : garment_check_draw(&outline, panel, error);
     code = code ? code : check_outline(&outline, panel, error);
     free(outline.start);
     free(outline.place);

@@ -77,8 +77,8 @@ double garment_vertices(const struct garment_pattern *pattern, double edge)
     return n;
 }
 
-static int check_fineness(const struct garment_fineness *fineness,
-                          const struct garment_pattern *pattern, struct cloth_error *error)
+static int garment_check_fineness(const struct garment_fineness *fineness,
+                                  const struct garment_pattern *pattern, struct cloth_error *error)
 {
     if (fineness->vertices && (fineness->vertices < 3 || fineness->vertices > MOST))
         return cloth_fail(error, CLOTH_E_INPUT, "%u vertices cannot be had: 3 to %u",
@@ -93,8 +93,8 @@ static int check_fineness(const struct garment_fineness *fineness,
     return CLOTH_OK;
 }
 
-static int make_room(struct garment *garment, const struct meshing *meshing,
-                     struct cloth_error *error)
+static int garment_make_room(struct garment *garment, const struct meshing *meshing,
+                             struct cloth_error *error)
 {
     const struct garment_pattern *pattern = meshing->pattern;
     uint64_t n = 0, n_triangles = 0;
@@ -120,7 +120,7 @@ static int make_room(struct garment *garment, const struct meshing *meshing,
 
 /* Maya's rotation x, y, z: the vector turns about x first. Only the first two columns are needed,
  * since panels are flat. */
-static void axes_of(const double degrees[3], double axis[2][3])
+static void garment_axes_of(const double degrees[3], double axis[2][3])
 {
     double c[3], s[3];
     for (int k = 0; k < 3; k++)
@@ -140,7 +140,7 @@ static void put_piece(struct garment *garment, struct meshing *meshing, uint32_t
     struct meshing_panel *of = &meshing->panel[p];
     const uint32_t n = of->plane.n, n_triangles = of->plane.n_triangles;
     double axis[2][3];
-    axes_of(panel->rotate, axis);
+    garment_axes_of(panel->rotate, axis);
     for (uint32_t v = 0; v < n; v++) {
         const double *uv = of->plane.place[v], x = of->clockwise ? -uv[0] : uv[0];
         memcpy(garment->uv[first + v], uv, sizeof garment->uv[0]);
@@ -158,9 +158,10 @@ static void put_piece(struct garment *garment, struct meshing *meshing, uint32_t
     of->start = NULL; /* the garment's now */
 }
 
-static int put_all(struct garment *garment, struct meshing *meshing, struct cloth_error *error)
+static int garment_put_all(struct garment *garment, struct meshing *meshing,
+                           struct cloth_error *error)
 {
-    int code = make_room(garment, meshing, error);
+    int code = garment_make_room(garment, meshing, error);
     uint32_t first = 0, first_triangle = 0;
     if (code)
         return code;
@@ -179,14 +180,14 @@ int garment_make(struct garment *garment, const struct garment_pattern *pattern,
 {
     struct meshing meshing = {0};
     *garment = (struct garment){0};
-    int code = check_fineness(fineness, pattern, error);
+    int code = garment_check_fineness(fineness, pattern, error);
     if (code)
         return code;
     code = meshing_make(&meshing, pattern, error);
     if (!code)
         code = fineness->vertices ? mesh_by_count(&meshing, fineness->vertices, error)
                                   : meshing_mesh(&meshing, fineness->edge, error);
-    code = code ? code : put_all(garment, &meshing, error);
+    code = code ? code : garment_put_all(garment, &meshing, error);
     meshing_free(&meshing);
     return code;
 }

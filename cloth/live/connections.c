@@ -50,7 +50,7 @@ static bool take_event(const struct live_door *door, uint16_t *event)
     return true;
 }
 
-static void count(struct live_door *door)
+static void connections_count(struct live_door *door)
 {
     for (uint16_t event; take_event(door, &event);)
         if (event == ZMQ_EVENT_ACCEPTED)
@@ -63,7 +63,7 @@ static void count(struct live_door *door)
             door->n--;
 }
 
-static void warn(struct live_publisher *p)
+static void connections_warn(struct live_publisher *p)
 {
     char line[200];
     snprintf(line, sizeof line,
@@ -80,11 +80,11 @@ void live_connections_look(struct live_publisher *p, double now)
     struct live_door *door = &p->door;
     char endpoint[LIVE_ADDRESS + 8];
     snprintf(endpoint, sizeof endpoint, "tcp://%s", p->address);
-    count(door);
+    connections_count(door);
     if (!door->is_shut && door->n > door->most && !zmq_unbind(p->socket, endpoint)) {
         door->is_shut = true;
         door->opens = now + SHUT;
-        warn(p);
+        connections_warn(p);
     } else if (door->is_shut && now >= door->opens) {
         door->is_shut = zmq_bind(p->socket, endpoint) != 0;
     }

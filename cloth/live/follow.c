@@ -32,7 +32,7 @@ struct live_follower {
     char state[STATE];
 };
 
-static double now(void)
+static double live_follow_now(void)
 {
     struct timespec time;
     clock_gettime(CLOCK_MONOTONIC, &time);
@@ -41,7 +41,7 @@ static double now(void)
 
 /* ---- Opening ---- */
 
-static int fail_zmq(const char *what, struct cloth_error *error)
+static int live_follow_fail_zmq(const char *what, struct cloth_error *error)
 {
     return cloth_fail(error, CLOTH_E_LIBRARY, "--connect: ZeroMQ cannot %s: %s", what,
                       zmq_strerror(errno));
@@ -49,7 +49,7 @@ static int fail_zmq(const char *what, struct cloth_error *error)
 
 /* ZMQ_IMMEDIATE would drop messages received before a connection ended, such as the last frame. By
  * ZMQ_IPV6 `localhost' would be ::1 alone, where a run does not listen. */
-static int set_options(void *socket, const char *host, struct cloth_error *error)
+static int live_follow_set_options(void *socket, const char *host, struct cloth_error *error)
 {
     const int none = 0, yes = 1, again = 250, six = *host == '[';
     const int64_t most = LIVE_MAX_BYTES;
@@ -58,7 +58,7 @@ static int set_options(void *socket, const char *host, struct cloth_error *error
         zmq_setsockopt(socket, ZMQ_MAXMSGSIZE, &most, sizeof most) ||
         zmq_setsockopt(socket, ZMQ_IPV6, &six, sizeof six) ||
         zmq_setsockopt(socket, ZMQ_TCP_KEEPALIVE, &yes, sizeof yes))
-        return fail_zmq("set up its socket", error);
+        return live_follow_fail_zmq("set up its socket", error);
     return 0;
 }
 
@@ -68,23 +68,23 @@ static int watch_connection(struct live_follower *follower, struct cloth_error *
     const int none = 0;
     if (zmq_socket_monitor(follower->socket, endpoint,
                            ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED))
-        return fail_zmq("watch its socket", error);
+        return live_follow_fail_zmq("watch its socket", error);
     follower->monitor = zmq_socket(follower->zmq, ZMQ_PAIR);
     if (!follower->monitor || zmq_setsockopt(follower->monitor, ZMQ_LINGER, &none, sizeof none) ||
         zmq_connect(follower->monitor, endpoint))
-        return fail_zmq("watch its socket", error);
+        return live_follow_fail_zmq("watch its socket", error);
     return 0;
 }
 
-static int start(struct live_follower *follower, struct cloth_error *error)
+static int live_follow_start(struct live_follower *follower, struct cloth_error *error)
 {
     char endpoint[PATH + 10];
     snprintf(endpoint, sizeof endpoint, "tcp://%s", follower->host);
     follower->zmq = zmq_ctx_new();
     follower->socket = follower->zmq ? zmq_socket(follower->zmq, ZMQ_DEALER) : NULL;
     if (!follower->socket)
-        return fail_zmq("start", error);
-    int code = set_options(follower->socket, follower->host, error);
+        return live_follow_fail_zmq("start", error);
+    int code = live_follow_set_options(follower->socket, follower->host, error);
     code = code ? code : watch_connection(follower, error);
     if (!code && zmq_connect(follower->socket, endpoint))
         code = cloth_fail(error, CLOTH_E_INPUT, "--connect %s: %s", follower->host,
@@ -98,7 +98,7 @@ int live_follow_open(struct live_follower **follower, const char *host, struct c
     if (!made)
         return CLOTH_E_MEMORY;
     snprintf(made->host, sizeof made->host, "%s", host);
-    return start(made, error);
+    return live_follow_start(made, error);
 }
 
 /* ---- What comes ---- */
@@ -126,7 +126,7 @@ static void take_events(struct live_follower *follower)
 static bool may_ask(const struct live_follower *follower)
 {
     return follower->connected && !follower->asked &&
-           (!(follower->ended > 0) || now() - follower->ended > END_OLD);
+           (!(follower->ended > 0) || live_follow_now() - follower->ended > END_OLD);
 }
 
 static void ask(struct live_follower *follower)
@@ -158,8 +158,8 @@ static int take_scene(struct live_follower *follower, const struct live_message 
 }
 
 /* One of a run that is not the scene's comes when runs change: the next answer is the scene. */
-static int take_frame(struct live_follower *follower, const struct live_message *frame,
-                      enum live_news *news, struct cloth_error *error)
+static int live_follow_take_frame(struct live_follower *follower, const struct live_message *frame,
+                                  enum live_news *news, struct cloth_error *error)
 {
     if (!follower->scene || frame->run != follower->run)
         return 0;
@@ -183,9 +183,9 @@ static int take_message(struct live_follower *follower, zmq_msg_t *message, enum
     if (!code && said.kind == LIVE_SCENE)
         code = take_scene(follower, &said, &inner);
     else if (!code && said.kind == LIVE_FRAME)
-        code = take_frame(follower, &said, news, &inner);
+        code = live_follow_take_frame(follower, &said, news, &inner);
     else if (!code && said.kind == LIVE_END)
-        follower->ended = now();
+        follower->ended = live_follow_now();
     return code ? cloth_fail(error, code, "--connect %s: %s", follower->host, inner.text) : 0;
 }
 
@@ -206,21 +206,21 @@ static int take_messages(struct live_follower *follower, enum live_news *news,
 int live_follow(struct live_follower *follower, double seconds, enum live_news *news,
                 struct cloth_error *error)
 {
-    const double end = now() + seconds;
+    const double end = live_follow_now() + seconds;
     int code = 0;
     for (*news = LIVE_NOTHING; !code && *news == LIVE_NOTHING;) {
         zmq_pollitem_t item[2] = {{.socket = follower->socket, .events = ZMQ_POLLIN},
                                   {.socket = follower->monitor, .events = ZMQ_POLLIN}};
         code = take_messages(follower, news, error); /* messages received precede the events */
         take_events(follower);
-        const double left = end - now();
+        const double left = end - live_follow_now();
         if (!code && may_ask(follower) && *news == LIVE_NOTHING)
             ask(follower);
         if (!(left > 0) || code || *news != LIVE_NOTHING)
             break;
         const double nap = follower->ended > 0 ? fmin(left, END_OLD) : left;
         if (zmq_poll(item, 2, (long)ceil(1e3 * nap)) < 0 && errno != EINTR)
-            code = fail_zmq("wait", error);
+            code = live_follow_fail_zmq("wait", error);
     }
     return code;
 }

@@ -78,16 +78,16 @@ double live_get_double(const unsigned char *bytes)
 
 /* ---- Reading ---- */
 
-static int fail(struct cloth_error *error, const char *what)
+static int message_fail(struct cloth_error *error, const char *what)
 {
     return cloth_fail(error, CLOTH_E_INPUT, "%s", what);
 }
 
-static int read_header(const unsigned char *bytes, size_t n, struct live_message *message,
-                       struct cloth_error *error)
+static int message_read_header(const unsigned char *bytes, size_t n, struct live_message *message,
+                               struct cloth_error *error)
 {
     if (n < LIVE_HEADER || memcmp(bytes, MAGIC, sizeof MAGIC) != 0)
-        return fail(error, "this is no message of a live view");
+        return message_fail(error, "this is no message of a live view");
     message->version = live_get_u32(bytes + VERSION_AT);
     if (message->version != LIVE_VERSION)
         return cloth_fail(error, CLOTH_E_INPUT,
@@ -96,12 +96,13 @@ static int read_header(const unsigned char *bytes, size_t n, struct live_message
                           message->version, LIVE_VERSION);
     const uint32_t kind = live_get_u32(bytes + KIND_AT);
     if (kind < LIVE_REQUEST || kind > LIVE_END)
-        return fail(error, "a message of the live view has a kind that there is not");
+        return message_fail(error, "a message of the live view has a kind that there is not");
     message->kind = (enum live_kind)kind;
     if (get_u64(bytes + SIZE_AT) != n - LIVE_HEADER)
-        return fail(error, "a message of the live view is cut off, or too long");
+        return message_fail(error, "a message of the live view is cut off, or too long");
     if (XXH64(bytes + LIVE_HEADER, n - LIVE_HEADER, kind) != get_u64(bytes + HASH_AT))
-        return fail(error, "a message of the live view is damaged: its hash is another one");
+        return message_fail(error,
+                            "a message of the live view is damaged: its hash is another one");
     return 0;
 }
 
@@ -120,11 +121,11 @@ static bool has_bodies(const unsigned char *bytes, uint64_t n, uint64_t at, uint
     return true;
 }
 
-static int read_scene(const unsigned char *bytes, size_t n, struct live_message *scene,
-                      struct cloth_error *error)
+static int message_read_scene(const unsigned char *bytes, size_t n, struct live_message *scene,
+                              struct cloth_error *error)
 {
     if (n < FIXED_SCENE)
-        return fail(error, "a scene of the live view is too short");
+        return message_fail(error, "a scene of the live view is too short");
     scene->n_vertices = live_get_u32(bytes + OWN_AT);
     scene->n_edges = live_get_u32(bytes + OWN_AT + 4);
     scene->n_triangles = live_get_u32(bytes + OWN_AT + 8);
@@ -133,29 +134,29 @@ static int read_scene(const unsigned char *bytes, size_t n, struct live_message 
                             UINT64_C(12) * scene->n_triangles;
     if (!scene->n_vertices || n - FIXED_SCENE < arrays ||
         !has_bodies(bytes, n, FIXED_SCENE + arrays, scene->n_bodies))
-        return fail(error, "a scene of the live view counts more than it has");
+        return message_fail(error, "a scene of the live view counts more than it has");
     scene->rest = bytes + FIXED_SCENE;
     scene->n_rest = n - FIXED_SCENE;
     return 0;
 }
 
-static int read_frame(const unsigned char *bytes, size_t n, struct live_message *frame,
-                      struct cloth_error *error)
+static int message_read_frame(const unsigned char *bytes, size_t n, struct live_message *frame,
+                              struct cloth_error *error)
 {
     if (n < FIXED_FRAME)
-        return fail(error, "a frame of the live view is too short");
+        return message_fail(error, "a frame of the live view is too short");
     frame->number = get_u64(bytes + OWN_AT);
     frame->time = live_get_double(bytes + OWN_AT + 8);
     frame->n_vertices = live_get_u32(bytes + OWN_AT + 16);
     frame->n_body_vertices = live_get_u32(bytes + OWN_AT + 20);
     const uint64_t points = (uint64_t)frame->n_vertices + frame->n_body_vertices;
     if (n - FIXED_FRAME != 12 * points)
-        return fail(error, "a frame of the live view has not the vertices that it counts");
+        return message_fail(error, "a frame of the live view has not the vertices that it counts");
     if (!isfinite(frame->time))
-        return fail(error, "a frame of the live view has a time that is not finite");
+        return message_fail(error, "a frame of the live view has a time that is not finite");
     for (uint64_t i = 0; i < 3 * points; i++)
         if (!isfinite(live_get_float(bytes + FIXED_FRAME + 4 * i)))
-            return fail(error, "a frame of the live view has a vertex that is not finite");
+            return message_fail(error, "a frame of the live view has a vertex that is not finite");
     frame->rest = bytes + FIXED_FRAME;
     frame->n_rest = n - FIXED_FRAME;
     return 0;
@@ -166,18 +167,18 @@ int live_message_read(const void *bytes, size_t n, struct live_message *message,
 {
     const unsigned char *from = bytes;
     *message = (struct live_message){0};
-    if (read_header(from, n, message, error))
+    if (message_read_header(from, n, message, error))
         return CLOTH_E_INPUT;
     if (n < OWN_AT)
-        return fail(error, "a message of the live view is too short");
+        return message_fail(error, "a message of the live view is too short");
     message->run = get_u64(from + RUN_AT);
     message->scene = get_u64(from + SCENE_AT);
     if (message->kind == LIVE_SCENE)
-        return read_scene(from, n, message, error);
+        return message_read_scene(from, n, message, error);
     if (message->kind == LIVE_FRAME)
-        return read_frame(from, n, message, error);
+        return message_read_frame(from, n, message, error);
     if (n != LIVE_REQUEST_BYTES)
-        return fail(error, "a message of the live view has a size that it cannot have");
+        return message_fail(error, "a message of the live view has a size that it cannot have");
     message->number = get_u64(from + OWN_AT);
     return 0;
 }

@@ -21,7 +21,7 @@ const char *live_lacks(void)
 
 /* ---- Opening ---- */
 
-static int fail_zmq(const char *what, struct cloth_error *error)
+static int publish_fail_zmq(const char *what, struct cloth_error *error)
 {
     return cloth_fail(error, CLOTH_E_LIBRARY, "--live: ZeroMQ cannot %s: %s", what,
                       zmq_strerror(errno));
@@ -41,7 +41,7 @@ static int fail_bind(const char *address, struct cloth_error *error)
 }
 
 /* Messages to a viewer beyond four are dropped; viewers' messages are short. */
-static int set_options(void *socket, const char *address, struct cloth_error *error)
+static int publish_set_options(void *socket, const char *address, struct cloth_error *error)
 {
     const int none = 0, yes = 1, few = 4, many = 16, six = *address == '[';
     const int64_t most = 256;
@@ -51,7 +51,7 @@ static int set_options(void *socket, const char *address, struct cloth_error *er
         zmq_setsockopt(socket, ZMQ_MAXMSGSIZE, &most, sizeof most) ||
         zmq_setsockopt(socket, ZMQ_IPV6, &six, sizeof six) ||
         zmq_setsockopt(socket, ZMQ_TCP_KEEPALIVE, &yes, sizeof yes))
-        return fail_zmq("set up its socket", error);
+        return publish_fail_zmq("set up its socket", error);
     return 0;
 }
 
@@ -72,24 +72,25 @@ static int listen_on(struct live_publisher *publisher, const char *address,
     if (zmq_bind(publisher->socket, endpoint))
         return fail_bind(address, error);
     if (zmq_getsockopt(publisher->socket, ZMQ_LAST_ENDPOINT, endpoint, &n))
-        return fail_zmq("tell its port", error);
+        return publish_fail_zmq("tell its port", error);
     memcpy(publisher->address, endpoint + strlen(scheme), n - strlen(scheme));
     return 0;
 }
 
-static int start(struct live_publisher *publisher, const char *address, struct cloth_error *error)
+static int publish_start(struct live_publisher *publisher, const char *address,
+                         struct cloth_error *error)
 {
     publisher->zmq = zmq_ctx_new();
     publisher->socket = publisher->zmq ? zmq_socket(publisher->zmq, ZMQ_ROUTER) : NULL;
     if (!publisher->socket)
-        return fail_zmq("start", error);
+        return publish_fail_zmq("start", error);
     publisher->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (publisher->wake < 0 || getrandom(&publisher->run, sizeof publisher->run, 0) < 0)
         return cloth_fail(error, CLOTH_E_LIBRARY, "--live: %s", strerror(errno));
     publisher->run |= 1; /* not 0 */
     if (live_connections_open(publisher))
-        return fail_zmq("count connections", error);
-    int code = set_options(publisher->socket, address, error);
+        return publish_fail_zmq("count connections", error);
+    int code = publish_set_options(publisher->socket, address, error);
     code = code ? code : listen_on(publisher, address, error);
     if (code)
         return code;
@@ -114,7 +115,7 @@ int live_publish_open(struct live_publisher **publisher, const char *address,
     pthread_mutex_init(&made->lock, NULL);
     zmq_msg_init(&made->scene_message);
     zmq_msg_init(&made->frame_message);
-    const int code = start(made, address, error);
+    const int code = publish_start(made, address, error);
     if (code)
         live_publish_close(publisher);
     return code;
@@ -134,8 +135,8 @@ static void wake(const struct live_publisher *publisher)
         publisher->warn("--live: its thread cannot be woken; viewers may wait in vain");
 }
 
-static int make_room(struct live_publisher *publisher, const struct output_setup *setup,
-                     struct cloth_error *error)
+static int publish_make_room(struct live_publisher *publisher, const struct output_setup *setup,
+                             struct cloth_error *error)
 {
     uint32_t most = 0;
     for (size_t i = 0; i < setup->n_meshes; i++)
@@ -164,7 +165,7 @@ int live_publish_scene(struct live_publisher *publisher, const struct output_set
                        double begin, struct cloth_error *error)
 {
     struct live_bytes scene = {.number = publisher->scenes + 1, .fresh = true};
-    int code = publisher->scenes ? 0 : make_room(publisher, setup, error);
+    int code = publisher->scenes ? 0 : publish_make_room(publisher, setup, error);
     if (!code)
         code = live_scene_write(setup, publisher->run, scene.number, &scene.data, &scene.n, error);
     if (code) {

@@ -75,7 +75,8 @@ static unsigned char *put_triangles(unsigned char *to, const struct output_setup
     return to;
 }
 
-static int put_body(unsigned char **to, const struct contact_body *body, struct cloth_error *error)
+static int live_scene_put_body(unsigned char **to, const struct contact_body *body,
+                               struct cloth_error *error)
 {
     struct mesh mesh = {0};
     const int code = contact_body_mesh(body, &mesh, error);
@@ -103,7 +104,7 @@ static int put_parts(unsigned char *bytes, const struct output_setup *setup,
     to = put_triangles(put_edges(to, setup), setup);
     int code = 0;
     for (uint32_t i = 1; i <= parts->n_bodies && !code; i++)
-        code = put_body(&to, contact_bodies_at(setup->bodies, i), error);
+        code = live_scene_put_body(&to, contact_bodies_at(setup->bodies, i), error);
     if (!code)
         memcpy(to, parts->text, parts->n_text);
     return code;
@@ -132,7 +133,8 @@ int live_scene_write(const struct output_setup *setup, uint64_t run, uint64_t sc
 
 /* ---- Reading ---- */
 
-static uint32_t *take_numbers(const unsigned char **from, size_t n, struct cloth_error *error)
+static uint32_t *live_scene_take_numbers(const unsigned char **from, size_t n,
+                                         struct cloth_error *error)
 {
     uint32_t *number = cloth_alloc(n, sizeof *number, error);
     for (size_t i = 0; number && i < n; i++)
@@ -159,12 +161,12 @@ static double *take_doubles(const unsigned char **from, uint32_t n, struct cloth
     return x;
 }
 
-static int take_mesh(const struct live_message *scene, const unsigned char **from,
-                     struct mesh *mesh, struct cloth_error *error)
+static int live_scene_take_mesh(const struct live_message *scene, const unsigned char **from,
+                                struct mesh *mesh, struct cloth_error *error)
 {
     double *place = take_floats(from, scene->n_vertices, error);
-    uint32_t *edge = take_numbers(from, 2 * (size_t)scene->n_edges, error);
-    uint32_t *triangle = take_numbers(from, 3 * (size_t)scene->n_triangles, error);
+    uint32_t *edge = live_scene_take_numbers(from, 2 * (size_t)scene->n_edges, error);
+    uint32_t *triangle = live_scene_take_numbers(from, 3 * (size_t)scene->n_triangles, error);
     int code = edge && triangle && place ? 0 : CLOTH_E_MEMORY;
     if (!code)
         code = mesh_inline(mesh, scene->n_vertices, place, scene->n_edges, edge, scene->n_triangles,
@@ -175,15 +177,15 @@ static int take_mesh(const struct live_message *scene, const unsigned char **fro
     return code;
 }
 
-static int take_body(const unsigned char **from, struct contact_bodies *bodies,
-                     struct cloth_error *error)
+static int live_scene_take_body(const unsigned char **from, struct contact_bodies *bodies,
+                                struct cloth_error *error)
 {
     const uint32_t n = live_get_u32(*from), n_triangles = live_get_u32(*from + 4);
     struct mesh mesh = {0};
     bool turned;
     *from += BODY_COUNTS;
     double *place = take_doubles(from, n, error);
-    uint32_t *triangle = take_numbers(from, 3 * (size_t)n_triangles, error);
+    uint32_t *triangle = live_scene_take_numbers(from, 3 * (size_t)n_triangles, error);
     int code = place && triangle ? 0 : CLOTH_E_MEMORY;
     if (!code)
         code = mesh_inline(&mesh, n, place, 0, NULL, n_triangles, triangle, error);
@@ -207,13 +209,13 @@ static int take_text(const unsigned char *from, size_t n, struct output_cache *c
     return code;
 }
 
-static int take_parts(const struct live_message *scene, struct output_cache *cache,
-                      struct cloth_error *error)
+static int live_scene_take_parts(const struct live_message *scene, struct output_cache *cache,
+                                 struct cloth_error *error)
 {
     const unsigned char *from = scene->rest;
-    int code = take_mesh(scene, &from, &cache->mesh, error);
+    int code = live_scene_take_mesh(scene, &from, &cache->mesh, error);
     for (uint32_t i = 0; i < scene->n_bodies && !code; i++)
-        code = take_body(&from, &cache->bodies, error);
+        code = live_scene_take_body(&from, &cache->bodies, error);
     if (!code)
         code = take_text(from, scene->n_rest - (size_t)(from - scene->rest), cache, error);
     if (!code && cache->n_bodies != scene->n_bodies)
@@ -235,7 +237,7 @@ int live_scene_open(const struct live_message *scene, struct output_cache *cache
 {
     struct cloth_error inner = {0};
     *cache = (struct output_cache){0};
-    int code = take_parts(scene, cache, &inner);
+    int code = live_scene_take_parts(scene, cache, &inner);
     if (!code) {
         cache->held = cloth_alloc(3 * (size_t)scene->n_vertices, sizeof *cache->held, &inner);
         cache->time = cloth_alloc(1, sizeof *cache->time, &inner);

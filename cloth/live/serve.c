@@ -15,7 +15,7 @@ static const double GRACE = 1;  /* s that viewers have at the end */
 enum { LINGER = 2000 };         /* ms that ZeroMQ then has to send its messages */
 enum { SHUT = 100 };            /* ms between two looks while the door is shut */
 
-static double now(void)
+static double serve_now(void)
 {
     struct timespec time;
     clock_gettime(CLOCK_MONOTONIC, &time);
@@ -25,7 +25,7 @@ static double now(void)
 /* ---- News of the run ---- */
 
 /* Fills a message with a copy of the bytes; it stays empty without memory. */
-static void fill(zmq_msg_t *message, const unsigned char *bytes, size_t n)
+static void serve_fill(zmq_msg_t *message, const unsigned char *bytes, size_t n)
 {
     zmq_msg_close(message);
     if (zmq_msg_init_size(message, n))
@@ -43,7 +43,7 @@ static void take_news(struct live_publisher *p)
         return;
     pthread_mutex_lock(&p->lock);
     if (p->scene.fresh) {
-        fill(&p->scene_message, p->scene.data, p->scene.n);
+        serve_fill(&p->scene_message, p->scene.data, p->scene.n);
         p->scene_number = p->scene.number;
     }
     if (p->frame.fresh) {
@@ -62,7 +62,7 @@ static zmq_msg_t *frame_message(struct live_publisher *p)
 {
     if (!zmq_msg_size(&p->frame_message)) {
         live_message_seal(p->own, p->frame.n, LIVE_FRAME);
-        fill(&p->frame_message, p->own, p->frame.n);
+        serve_fill(&p->frame_message, p->own, p->frame.n);
     }
     return &p->frame_message;
 }
@@ -88,7 +88,7 @@ static void send_end(struct live_publisher *p, const struct live_viewer *to)
     unsigned char bytes[LIVE_REQUEST_BYTES];
     zmq_msg_t message;
     zmq_msg_init(&message);
-    fill(&message, bytes, live_message_write(bytes, &end));
+    serve_fill(&message, bytes, live_message_write(bytes, &end));
     send_message(p, to, &message);
     zmq_msg_close(&message);
 }
@@ -101,7 +101,7 @@ static void answer_viewer(struct live_publisher *p, struct live_viewer *viewer)
         return;
     send_message(p, viewer, lacks_scene ? &p->scene_message : frame_message(p));
     viewer->waits = false;
-    viewer->seen = now();
+    viewer->seen = serve_now();
     if (!lacks_scene)
         viewer->next = p->frames;
 }
@@ -145,7 +145,7 @@ static void take_request(struct live_publisher *p, struct live_viewer *who, zmq_
     }
     struct live_viewer *viewer = find_viewer(p, who);
     *viewer = *who;
-    viewer->seen = now();
+    viewer->seen = serve_now();
     viewer->scene = request.run == p->run ? request.scene : 0;
     viewer->next = request.run == p->run ? request.number : 0;
     viewer->waits = true;
@@ -205,7 +205,7 @@ static bool is_behind(const struct live_publisher *p, double at)
 static void end_all(struct live_publisher *p)
 {
     const int linger = LINGER;
-    const double at = now();
+    const double at = serve_now();
     for (int i = 0; i < LIVE_VIEWERS; i++) {
         const struct live_viewer *viewer = p->viewer + i;
         if (!viewer->waits && !(viewer->n_id && at - viewer->seen < LATELY))
@@ -234,14 +234,14 @@ void *live_serve(void *context)
         const bool ending = ended > 0;
         if (zmq_poll(item, 3, ending ? 10 : p->door.is_shut ? SHUT : -1) < 0 && errno != EINTR)
             break;
-        live_connections_look(p, now());
+        live_connections_look(p, serve_now());
         take_news(p);
         take_requests(p);
         for (int i = 0; i < LIVE_VIEWERS; i++)
             answer_viewer(p, p->viewer + i);
         if (!ending && has_ended(p))
-            ended = now();
-        if (ended > 0 && (!is_behind(p, ended) || now() - ended > GRACE))
+            ended = serve_now();
+        if (ended > 0 && (!is_behind(p, ended) || serve_now() - ended > GRACE))
             break;
     }
     end_all(p);

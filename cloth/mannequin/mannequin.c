@@ -55,7 +55,7 @@ static int fit(struct making *making, uint32_t *worst)
     return code;
 }
 
-static int make(struct making *making, uint32_t *worst)
+static int mannequin_mannequin_make(struct making *making, uint32_t *worst)
 {
     figure_make(&making->figure, making->factor);
     int code = surface_march(&making->surface, &making->figure, CELL, making->error);
@@ -115,7 +115,8 @@ static uint32_t mirror(const struct surface *half, const struct fitting *fitting
 }
 
 /* The whole mesh, and its rig unless NULL. */
-static int finish(const struct making *making, struct mesh *mesh, struct mannequin_rig *rig)
+static int mannequin_finish(const struct making *making, struct mesh *mesh,
+                            struct mannequin_rig *rig)
 {
     const struct surface *half = &making->surface;
     const struct fitting fitting = fit_height(half, making->asked.height);
@@ -165,10 +166,10 @@ int mannequin_make_rigged(struct mesh *mesh, struct mannequin_rig *rig,
         making.asked.girth[i] /= scale;
         making.factor[i] = making.asked.girth[i] / mannequin_measures[i].girth;
     }
-    int code = make(&making, &worst);
+    int code = mannequin_mannequin_make(&making, &worst);
     if (!code && worst < MANNEQUIN_GIRTHS)
         code = check_girths(&making, worst, scale);
-    code = code ? code : finish(&making, mesh, rig);
+    code = code ? code : mannequin_finish(&making, mesh, rig);
     for (uint32_t i = 0; i < MANNEQUIN_GIRTHS && girth; i++)
         girth[i] = making.girth[i] * scale;
     surface_free(&making.surface);

@@ -25,7 +25,7 @@ static void rest(double angle[MANNEQUIN_ANGLES])
 }
 
 /* Rises from 0 at u <= 0 to 1 at u >= 1. */
-static double smooth(double u)
+static double pose_smooth(double u)
 {
     u = u < 0 ? 0 : u > 1 ? 1 : u;
     return u * u * (3 - 2 * u);
@@ -38,7 +38,7 @@ void mannequin_pose_at(const struct mannequin_pose *pose, uint32_t n, double tim
     while (k + 1 < n && time >= pose[k + 1].time)
         k++;
     const struct mannequin_pose *from = &pose[k], *to = k + 1 < n ? from + 1 : from;
-    const double part = to == from ? 0 : smooth((time - from->time) / (to->time - from->time));
+    const double part = to == from ? 0 : pose_smooth((time - from->time) / (to->time - from->time));
     for (uint32_t i = 0; i < MANNEQUIN_ANGLES; i++)
         angle[i] = from->angle[i] + part * (to->angle[i] - from->angle[i]);
 }
@@ -52,7 +52,7 @@ void mannequin_walk_at(const struct mannequin_walk *walk, double time,
                        double angle[MANNEQUIN_ANGLES])
 {
     const double since = time - walk->begin;
-    const double part = smooth(since / MANNEQUIN_WALK_RAMP);
+    const double part = pose_smooth(since / MANNEQUIN_WALK_RAMP);
     const double speed = walk->speed > 0 ? walk->speed : MANNEQUIN_WALK_SPEED;
     rest(angle);
     for (uint32_t side = 0; side < 2; side++) {
@@ -89,7 +89,7 @@ static void turn_about(const double axis[3], double degrees, double turn[3][3])
         }
 }
 
-static void multiply(double a[3][3], double b[3][3], double product[3][3])
+static void pose_multiply(double a[3][3], double b[3][3], double product[3][3])
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
@@ -103,7 +103,7 @@ static void hang(struct motion *on, double turn[3][3], const double joint[3], st
     for (int i = 0; i < 3; i++)
         local[i] =
             joint[i] - (turn[i][0] * joint[0] + turn[i][1] * joint[1] + turn[i][2] * joint[2]);
-    multiply(on->turn, turn, motion->turn);
+    pose_multiply(on->turn, turn, motion->turn);
     for (int i = 0; i < 3; i++)
         motion->shift[i] = on->turn[i][0] * local[0] + on->turn[i][1] * local[1] +
                            on->turn[i][2] * local[2] + on->shift[i];
@@ -116,7 +116,7 @@ static void swing(double aside, double forwards, bool right, double turn[3][3])
     double out[3][3], forth[3][3];
     turn_about(along, right ? -aside : aside, out);
     turn_about(across, -forwards, forth);
-    multiply(forth, out, turn);
+    pose_multiply(forth, out, turn);
 }
 
 static void move_side(const struct mannequin_rig *rig, const double *angle, bool right,
@@ -151,7 +151,7 @@ void mannequin_place(const struct mannequin_rig *rig, const struct mesh *mesh,
     double bend[3][3], round[3][3], turn[3][3];
     turn_about(across, angle[MANNEQUIN_SPINE_BEND], bend);
     turn_about(up, angle[MANNEQUIN_SPINE_TURN], round);
-    multiply(bend, round, turn);
+    pose_multiply(bend, round, turn);
     hang(&motion[FIGURE_PELVIS], turn, rig->joint[FIGURE_CHEST], &motion[FIGURE_CHEST]);
     for (uint32_t side = 0; side < 2; side++)
         move_side(rig, angle + mannequin_on_side(0, side), side == 1, motion);

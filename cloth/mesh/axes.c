@@ -22,7 +22,7 @@ static void moments(const struct mesh *mesh, double m[3][3])
 }
 
 /* An axis, its largest component above 0. */
-static void take(const double axis[3], double to[3])
+static void mesh_axes_take(const double axis[3], double to[3])
 {
     int largest = 0;
     for (int i = 1; i < 3; i++)
@@ -48,6 +48,6 @@ void mesh_axes(const struct mesh *mesh, double u[3], double v[3])
         first = second;
         second = other;
     }
-    take(axis[first], u);
-    take(axis[second], v);
+    mesh_axes_take(axis[first], u);
+    mesh_axes_take(axis[second], v);
 }

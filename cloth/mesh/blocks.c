@@ -53,7 +53,7 @@ static int number_nodes(struct cutter *cutter, uint32_t n_vertices, const unsign
 
 /* Brings the nodes of each part together, by rising number, from start[] on. True if every part has
  * a node. */
-static bool group(struct cutter *cutter)
+static bool blocks_group(struct cutter *cutter)
 {
     struct mesh_blocks *blocks = cutter->blocks;
     uint32_t *start = blocks->start, n = blocks->n_places;
@@ -99,21 +99,21 @@ static int fill_empty(struct cutter *cutter)
             for (uint32_t i = 0; i < size[b]; i++)
                 cutter->part[cutter->nodes[blocks->start[b] + i]] =
                     before + (uint32_t)((uint64_t)i * pieces[b] / size[b]);
-        group(cutter);
+        blocks_group(cutter);
     }
     free(size);
     free(pieces);
     return code;
 }
 
-static int cut(struct cutter *cutter)
+static int blocks_cut(struct cutter *cutter)
 {
     cutter->order = mesh_order_new(&cutter->graph, cutter->error);
     if (!cutter->order)
         return CLOTH_E_MEMORY;
     int code =
         mesh_partition(cutter->part, &cutter->graph, cutter->blocks->n_blocks, cutter->error);
-    if (!code && !group(cutter))
+    if (!code && !blocks_group(cutter))
         code = fill_empty(cutter);
     if (!code)
         order_parts(cutter);
@@ -133,7 +133,7 @@ static void set_places(struct cutter *cutter)
     }
 }
 
-static unsigned char *put_numbers(unsigned char *to, size_t n, const uint32_t *numbers)
+static unsigned char *blocks_put_numbers(unsigned char *to, size_t n, const uint32_t *numbers)
 {
     for (size_t i = 0; i < n; i++)
         for (int shift = 0; shift < 32; shift += 8)
@@ -148,9 +148,9 @@ static int set_hash(struct cutter *cutter)
     unsigned char *bytes = cloth_alloc(n, 4, cutter->error);
     if (!bytes)
         return CLOTH_E_MEMORY;
-    unsigned char *to = put_numbers(bytes, 1, &blocks->n_blocks);
-    to = put_numbers(to, (size_t)blocks->n_blocks + 1, blocks->start);
-    put_numbers(to, blocks->n_places, blocks->vertex);
+    unsigned char *to = blocks_put_numbers(bytes, 1, &blocks->n_blocks);
+    to = blocks_put_numbers(to, (size_t)blocks->n_blocks + 1, blocks->start);
+    blocks_put_numbers(to, blocks->n_places, blocks->vertex);
     blocks->hash = XXH64(bytes, 4 * n, 0);
     free(bytes);
     return CLOTH_OK;
@@ -168,7 +168,7 @@ int mesh_blocks_cut(struct mesh_blocks *blocks, uint32_t n_vertices, const unsig
         code = mesh_graph_build(&cutter.graph, blocks->n_places, n_vertices, blocks->place, pairs,
                                 error);
     if (!code)
-        code = cut(&cutter);
+        code = blocks_cut(&cutter);
     mesh_graph_free(&cutter.graph);
     if (!code) {
         set_places(&cutter);

@@ -31,8 +31,8 @@ static double square_between(const double *a, const double *b)
 }
 
 /* The lowest vertex of a chain that is near; `best` where none is lower. */
-static uint32_t look_along(const struct cells *cells, uint32_t chain, const double *x,
-                           uint32_t best)
+static uint32_t coincide_look_along(const struct cells *cells, uint32_t chain, const double *x,
+                                    uint32_t best)
 {
     const double most = cells->distance * cells->distance;
     for (uint32_t at = cells->head[chain]; at; at = cells->next[at - 1])
@@ -42,7 +42,7 @@ static uint32_t look_along(const struct cells *cells, uint32_t chain, const doub
 }
 
 /* The lowest vertex that stands for others and is near; v itself: there is none. */
-static uint32_t find_near(const struct cells *cells, uint32_t v)
+static uint32_t coincide_find_near(const struct cells *cells, uint32_t v)
 {
     const double *x = cells->position + 3 * (size_t)v, size = CELL * cells->distance;
     double low[3], high[3], at[3];
@@ -54,11 +54,11 @@ static uint32_t find_near(const struct cells *cells, uint32_t v)
     for (at[0] = low[0]; at[0] <= high[0]; at[0]++)
         for (at[1] = low[1]; at[1] <= high[1]; at[1]++)
             for (at[2] = low[2]; at[2] <= high[2]; at[2]++)
-                best = look_along(cells, chain_of(cells, at), x, best);
+                best = coincide_look_along(cells, chain_of(cells, at), x, best);
     return best;
 }
 
-static void put(struct cells *cells, uint32_t v)
+static void coincide_put(struct cells *cells, uint32_t v)
 {
     double at[3];
     for (int i = 0; i < 3; i++)
@@ -92,9 +92,9 @@ int mesh_coincide(const struct mesh *mesh, double distance, uint32_t *same,
         mesh_used(mesh, used);
     for (uint32_t v = 0; made && v < mesh->n_vertices; v++) {
         const bool seen = used[v] && is_within(&cells, v);
-        same[v] = seen ? find_near(&cells, v) : v;
+        same[v] = seen ? coincide_find_near(&cells, v) : v;
         if (seen && same[v] == v)
-            put(&cells, v);
+            coincide_put(&cells, v);
     }
     free(used);
     free(cells.head);

@@ -10,13 +10,13 @@
 static const double PI_3 = 1.04719755119659774615; /* pi / 3 */
 
 /* The first vertex of a ring, of which the 0th is the centre. */
-static uint32_t start_of(uint32_t ring)
+static uint32_t disc_start_of(uint32_t ring)
 {
     return ring ? 1 + 3 * ring * (ring - 1) : 0;
 }
 
 /* cos(a) and sin(a) for 0 <= a <= pi / 4: the first term left out is below 1e-21. */
-static void turn(double a, double *cosine, double *sine)
+static void disc_turn(double a, double *cosine, double *sine)
 {
     double c = 1, s = 1;
     for (int k = 18; k > 0; k -= 2) {
@@ -33,13 +33,13 @@ static void place_quarter(uint32_t ring, uint32_t j, double *x, double *z)
 {
     const double sixths = (double)j / ring, rest = (3.0 * ring - 2.0 * j) / (2.0 * ring);
     if (4 * (uint64_t)j <= 3 * (uint64_t)ring)
-        turn(PI_3 * sixths, x, z);
+        disc_turn(PI_3 * sixths, x, z);
     else
-        turn(PI_3 * rest, z, x);
+        disc_turn(PI_3 * rest, z, x);
 }
 
 /* The same of any j < 6 ring. */
-static void place(uint32_t ring, uint32_t j, double *x, double *z)
+static void disc_place(uint32_t ring, uint32_t j, double *x, double *z)
 {
     const uint32_t half = 3 * ring, up = j > half ? 6 * ring - j : j;
     const uint32_t quarter = 2 * (uint64_t)up > half ? half - up : up;
@@ -48,7 +48,7 @@ static void place(uint32_t ring, uint32_t j, double *x, double *z)
     *z = up == j ? *z : -*z;
 }
 
-static void place_vertices(double *x, double *uv, double radius, uint32_t rings)
+static void disc_place_vertices(double *x, double *uv, double radius, uint32_t rings)
 {
     for (uint32_t ring = 0; ring <= rings; ring++) {
         const uint32_t n = ring ? 6 * ring : 1;
@@ -56,7 +56,7 @@ static void place_vertices(double *x, double *uv, double radius, uint32_t rings)
         for (uint32_t j = 0; j < n; j++, x += 3, uv += 2) {
             double along = 0, across = 0;
             if (ring)
-                place(ring, j, &along, &across);
+                disc_place(ring, j, &along, &across);
             x[0] = r * along;
             x[1] = 0;
             x[2] = r * across;
@@ -66,7 +66,7 @@ static void place_vertices(double *x, double *uv, double radius, uint32_t rings)
     }
 }
 
-static uint32_t *add(uint32_t *corner, uint32_t a, uint32_t b, uint32_t c)
+static uint32_t *disc_add(uint32_t *corner, uint32_t a, uint32_t b, uint32_t c)
 {
     corner[0] = a;
     corner[1] = b;
@@ -77,15 +77,15 @@ static uint32_t *add(uint32_t *corner, uint32_t a, uint32_t b, uint32_t c)
 /* The triangles between a ring and the one inside it, wound so that normals are +y. */
 static uint32_t *add_ring(uint32_t *corner, uint32_t ring)
 {
-    const uint32_t out = start_of(ring), in = start_of(ring - 1);
+    const uint32_t out = disc_start_of(ring), in = disc_start_of(ring - 1);
     const uint32_t n_out = 6 * ring, n_in = ring > 1 ? 6 * (ring - 1) : 1;
     for (uint32_t sixth = 0; sixth < 6; sixth++) {
         const uint32_t a = sixth * ring, b = sixth * (ring - 1);
         for (uint32_t j = 0; j < ring; j++) {
             const uint32_t inner = in + (b + j) % n_in, outer = out + (a + j + 1) % n_out;
-            corner = add(corner, inner, outer, out + a + j);
+            corner = disc_add(corner, inner, outer, out + a + j);
             if (j + 1 < ring)
-                corner = add(corner, inner, in + (b + j + 1) % n_in, outer);
+                corner = disc_add(corner, inner, in + (b + j + 1) % n_in, outer);
         }
     }
     return corner;
@@ -98,13 +98,13 @@ int mesh_disc(struct mesh *mesh, double radius, uint32_t rings, struct cloth_err
         return cloth_fail(error, CLOTH_E_INPUT,
                           "a disc has 1 to %d rings and a radius above 0, not %u and %g",
                           MESH_DISC_RINGS, rings, radius);
-    const uint32_t n = start_of(rings + 1), n_triangles = 6 * rings * rings;
+    const uint32_t n = disc_start_of(rings + 1), n_triangles = 6 * rings * rings;
     double *position = cloth_alloc(n, 3 * sizeof *position, error);
     double *uv = cloth_alloc(n, 2 * sizeof *uv, error);
     uint32_t *triangle = cloth_alloc(n_triangles, 3 * sizeof *triangle, error), *next = triangle;
     int code = CLOTH_E_MEMORY;
     if (position && uv && triangle) {
-        place_vertices(position, uv, radius, rings);
+        disc_place_vertices(position, uv, radius, rings);
         for (uint32_t ring = 1; ring <= rings; ring++)
             next = add_ring(next, ring);
         code = mesh_inline(mesh, n, position, 0, NULL, n_triangles, triangle, error);

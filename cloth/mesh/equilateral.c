@@ -12,34 +12,35 @@ double mesh_row_distance(double width, uint32_t nx)
 }
 
 /* The first vertex of a row. */
-static uint32_t start_of(uint32_t j, uint32_t nx)
+static uint32_t equilateral_start_of(uint32_t j, uint32_t nx)
 {
     return j * nx - j / 2;
 }
 
 /* Place of the i-th of n points on a line, `step` metres apart and centred on 0: x(n - 1 - i) =
  * -x(i) to the last bit. */
-static double centred(double step, uint32_t i, uint32_t n)
+static double equilateral_centred(double step, uint32_t i, uint32_t n)
 {
     return step * (2.0 * i - (n - 1.0)) / 2;
 }
 
-static void place_vertices(double *x, double *uv, double width, uint32_t nx, uint32_t ny)
+static void equilateral_place_vertices(double *x, double *uv, double width, uint32_t nx,
+                                       uint32_t ny)
 {
     const double rise = mesh_row_distance(width, nx);
     for (uint32_t j = 0; j < ny; j++) {
         const uint32_t n = nx - j % 2;
         for (uint32_t i = 0; i < n; i++, x += 3, uv += 2) {
-            x[0] = centred(width / (nx - 1.0), i, n);
+            x[0] = equilateral_centred(width / (nx - 1.0), i, n);
             x[1] = 0;
-            x[2] = centred(rise, j, ny);
+            x[2] = equilateral_centred(rise, j, ny);
             uv[0] = x[0] + width / 2;
             uv[1] = rise * j;
         }
     }
 }
 
-static uint32_t *add(uint32_t *corner, uint32_t a, uint32_t b, uint32_t c)
+static uint32_t *equilateral_add(uint32_t *corner, uint32_t a, uint32_t b, uint32_t c)
 {
     corner[0] = a;
     corner[1] = b;
@@ -50,16 +51,16 @@ static uint32_t *add(uint32_t *corner, uint32_t a, uint32_t b, uint32_t c)
 /* The triangles between rows j and j + 1, wound so that normals are +y. */
 static uint32_t *add_strip(uint32_t *corner, uint32_t j, uint32_t nx)
 {
-    const uint32_t low = start_of(j, nx), high = start_of(j + 1, nx);
+    const uint32_t low = equilateral_start_of(j, nx), high = equilateral_start_of(j + 1, nx);
     for (uint32_t i = 0; i + 1 < nx; i++) {
         if (j % 2 == 0) {
-            corner = add(corner, low + i, high + i, low + i + 1);
+            corner = equilateral_add(corner, low + i, high + i, low + i + 1);
             if (i + 2 < nx)
-                corner = add(corner, high + i, high + i + 1, low + i + 1);
+                corner = equilateral_add(corner, high + i, high + i + 1, low + i + 1);
         } else {
-            corner = add(corner, low + i, high + i, high + i + 1);
+            corner = equilateral_add(corner, low + i, high + i, high + i + 1);
             if (i + 2 < nx)
-                corner = add(corner, low + i, high + i + 1, low + i + 1);
+                corner = equilateral_add(corner, low + i, high + i + 1, low + i + 1);
         }
     }
     return corner;
@@ -68,13 +69,13 @@ static uint32_t *add_strip(uint32_t *corner, uint32_t j, uint32_t nx)
 int mesh_equilateral(struct mesh *mesh, double width, uint32_t nx, uint32_t ny,
                      struct cloth_error *error)
 {
-    const uint32_t n = start_of(ny, nx), n_triangles = (ny - 1) * (2 * nx - 3);
+    const uint32_t n = equilateral_start_of(ny, nx), n_triangles = (ny - 1) * (2 * nx - 3);
     double *position = cloth_alloc(n, 3 * sizeof *position, error);
     double *uv = cloth_alloc(n, 2 * sizeof *uv, error);
     uint32_t *triangle = cloth_alloc(n_triangles, 3 * sizeof *triangle, error), *next = triangle;
     int code = CLOTH_E_MEMORY;
     if (position && uv && triangle) {
-        place_vertices(position, uv, width, nx, ny);
+        equilateral_place_vertices(position, uv, width, nx, ny);
         for (uint32_t j = 0; j + 1 < ny; j++)
             next = add_strip(next, j, nx);
         code = mesh_inline(mesh, n, position, 0, NULL, n_triangles, triangle, error);

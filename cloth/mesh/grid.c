@@ -9,8 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-static int check_size(double width, double height, uint32_t nx, uint32_t ny,
-                      struct cloth_error *error)
+static int mesh_grid_check_size(double width, double height, uint32_t nx, uint32_t ny,
+                                struct cloth_error *error)
 {
     if (!isfinite(width) || !isfinite(height) || width <= 0 || height <= 0)
         return cloth_fail(error, CLOTH_E_INPUT,
@@ -27,7 +27,7 @@ static int check_size(double width, double height, uint32_t nx, uint32_t ny,
     return CLOTH_OK;
 }
 
-static int make(struct mesh *mesh, uint32_t nx, uint32_t ny, struct cloth_error *error)
+static int mesh_grid_make(struct mesh *mesh, uint32_t nx, uint32_t ny, struct cloth_error *error)
 {
     mesh->grid_nx = nx;
     mesh->grid_ny = ny;
@@ -39,20 +39,20 @@ static int make(struct mesh *mesh, uint32_t nx, uint32_t ny, struct cloth_error 
 
 /* Place of the i-th of n points that divide a length centred on 0: x(n - 1 - i) = -x(i) to the last
  * bit. */
-static double centred(double length, uint32_t i, uint32_t n)
+static double mesh_grid_centred(double length, uint32_t i, uint32_t n)
 {
     return length * (2.0 * i - (n - 1.0)) / (2.0 * (n - 1.0));
 }
 
-static void place_vertices(struct mesh *mesh)
+static void mesh_grid_place_vertices(struct mesh *mesh)
 {
     uint32_t nx = mesh->grid_nx, ny = mesh->grid_ny;
     double *x = mesh->position;
     for (uint32_t j = 0; j < ny; j++) {
         for (uint32_t i = 0; i < nx; i++) {
-            *x++ = centred(mesh->grid_width, i, nx);
+            *x++ = mesh_grid_centred(mesh->grid_width, i, nx);
             *x++ = 0;
-            *x++ = centred(mesh->grid_height, j, ny);
+            *x++ = mesh_grid_centred(mesh->grid_height, j, ny);
         }
     }
 }
@@ -61,11 +61,12 @@ int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint3
               enum mesh_cells cells, struct cloth_error *error)
 {
     *mesh = (struct mesh){0};
-    int code = check_size(width, cells == MESH_EQUILATERAL ? width : height, nx, ny, error);
+    int code =
+        mesh_grid_check_size(width, cells == MESH_EQUILATERAL ? width : height, nx, ny, error);
     if (!code && cells == MESH_EQUILATERAL)
         return mesh_equilateral(mesh, width, nx, ny, error);
     if (!code)
-        code = make(mesh, nx, ny, error);
+        code = mesh_grid_make(mesh, nx, ny, error);
     if (code) {
         mesh_free(mesh);
         return code;
@@ -73,7 +74,7 @@ int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint3
     mesh->grid_width = width;
     mesh->grid_height = height;
     mesh->grid_cells = cells;
-    place_vertices(mesh);
+    mesh_grid_place_vertices(mesh);
     return CLOTH_OK;
 }
 

@@ -22,7 +22,7 @@ static int check_input(uint32_t n_vertices, const double *vertices, uint32_t n_e
     return CLOTH_OK;
 }
 
-static void *copy(const void *from, size_t n, size_t size, struct cloth_error *error)
+static void *inline_copy(const void *from, size_t n, size_t size, struct cloth_error *error)
 {
     void *to = cloth_alloc(n, size, error);
     if (to && n)
@@ -41,9 +41,9 @@ int mesh_inline(struct mesh *mesh, uint32_t n_vertices, const double *vertices, 
     mesh->n_vertices = n_vertices;
     mesh->n_lone_edges = n_edges;
     mesh->n_faces = n_triangles;
-    mesh->position = copy(vertices, n_vertices, 3 * sizeof *vertices, error);
-    mesh->lone_edge = copy(edges, n_edges, 2 * sizeof *edges, error);
-    mesh->face_corner = copy(triangles, n_triangles, 3 * sizeof *triangles, error);
+    mesh->position = inline_copy(vertices, n_vertices, 3 * sizeof *vertices, error);
+    mesh->lone_edge = inline_copy(edges, n_edges, 2 * sizeof *edges, error);
+    mesh->face_corner = inline_copy(triangles, n_triangles, 3 * sizeof *triangles, error);
     mesh->face_start = cloth_alloc((size_t)n_triangles + 1, sizeof *mesh->face_start, error);
     if (!mesh->position || !mesh->lone_edge || !mesh->face_corner || !mesh->face_start) {
         mesh_free(mesh);

@@ -21,7 +21,7 @@ struct builder {
     void *to;
 };
 
-static int count(struct builder *builder, const struct mesh_spring *spring)
+static int mesh_lattice_count(struct builder *builder, const struct mesh_spring *spring)
 {
     (void)spring;
     if (builder->n == UINT32_MAX)
@@ -31,9 +31,9 @@ static int count(struct builder *builder, const struct mesh_spring *spring)
     return CLOTH_OK;
 }
 
-static int append(struct builder *builder, const struct mesh_spring *spring)
+static int mesh_lattice_append(struct builder *builder, const struct mesh_spring *spring)
 {
-    const int code = count(builder, spring);
+    const int code = mesh_lattice_count(builder, spring);
     if (code)
         return code;
     struct mesh_spring *to = cloth_list_add(&builder->springs, sizeof *to, 1, builder->error);
@@ -43,13 +43,14 @@ static int append(struct builder *builder, const struct mesh_spring *spring)
     return CLOTH_OK;
 }
 
-static int show(struct builder *builder, const struct mesh_spring *spring)
+static int mesh_lattice_show(struct builder *builder, const struct mesh_spring *spring)
 {
     builder->visit(builder->to, spring);
     return CLOTH_OK;
 }
 
-static int check_length(const struct builder *builder, uint32_t a, uint32_t b, double length)
+static int mesh_lattice_check_length(const struct builder *builder, uint32_t a, uint32_t b,
+                                     double length)
 {
     if (length > 0 && isfinite(length))
         return CLOTH_OK;
@@ -60,10 +61,10 @@ static int check_length(const struct builder *builder, uint32_t a, uint32_t b, d
 }
 
 /* area >= 0: modulus * area / length^2; else the modulus as it is. */
-static int add(struct builder *builder, uint32_t a, uint32_t b, enum mesh_spring_kind kind,
-               double modulus, double area, double length)
+static int mesh_lattice_add(struct builder *builder, uint32_t a, uint32_t b,
+                            enum mesh_spring_kind kind, double modulus, double area, double length)
 {
-    int code = check_length(builder, a, b, length);
+    int code = mesh_lattice_check_length(builder, a, b, length);
     if (code)
         return code;
     double stiffness = area >= 0 ? modulus * (area / length / length) : modulus;
@@ -127,7 +128,8 @@ static int add_grid_vertex(struct builder *builder, uint32_t i, uint32_t j)
         const double k = springs[s].part *
                          modulus_along(moduli_of(builder, a, b), springs[s].kind, springs[s].weft);
         const double length = mesh_distance(mesh->position, a, b);
-        int code = k == 0 ? CLOTH_OK : add(builder, a, b, springs[s].kind, k, NO_AREA, length);
+        int code = k == 0 ? CLOTH_OK
+                          : mesh_lattice_add(builder, a, b, springs[s].kind, k, NO_AREA, length);
         if (code)
             return code;
     }
@@ -144,8 +146,8 @@ static int add_grid(struct builder *builder)
 }
 
 /* Turns components along u and v into those along warp and weft. */
-static void turn(const struct mesh_regions *regions, const struct mesh_edge *edge, double *u,
-                 double *v)
+static void mesh_lattice_turn(const struct mesh_regions *regions, const struct mesh_edge *edge,
+                              double *u, double *v)
 {
     const uint32_t end[2] = {edge->a, edge->b};
     const int region = regions ? mesh_region(regions->grain_mask, 2, end) : -1;
@@ -166,7 +168,7 @@ static double weft_share(const struct builder *builder, const struct mesh_edge *
     mesh_uv(mesh, mesh_uv_number(mesh, triangle, edge->a), a);
     mesh_uv(mesh, mesh_uv_number(mesh, triangle, edge->b), b);
     double along = b[0] - a[0], across = b[1] - a[1];
-    turn(builder->moduli->regions, edge, &along, &across);
+    mesh_lattice_turn(builder->moduli->regions, edge, &along, &across);
     const double u = along * along, v = across * across;
     return u + v > 0 ? v / (u + v) : 0;
 }
@@ -192,22 +194,22 @@ static int modulus_of(const struct builder *builder, const struct mesh_edge *edg
 }
 
 /* Adds the spring of a triangle's side. */
-static int add_side(struct builder *builder, const struct mesh_edge *edge)
+static int mesh_lattice_add_side(struct builder *builder, const struct mesh_edge *edge)
 {
     double modulus;
     const int code = modulus_of(builder, edge, &modulus);
     if (code)
         return code;
     const double length = mesh_length(builder->mesh, edge->triangle, edge->a, edge->b);
-    return add(builder, edge->a, edge->b, MESH_STRETCH, modulus, edge->area, length);
+    return mesh_lattice_add(builder, edge->a, edge->b, MESH_STRETCH, modulus, edge->area, length);
 }
 
 static int add_lone_edge(struct builder *builder, const struct mesh_edge *edge)
 {
     const double length = mesh_distance(builder->mesh->position, edge->a, edge->b);
     const double ea = moduli_of(builder, edge->a, edge->b)->ea;
-    return add(builder, edge->a, edge->b, MESH_STRETCH, length > 0 ? ea / length : 0, NO_AREA,
-               length);
+    return mesh_lattice_add(builder, edge->a, edge->b, MESH_STRETCH, length > 0 ? ea / length : 0,
+                            NO_AREA, length);
 }
 
 /* Adds the spring between the opposite vertices. */
@@ -216,18 +218,18 @@ static int add_bend(struct builder *builder, const struct mesh_edge *edge, doubl
     const uint32_t corner[4] = {edge->a, edge->b, edge->opposite[0], edge->opposite[1]};
     double x[12];
     mesh_hinge(builder->mesh, edge->triangle, corner, x);
-    return add(builder, corner[2], corner[3], MESH_BEND, modulus, edge->area,
-               mesh_distance(x, 2, 3));
+    return mesh_lattice_add(builder, corner[2], corner[3], MESH_BEND, modulus, edge->area,
+                            mesh_distance(x, 2, 3));
 }
 
 /* All stretch springs, then all bend springs, each in edge order. */
-static int add_edges(struct builder *builder, const struct mesh_edges *edges)
+static int mesh_lattice_add_edges(struct builder *builder, const struct mesh_edges *edges)
 {
     int code = CLOTH_OK;
     for (uint32_t e = 0; e < edges->n && !code; e++) {
         const struct mesh_edge *edge = &edges->edge[e];
         code = edge->opposite[0] == UINT32_MAX ? add_lone_edge(builder, edge)
-                                               : add_side(builder, edge);
+                                               : mesh_lattice_add_side(builder, edge);
     }
     for (uint32_t e = 0; e < edges->n && !code; e++) {
         const struct mesh_edge *edge = &edges->edge[e];
@@ -264,13 +266,13 @@ done:
     return code;
 }
 
-static int build_edges(struct mesh_lattice *lattice, struct builder *builder)
+static int mesh_lattice_build_edges(struct mesh_lattice *lattice, struct builder *builder)
 {
     struct mesh_edges edges = {0};
-    builder->take = append;
+    builder->take = mesh_lattice_append;
     int code = mesh_edges_find(&edges, builder->mesh, builder->error);
     if (!code)
-        code = add_edges(builder, &edges);
+        code = mesh_lattice_add_edges(builder, &edges);
     mesh_edges_free(&edges);
     if (!code)
         code = sort(lattice, builder);
@@ -281,9 +283,11 @@ static int build_edges(struct mesh_lattice *lattice, struct builder *builder)
 int mesh_lattice_build(struct mesh_lattice *lattice, const struct mesh *mesh,
                        const struct mesh_moduli *moduli, struct cloth_error *error)
 {
-    struct builder builder = {.mesh = mesh, .moduli = moduli, .error = error, .take = count};
+    struct builder builder = {
+        .mesh = mesh, .moduli = moduli, .error = error, .take = mesh_lattice_count};
     *lattice = (struct mesh_lattice){.mesh = mesh, .moduli = *moduli};
-    const int code = mesh->grid_nx ? add_grid(&builder) : build_edges(lattice, &builder);
+    const int code =
+        mesh->grid_nx ? add_grid(&builder) : mesh_lattice_build_edges(lattice, &builder);
     lattice->n = builder.n;
     if (code)
         mesh_lattice_free(lattice);
@@ -293,8 +297,11 @@ int mesh_lattice_build(struct mesh_lattice *lattice, const struct mesh *mesh,
 void mesh_lattice_each(const struct mesh_lattice *lattice,
                        void (*visit)(void *to, const struct mesh_spring *spring), void *to)
 {
-    struct builder builder = {
-        .mesh = lattice->mesh, .moduli = &lattice->moduli, .take = show, .visit = visit, .to = to};
+    struct builder builder = {.mesh = lattice->mesh,
+                              .moduli = &lattice->moduli,
+                              .take = mesh_lattice_show,
+                              .visit = visit,
+                              .to = to};
     if (lattice->mesh && lattice->mesh->grid_nx)
         add_grid(&builder); /* built once without a failure */
     for (uint32_t s = 0; lattice->spring && s < lattice->n; s++)

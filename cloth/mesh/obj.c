@@ -240,7 +240,7 @@ static int make_names(struct obj *obj, struct mesh *mesh)
 }
 
 /* The items of a list as an array of its own length; the list is empty then. */
-static void *hand_over(struct cloth_list *list, size_t size, struct cloth_error *error)
+static void *mesh_obj_hand_over(struct cloth_list *list, size_t size, struct cloth_error *error)
 {
     void *items = list->n ? realloc(list->items, list->n * size) : NULL;
     if (!items)
@@ -264,9 +264,9 @@ static int make_mesh(struct obj *obj, struct mesh *mesh)
     const uint32_t(*corner)[2] = obj->corner.items;
     for (size_t c = 0; c < obj->corner.n; c++)
         mesh->face_corner[c] = corner[c][0];
-    mesh->position = hand_over(&obj->position, 3 * sizeof(double), obj->error);
-    mesh->face_start = hand_over(&obj->face_start, sizeof(uint32_t), obj->error);
-    mesh->lone_edge = hand_over(&obj->edge, 2 * sizeof(uint32_t), obj->error);
+    mesh->position = mesh_obj_hand_over(&obj->position, 3 * sizeof(double), obj->error);
+    mesh->face_start = mesh_obj_hand_over(&obj->face_start, sizeof(uint32_t), obj->error);
+    mesh->lone_edge = mesh_obj_hand_over(&obj->edge, 2 * sizeof(uint32_t), obj->error);
     if (!mesh->lone_edge)
         return CLOTH_E_MEMORY;
     struct mesh_source source = {obj->lines.path, obj->face_line.items, obj->edge_line.items,
@@ -298,7 +298,7 @@ static void free_obj(struct obj *obj)
         freelocale(obj->c);
 }
 
-static int read_obj(struct mesh *mesh, const char *path, bool fans, struct cloth_error *error)
+static int mesh_obj_read(struct mesh *mesh, const char *path, bool fans, struct cloth_error *error)
 {
     struct obj obj = {.fans = fans, .error = error, .c = newlocale(LC_ALL_MASK, "C", (locale_t)0)};
     *mesh = (struct mesh){0};
@@ -318,10 +318,10 @@ static int read_obj(struct mesh *mesh, const char *path, bool fans, struct cloth
 
 int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error)
 {
-    return read_obj(mesh, path, false, error);
+    return mesh_obj_read(mesh, path, false, error);
 }
 
 int mesh_read_surface(struct mesh *mesh, const char *path, struct cloth_error *error)
 {
-    return read_obj(mesh, path, true, error);
+    return mesh_obj_read(mesh, path, true, error);
 }

@@ -30,8 +30,8 @@ static double float_at(const unsigned char *bytes)
 }
 
 /* How many frames follow of the header, one or more; the file is read up to there. */
-static int read_header(FILE *file, const char *path, uint32_t n_vertices, uint32_t *n_frames,
-                       struct cloth_error *error)
+static int mesh_pc2_read_header(FILE *file, const char *path, uint32_t n_vertices,
+                                uint32_t *n_frames, struct cloth_error *error)
 {
     unsigned char header[HEADER];
     if (fread(header, HEADER, 1, file) != 1 || memcmp(header, "POINTCACHE2", 12) != 0 ||
@@ -48,8 +48,9 @@ static int read_header(FILE *file, const char *path, uint32_t n_vertices, uint32
 }
 
 /* Adds a frame, the next of the file, to the list. bytes: room for one. */
-static int read_frame(FILE *file, const char *path, uint32_t n_vertices, uint32_t frame,
-                      unsigned char *bytes, struct cloth_list *list, struct cloth_error *error)
+static int mesh_pc2_read_frame(FILE *file, const char *path, uint32_t n_vertices, uint32_t frame,
+                               unsigned char *bytes, struct cloth_list *list,
+                               struct cloth_error *error)
 {
     if (fread(bytes, POINT, n_vertices, file) != n_vertices)
         return cloth_fail(error, ferror(file) ? CLOTH_E_IO : CLOTH_E_INPUT,
@@ -94,7 +95,7 @@ static int read_frames(FILE *file, const char *path, uint32_t n_vertices, uint32
     if (!code && fseeko(file, HEADER + (off_t)POINT * n_vertices * first, SEEK_SET) != 0)
         code = cloth_fail(error, CLOTH_E_IO, "%s: cannot be read: %s", path, strerror(errno));
     for (uint32_t k = first; k < end && !code; k++)
-        code = read_frame(file, path, n_vertices, k, bytes, &list, error);
+        code = mesh_pc2_read_frame(file, path, n_vertices, k, bytes, &list, error);
     free(bytes);
     if (code)
         free(list.items);
@@ -104,8 +105,8 @@ static int read_frames(FILE *file, const char *path, uint32_t n_vertices, uint32
 }
 
 /* Opens it, and reads its header. Returns NULL after an error. */
-static FILE *open_frames(const char *path, uint32_t n_vertices, uint32_t *n_frames,
-                         struct cloth_error *error)
+static FILE *mesh_pc2_open_frames(const char *path, uint32_t n_vertices, uint32_t *n_frames,
+                                  struct cloth_error *error)
 {
     FILE *file = cloth_file_open(path);
     *n_frames = 0;
@@ -113,7 +114,7 @@ static FILE *open_frames(const char *path, uint32_t n_vertices, uint32_t *n_fram
         cloth_fail(error, CLOTH_E_IO, "%s: cannot be read: %s", path, cloth_file_why());
         return NULL;
     }
-    if (read_header(file, path, n_vertices, n_frames, error)) {
+    if (mesh_pc2_read_header(file, path, n_vertices, n_frames, error)) {
         fclose(file);
         return NULL;
     }
@@ -124,7 +125,7 @@ int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t *n_frames, dou
                   struct cloth_error *error)
 {
     *place = NULL;
-    FILE *file = open_frames(path, n_vertices, n_frames, error);
+    FILE *file = mesh_pc2_open_frames(path, n_vertices, n_frames, error);
     if (!file)
         return error->code;
     const int code = read_frames(file, path, n_vertices, 0, *n_frames, place, error);
@@ -137,7 +138,7 @@ int mesh_read_pc2_frame(const char *path, uint32_t n_vertices, uint32_t frame, u
 {
     int code = CLOTH_OK;
     *place = NULL;
-    FILE *file = open_frames(path, n_vertices, n_frames, error);
+    FILE *file = mesh_pc2_open_frames(path, n_vertices, n_frames, error);
     if (!file)
         return error->code;
     const uint32_t one = frame == MESH_LAST_FRAME ? *n_frames - 1 : frame;

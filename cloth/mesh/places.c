@@ -18,14 +18,14 @@ uint32_t mesh_uv_number(const struct mesh *mesh, uint32_t t, uint32_t vertex)
 }
 
 /* The number of a place among the positions. */
-static uint32_t number_of(const struct mesh *mesh, uint32_t t, uint32_t vertex)
+static uint32_t places_number_of(const struct mesh *mesh, uint32_t t, uint32_t vertex)
 {
     return mesh->placed_by_uv ? mesh_uv_number(mesh, t, vertex) : vertex;
 }
 
 const double *mesh_place(const struct mesh *mesh, uint32_t t, uint32_t vertex)
 {
-    return mesh->position + 3 * (size_t)number_of(mesh, t, vertex);
+    return mesh->position + 3 * (size_t)places_number_of(mesh, t, vertex);
 }
 
 double mesh_triangle_area(const struct mesh *mesh, uint32_t t)
@@ -41,8 +41,8 @@ double mesh_length(const struct mesh *mesh, const uint32_t triangle[2], uint32_t
 {
     double length[2];
     for (int k = 0; k < 2; k++)
-        length[k] = mesh_distance(mesh->position, number_of(mesh, triangle[k], a),
-                                  number_of(mesh, triangle[k], b));
+        length[k] = mesh_distance(mesh->position, places_number_of(mesh, triangle[k], a),
+                                  places_number_of(mesh, triangle[k], b));
     return triangle[1] == UINT32_MAX ? length[0] : (length[0] + length[1]) / 2;
 }
 
@@ -82,8 +82,8 @@ void mesh_hinge(const struct mesh *mesh, const uint32_t triangle[2], const uint3
         const uint32_t vertex = corner[i < 2 ? i : 3];
         memcpy(x + 3 * i, mesh_place(mesh, triangle[0], corner[i]), 3 * sizeof *x);
         memcpy(other + 3 * i, mesh_place(mesh, triangle[1], vertex), 3 * sizeof *x);
-        one = one && (i == 2 ||
-                      number_of(mesh, triangle[0], vertex) == number_of(mesh, triangle[1], vertex));
+        one = one && (i == 2 || places_number_of(mesh, triangle[0], vertex) ==
+                                    places_number_of(mesh, triangle[1], vertex));
     }
     memcpy(x + 9, other + 6, 3 * sizeof *x);
     if (!one)

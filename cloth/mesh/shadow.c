@@ -25,7 +25,7 @@ struct shadow {
 };
 
 /* Two directions of length 1 across an axis of any length, at right angles. */
-static void find_frame(const double axis[3], double along[3], double across[3])
+static void shadow_find_frame(const double axis[3], double along[3], double across[3])
 {
     int least = fabs(axis[1]) < fabs(axis[0]) ? 1 : 0;
     least = fabs(axis[2]) < fabs(axis[least]) ? 2 : least;
@@ -44,7 +44,7 @@ static void find_frame(const double axis[3], double along[3], double across[3])
 static void project_vertices(struct shadow *shadow, const double axis[3])
 {
     double along[3], across[3], low = INFINITY, high = -INFINITY;
-    find_frame(axis, along, across);
+    shadow_find_frame(axis, along, across);
     for (uint32_t v = 0; v < shadow->shape->n_vertices; v++) {
         const double *x = shadow->shape->position + 3 * (size_t)v;
         shadow->at[v][0] = along[0] * x[0] + along[1] * x[1] + along[2] * x[2];
@@ -61,7 +61,7 @@ static double line_at(const struct shadow *shadow, uint32_t j)
     return shadow->low + (j + 0.5) * shadow->apart;
 }
 
-static void list_triangles(struct shadow *shadow)
+static void shadow_list_triangles(struct shadow *shadow)
 {
     for (uint32_t j = 0; j < LINES; j++)
         shadow->first[j] = NO_TRIANGLE;
@@ -80,7 +80,7 @@ static void list_triangles(struct shadow *shadow)
 }
 
 /* The interval of a line in a triangle; from > to: none. */
-static struct interval cut_triangle(const struct shadow *shadow, uint32_t t, double line)
+static struct interval shadow_cut_triangle(const struct shadow *shadow, uint32_t t, double line)
 {
     struct interval cut = {INFINITY, -INFINITY};
     for (int c = 0; c < 3; c++) {
@@ -124,7 +124,7 @@ static double sweep_lines(struct shadow *shadow)
             shadow->active[n_active++] = t;
         uint32_t n = 0;
         for (uint32_t i = 0; i < n_active; i++) {
-            shadow->cut[n] = cut_triangle(shadow, shadow->active[i], line_at(shadow, j));
+            shadow->cut[n] = shadow_cut_triangle(shadow, shadow->active[i], line_at(shadow, j));
             if (shadow->cut[n].from <= shadow->cut[n].to)
                 shadow->active[n++] = shadow->active[i];
         }
@@ -151,7 +151,7 @@ int mesh_shadow(const struct mesh_shape *shape, const double axis[3], double *ar
     if (made)
         project_vertices(shadow, axis);
     if (made && shadow->apart > 0) {
-        list_triangles(shadow);
+        shadow_list_triangles(shadow);
         *area = sweep_lines(shadow);
     }
     free(shadow->at);

@@ -18,7 +18,8 @@ static void cut_edge(struct slice_end *end, const struct slice_mesh *mesh, uint3
 }
 
 /* False: the plane does not cut the triangle. */
-static bool cut_triangle(struct slice_segment *segment, const struct slice_mesh *mesh, uint32_t t)
+static bool slice_cut_triangle(struct slice_segment *segment, const struct slice_mesh *mesh,
+                               uint32_t t)
 {
     const uint32_t *v = mesh->triangle[t];
     int n = 0;
@@ -49,7 +50,7 @@ static int compare_met(const void *a, const void *b)
     return (one->segment > two->segment) - (one->segment < two->segment);
 }
 
-static int join(struct slice *slice, struct cloth_error *error)
+static int slice_join(struct slice *slice, struct cloth_error *error)
 {
     struct met *met = cloth_alloc(2 * (size_t)slice->n, sizeof *met, error);
     slice->set = cloth_alloc(slice->n, sizeof *slice->set, error);
@@ -79,7 +80,7 @@ int slice_make(struct slice *slice, const struct slice_mesh *mesh, struct cloth_
     int code = CLOTH_OK;
     *slice = (struct slice){0};
     for (uint32_t t = 0; t < mesh->n_triangles && !code; t++)
-        if (cut_triangle(&segment, mesh, t)) {
+        if (slice_cut_triangle(&segment, mesh, t)) {
             struct slice_segment *next = cloth_list_add(&list, sizeof segment, 1, error);
             code = next ? CLOTH_OK : CLOTH_E_MEMORY;
             if (next)
@@ -87,7 +88,7 @@ int slice_make(struct slice *slice, const struct slice_mesh *mesh, struct cloth_
         }
     slice->n = (uint32_t)list.n;
     slice->segment = list.items;
-    return code ? code : join(slice, error);
+    return code ? code : slice_join(slice, error);
 }
 
 void slice_free(struct slice *slice)
@@ -106,7 +107,7 @@ static int compare_points(const void *a, const void *b)
 }
 
 /* Twice the area of a triangle, above 0 if it is counterclockwise. */
-static double turn(const double a[2], const double b[2], const double c[2])
+static double slice_turn(const double a[2], const double b[2], const double c[2])
 {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
@@ -114,7 +115,7 @@ static double turn(const double a[2], const double b[2], const double c[2])
 /* Goes on with a chain of k points, of which those from `lower` on may be dropped. */
 static uint32_t extend(double (*chain)[2], uint32_t k, uint32_t lower, const double point[2])
 {
-    while (k >= lower && turn(chain[k - 2], chain[k - 1], point) <= 0)
+    while (k >= lower && slice_turn(chain[k - 2], chain[k - 1], point) <= 0)
         k--;
     memcpy(chain[k], point, sizeof *chain);
     return k + 1;
@@ -155,7 +156,7 @@ double slice_around(const double (*hull)[2], uint32_t n)
 bool slice_inside(const double (*hull)[2], uint32_t n, const double point[2])
 {
     for (uint32_t i = 0; i < n; i++)
-        if (turn(hull[i], hull[(i + 1) % n], point) < 0)
+        if (slice_turn(hull[i], hull[(i + 1) % n], point) < 0)
             return false;
     return n >= 3;
 }

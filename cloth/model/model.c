@@ -320,7 +320,7 @@ double model_curve_end(const struct model *model, uint32_t curve)
 }
 
 /* Gives each vertex of all cloths the lowest vertex that it is welded to. NULL: no memory. */
-static uint32_t *find_welded(const struct model *model, struct cloth_error *error)
+static uint32_t *model_find_welded(const struct model *model, struct cloth_error *error)
 {
     const uint32_t n = model_first(model, model->n_cloths);
     uint32_t *same = cloth_alloc(n, sizeof *same, error);
@@ -344,7 +344,7 @@ int model_soup(const struct model *model, struct contact_soup *soup, struct clot
 {
     *soup = (struct contact_soup){0};
     const struct mesh **mesh = cloth_alloc(model->n_cloths, sizeof *mesh, error);
-    uint32_t *same = mesh ? find_welded(model, error) : NULL;
+    uint32_t *same = mesh ? model_find_welded(model, error) : NULL;
     for (uint32_t i = 0; i < model->n_cloths && same; i++)
         mesh[i] = &model->cloths[i].mesh;
     const int code = same ? contact_soup_make(soup, model->n_cloths, mesh, same, model->n_obstacles,

@@ -41,7 +41,7 @@ static int read_text(const char *path, char **text, struct cloth_error *error)
     return code;
 }
 
-static void parse_scene(struct output_cache *cache, struct output_json *json)
+static void cache_parse_scene(struct output_cache *cache, struct output_json *json)
 {
     output_json_expect(json, '{');
     if (!output_json_key(json, "fps"))
@@ -69,8 +69,8 @@ static void parse_scene(struct output_cache *cache, struct output_json *json)
 }
 
 /* Checks that the cloths of "apart" have the vertices of the mesh. */
-static int check_apart(const struct output_cache *cache, const char *name,
-                       struct cloth_error *error)
+static int cache_check_apart(const struct output_cache *cache, const char *name,
+                             struct cloth_error *error)
 {
     const struct contact_apart *apart = &cache->apart;
     if (!apart->n_cloths || !cache->mesh.n_vertices ||
@@ -84,13 +84,13 @@ int output_cache_scene(struct output_cache *cache, const char *text, const char 
                        struct cloth_error *error)
 {
     struct output_json json = {.path = name, .text = text, .next = text, .error = error};
-    parse_scene(cache, &json);
+    cache_parse_scene(cache, &json);
     if (json.failed)
         return error ? error->code : CLOTH_E_INPUT;
-    return check_apart(cache, name, error);
+    return cache_check_apart(cache, name, error);
 }
 
-static int read_scene(struct output_cache *cache, const char *path, struct cloth_error *error)
+static int cache_read_scene(struct output_cache *cache, const char *path, struct cloth_error *error)
 {
     char *text = NULL;
     int code = read_text(path, &text, error);
@@ -104,7 +104,7 @@ uint32_t output_bodies_before(const char *folder)
     struct cloth_error ignored = {0};
     struct output_cache cache = {0};
     char *path = output_path(folder, "scene.json", "");
-    const int code = path ? read_scene(&cache, path, &ignored) : CLOTH_E_MEMORY;
+    const int code = path ? cache_read_scene(&cache, path, &ignored) : CLOTH_E_MEMORY;
     const uint32_t n = code ? 0 : cache.n_bodies;
     output_cache_close(&cache);
     free(path);
@@ -252,7 +252,7 @@ int output_cache_open(struct output_cache *cache, const char *folder, struct clo
     } part[] = {{"cloth.obj", read_mesh},
                 {"cloth.pc2", read_cache},
                 {"frames.csv", read_index},
-                {"scene.json", read_scene}};
+                {"scene.json", cache_read_scene}};
     memset(cache, 0, sizeof *cache);
     struct stat status;
     if (stat(folder, &status) != 0)

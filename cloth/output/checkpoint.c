@@ -41,24 +41,24 @@ static size_t padded(size_t n)
 
 /* ---- Names ---- */
 
-static void put_name(char name[NAME], uint64_t number)
+static void checkpoint_put_name(char name[NAME], uint64_t number)
 {
     snprintf(name, NAME, "%0*ju%s", DIGITS, (uintmax_t)number, SUFFIX);
 }
 
 /* The number of a file, or 0: no checkpoint has that name. */
-static uint64_t number_of(const char *name)
+static uint64_t checkpoint_number_of(const char *name)
 {
     char own[NAME];
     const uint64_t number = strtoull(name, NULL, 10);
-    put_name(own, number);
+    checkpoint_put_name(own, number);
     return strcmp(name, own) == 0 ? number : 0;
 }
 
-static char *path_of(const char *folder, uint64_t number, const char *suffix)
+static char *checkpoint_path_of(const char *folder, uint64_t number, const char *suffix)
 {
     char name[NAME];
-    put_name(name, number);
+    checkpoint_put_name(name, number);
     return output_path(folder, name, suffix);
 }
 
@@ -70,7 +70,7 @@ static bool is_half(const char *name)
         return false;
     memcpy(whole, name, n - part);
     whole[n - part] = 0;
-    return number_of(whole) > 0;
+    return checkpoint_number_of(whole) > 0;
 }
 
 /* Puts a number among the largest, which descend. */
@@ -93,7 +93,7 @@ static int scan(const char *folder, bool half, bool all, size_t n, uint64_t *kep
     if (!handle)
         return errno == ENOENT ? 0 : -1;
     for (const struct dirent *entry; (entry = readdir(handle));) {
-        const uint64_t number = number_of(entry->d_name);
+        const uint64_t number = checkpoint_number_of(entry->d_name);
         const bool is = number > 0;
         if (((half || all) && is_half(entry->d_name)) || (all && is))
             failed = unlinkat(dirfd(handle), entry->d_name, 0) != 0 || failed;
@@ -171,7 +171,8 @@ static int write_all(struct writing *to, const struct output_part part[OUTPUT_CH
 }
 
 /* The file beside its name. Returns 0, or -1 with errno set. */
-static int write_file(const char *path, const struct output_part part[OUTPUT_CHECKPOINT_PARTS])
+static int checkpoint_write_file(const char *path,
+                                 const struct output_part part[OUTPUT_CHECKPOINT_PARTS])
 {
     struct writing to = {.hash = XXH64_createState()};
     if (!to.hash) {
@@ -194,11 +195,11 @@ static int write_file(const char *path, const struct output_part part[OUTPUT_CHE
 
 /* The next checkpoint takes the room of this one, unless the file has another name, too. A file
  * that cannot be removed stays. */
-static void pass_on(const struct output_checkpoints *checkpoints, uint64_t number)
+static void checkpoint_pass_on(const struct output_checkpoints *checkpoints, uint64_t number)
 {
     struct stat status;
-    char *gone = path_of(checkpoints->folder, number, "");
-    char *next = path_of(checkpoints->folder, checkpoints->next, ".part");
+    char *gone = checkpoint_path_of(checkpoints->folder, number, "");
+    char *next = checkpoint_path_of(checkpoints->folder, checkpoints->next, ".part");
     if (gone && next && lstat(gone, &status) == 0 &&
         !(S_ISREG(status.st_mode) && status.st_nlink == 1 && rename(gone, next) == 0))
         unlink(gone);
@@ -207,7 +208,7 @@ static void pass_on(const struct output_checkpoints *checkpoints, uint64_t numbe
 }
 
 /* The newest is complete: the oldest goes, and before it one that should have gone earlier. */
-static void keep(struct output_checkpoints *checkpoints, char *path)
+static void checkpoint_keep(struct output_checkpoints *checkpoints, char *path)
 {
     uint64_t *kept = checkpoints->kept;
     const uint64_t oldest = kept[OUTPUT_CHECKPOINTS_KEPT - 1], left = kept[FOUND - 1];
@@ -215,9 +216,9 @@ static void keep(struct output_checkpoints *checkpoints, char *path)
     kept[0] = checkpoints->next++;
     kept[FOUND - 1] = 0;
     if (left)
-        pass_on(checkpoints, left);
+        checkpoint_pass_on(checkpoints, left);
     if (oldest)
-        pass_on(checkpoints, oldest);
+        checkpoint_pass_on(checkpoints, oldest);
     free(checkpoints->last);
     checkpoints->last = path;
 }
@@ -226,12 +227,12 @@ int output_checkpoints_write(struct output_checkpoints *checkpoints,
                              const struct output_part part[OUTPUT_CHECKPOINT_PARTS],
                              struct cloth_error *error)
 {
-    char *path = path_of(checkpoints->folder, checkpoints->next, "");
-    char *fresh = path_of(checkpoints->folder, checkpoints->next, ".part");
+    char *path = checkpoint_path_of(checkpoints->folder, checkpoints->next, "");
+    char *fresh = checkpoint_path_of(checkpoints->folder, checkpoints->next, ".part");
     int code = CLOTH_OK;
     if (!path || !fresh)
         code = cloth_fail(error, CLOTH_E_MEMORY, "no memory to write a checkpoint");
-    else if (write_file(fresh, part) != 0 || rename(fresh, path) != 0)
+    else if (checkpoint_write_file(fresh, part) != 0 || rename(fresh, path) != 0)
         code = output_fail(error, "write the checkpoint", path);
     free(fresh);
     if (code) {
@@ -239,7 +240,7 @@ int output_checkpoints_write(struct output_checkpoints *checkpoints,
         return code;
     }
     output_sync_folder(checkpoints->folder);
-    keep(checkpoints, path);
+    checkpoint_keep(checkpoints, path);
     return CLOTH_OK;
 }
 
@@ -254,7 +255,7 @@ void output_checkpoints_close(struct output_checkpoints **checkpoints)
     *checkpoints = NULL;
     if (!gone)
         return;
-    char *room = gone->folder ? path_of(gone->folder, gone->next, ".part") : NULL;
+    char *room = gone->folder ? checkpoint_path_of(gone->folder, gone->next, ".part") : NULL;
     if (room)
         unlink(room);
     free(room);
@@ -286,7 +287,8 @@ static int damaged(struct cloth_error *error, const char *path, const char *how)
 }
 
 /* All of a file, and n: how many bytes. */
-static int read_bytes(const char *path, unsigned char **bytes, size_t *n, struct cloth_error *error)
+static int checkpoint_read_bytes(const char *path, unsigned char **bytes, size_t *n,
+                                 struct cloth_error *error)
 {
     struct stat status;
     FILE *file = cloth_file_open(path);
@@ -309,7 +311,8 @@ static int read_bytes(const char *path, unsigned char **bytes, size_t *n, struct
     return code;
 }
 
-static int check(const char *path, const unsigned char *bytes, size_t n, struct cloth_error *error)
+static int checkpoint_check(const char *path, const unsigned char *bytes, size_t n,
+                            struct cloth_error *error)
 {
     struct header header;
     uint64_t digest, size = sizeof header + sizeof digest;
@@ -343,8 +346,8 @@ int output_checkpoint_read(struct output_checkpoint *checkpoint, const char *pat
     *checkpoint = (struct output_checkpoint){.path = strdup(path)};
     if (!checkpoint->path)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of a checkpoint");
-    int code = read_bytes(path, &checkpoint->bytes, &n, error);
-    code = code ? code : check(path, checkpoint->bytes, n, error);
+    int code = checkpoint_read_bytes(path, &checkpoint->bytes, &n, error);
+    code = code ? code : checkpoint_check(path, checkpoint->bytes, n, error);
     if (code) {
         output_checkpoint_free(checkpoint);
         return code;
@@ -370,7 +373,7 @@ static int read_newest(struct output_checkpoint *checkpoint, const char *path,
                           path);
     for (int i = 0; i < TRIED && number[i]; i++) {
         struct cloth_error why = {0};
-        char *file = path_of(path, number[i], "");
+        char *file = checkpoint_path_of(path, number[i], "");
         const int code = file ? output_checkpoint_read(checkpoint, file, &why)
                               : cloth_fail(&why, CLOTH_E_MEMORY, "no memory for paths");
         free(file);

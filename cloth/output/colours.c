@@ -58,15 +58,15 @@ uint64_t output_colours_bytes(uint32_t n_vertices, uint32_t n_blocks,
 /* ---- Beginning ---- */
 
 /* Reads n bytes at an offset. Returns false where there are fewer. */
-static bool read_at(int file, unsigned char *bytes, size_t n, uint64_t at)
+static bool output_colours_read_at(int file, unsigned char *bytes, size_t n, uint64_t at)
 {
     return pread(file, bytes, n, (off_t)at) == (ssize_t)n;
 }
 
-static bool is_ours(int file)
+static bool output_colours_is_ours(int file)
 {
     unsigned char header[OUTPUT_COLOURS_HEADER];
-    return read_at(file, header, sizeof header, 0) &&
+    return output_colours_read_at(file, header, sizeof header, 0) &&
            memcmp(header, output_colours_header, sizeof header) == 0;
 }
 
@@ -78,7 +78,7 @@ static uint64_t find_size(int file, const uint64_t *n_frames)
     struct stat status;
     if (!n_frames || fstat(file, &status) != 0)
         return size;
-    while (read_at(file, bytes, sizeof bytes, size)) {
+    while (output_colours_read_at(file, bytes, sizeof bytes, size)) {
         const struct output_record record = output_record_get(bytes);
         const uint64_t left = (uint64_t)status.st_size - size - OUTPUT_RECORD_HEADER;
         if (record.frame >= *n_frames || record.size > left)
@@ -88,14 +88,14 @@ static uint64_t find_size(int file, const uint64_t *n_frames)
     return size;
 }
 
-static int start(struct output_colours *colours, const uint64_t *n_frames,
-                 struct cloth_error *error)
+static int output_colours_start(struct output_colours *colours, const uint64_t *n_frames,
+                                struct cloth_error *error)
 {
     struct stat status;
     colours->file = open(colours->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (colours->file < 0 || fstat(colours->file, &status) != 0)
         return output_refuse(error, "write", colours->path);
-    if (status.st_size > 0 && !is_ours(colours->file))
+    if (status.st_size > 0 && !output_colours_is_ours(colours->file))
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%s is in the way, and is not of an earlier run; give another folder, or "
                           "move the file away",
@@ -116,15 +116,16 @@ int output_colours_open(struct output_colours **colours, const char *folder, uin
     made->file = -1;
     made->n_vertices = n_vertices;
     made->path = output_path(folder, output_colours_name, "");
-    return made->path ? start(made, n_frames, error)
+    return made->path ? output_colours_start(made, n_frames, error)
                       : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
 }
 
 /* ---- Records ---- */
 
 /* Writes `bytes`, which begin with room for the record's header. */
-static int add(struct output_colours *colours, enum output_record_kind kind, uint64_t frame,
-               unsigned char *bytes, uint64_t size, struct cloth_error *error)
+static int output_colours_add(struct output_colours *colours, enum output_record_kind kind,
+                              uint64_t frame, unsigned char *bytes, uint64_t size,
+                              struct cloth_error *error)
 {
     const struct output_record record = {kind, (uint32_t)frame, size};
     output_record_put(bytes, &record);
@@ -148,7 +149,7 @@ int output_colours_rest(struct output_colours *colours, uint64_t frame,
     if (!bytes)
         return CLOTH_E_MEMORY;
     output_rest_put(bytes + OUTPUT_RECORD_HEADER, rest);
-    const int code = add(colours, OUTPUT_RECORD_REST, frame, bytes, size, error);
+    const int code = output_colours_add(colours, OUTPUT_RECORD_REST, frame, bytes, size, error);
     free(bytes);
     return code;
 }
@@ -165,7 +166,7 @@ static int add_numbers(struct output_colours *colours, enum output_record_kind k
         output_put_u32(bytes + OUTPUT_RECORD_HEADER + 4 * i, (uint32_t)number[i]);
     if (bytes && !(known && *last &&
                    memcmp(*last + OUTPUT_RECORD_HEADER, bytes + OUTPUT_RECORD_HEADER, size) == 0)) {
-        code = add(colours, kind, frame, bytes, size, error);
+        code = output_colours_add(colours, kind, frame, bytes, size, error);
         unsigned char *before = *last;
         *last = bytes;
         bytes = before;

@@ -17,7 +17,7 @@ struct output_colours_read {
     struct cloth_list at; /* size_t: where each record begins */
 };
 
-static int read_bytes(struct output_colours_read *colours, struct cloth_error *error)
+static int colours_read_bytes(struct output_colours_read *colours, struct cloth_error *error)
 {
     FILE *file = cloth_file_open(colours->path);
     struct stat status;
@@ -94,14 +94,14 @@ int output_colours_load(struct output_colours_read **colours, const char *folder
     made->path = output_path(folder, output_colours_name, "");
     if (!made->path)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
-    const int code = read_bytes(made, error);
+    const int code = colours_read_bytes(made, error);
     return code ? code : find_records(made, error);
 }
 
 /* The record of a kind that counts in a frame; NULL: none. */
-static const unsigned char *find(const struct output_colours_read *colours,
-                                 enum output_record_kind kind, uint64_t frame,
-                                 struct output_record *record)
+static const unsigned char *colours_read_find(const struct output_colours_read *colours,
+                                              enum output_record_kind kind, uint64_t frame,
+                                              struct output_record *record)
 {
     const size_t *at = colours->at.items;
     for (size_t i = colours->at.n; i > 0; i--) {
@@ -113,8 +113,8 @@ static const unsigned char *find(const struct output_colours_read *colours,
     return NULL;
 }
 
-static int fail(const struct output_colours_read *colours, const char *what, uint64_t frame,
-                struct cloth_error *error)
+static int colours_read_fail(const struct output_colours_read *colours, const char *what,
+                             uint64_t frame, struct cloth_error *error)
 {
     return cloth_fail(error, CLOTH_E_INPUT, "%s does not say %s of frame %ju", colours->path, what,
                       (uintmax_t)frame);
@@ -141,9 +141,9 @@ int output_colours_blocks(const struct output_colours_read *colours, uint64_t fr
                           struct cloth_error *error)
 {
     struct output_record record;
-    const unsigned char *bytes = find(colours, OUTPUT_RECORD_BLOCKS, frame, &record);
+    const unsigned char *bytes = colours_read_find(colours, OUTPUT_RECORD_BLOCKS, frame, &record);
     if (!bytes)
-        return fail(colours, "the blocks", frame, error);
+        return colours_read_fail(colours, "the blocks", frame, error);
     for (size_t v = 0; v < colours->n_vertices; v++)
         if (!get_number(colours, bytes + 4 * v, block + v))
             return fail_as_damaged(colours, "a block", error);
@@ -155,15 +155,15 @@ int output_colours_ranks(const struct output_colours_read *colours, uint64_t fra
 {
     struct output_record record;
     int code = output_colours_blocks(colours, frame, rank, error);
-    const unsigned char *bytes = find(colours, OUTPUT_RECORD_RANKS, frame, &record);
+    const unsigned char *bytes = colours_read_find(colours, OUTPUT_RECORD_RANKS, frame, &record);
     if (code || !bytes)
-        return code ? code : fail(colours, "the ranks", frame, error);
+        return code ? code : colours_read_fail(colours, "the ranks", frame, error);
     const uint64_t n_blocks = record.size / 4;
     for (size_t v = 0; v < colours->n_vertices; v++) {
         if (rank[v] < 0)
             continue;
         if ((uint64_t)rank[v] >= n_blocks)
-            return fail(colours, "the ranks of all blocks", frame, error);
+            return colours_read_fail(colours, "the ranks of all blocks", frame, error);
         if (!get_number(colours, bytes + (size_t)4 * (size_t)rank[v], rank + v))
             return fail_as_damaged(colours, "a rank", error);
     }
@@ -173,17 +173,18 @@ int output_colours_ranks(const struct output_colours_read *colours, uint64_t fra
 uint64_t output_colours_rest_since(const struct output_colours_read *colours, uint64_t frame)
 {
     struct output_record record;
-    return find(colours, OUTPUT_RECORD_REST, frame, &record) ? record.frame : UINT64_MAX;
+    return colours_read_find(colours, OUTPUT_RECORD_REST, frame, &record) ? record.frame
+                                                                          : UINT64_MAX;
 }
 
 int output_colours_rest_at(const struct output_colours_read *colours, uint64_t frame,
                            struct output_rest *rest, struct cloth_error *error)
 {
     struct output_record record;
-    const unsigned char *bytes = find(colours, OUTPUT_RECORD_REST, frame, &record);
+    const unsigned char *bytes = colours_read_find(colours, OUTPUT_RECORD_REST, frame, &record);
     *rest = (struct output_rest){0};
     if (!bytes)
-        return fail(colours, "the shapes at rest", frame, error);
+        return colours_read_fail(colours, "the shapes at rest", frame, error);
     *rest = counts_of(bytes);
     if (output_rest_make(rest, error))
         return CLOTH_E_MEMORY;

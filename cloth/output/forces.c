@@ -32,7 +32,7 @@ static uint64_t frame_at(uint32_t n_points, uint64_t frame)
 /* ---- Writing ---- */
 
 /* True if an existing file is a cache of an earlier run. */
-static bool is_ours(const char *path)
+static bool output_forces_is_ours(const char *path)
 {
     unsigned char header[OUTPUT_PC2_HEADER];
     uint32_t n_points, n_frames;
@@ -44,12 +44,12 @@ static bool is_ours(const char *path)
     return n == (ssize_t)sizeof header && output_pc2_parse(header, &n_points, &n_frames);
 }
 
-static int remove_old(const char *path, struct cloth_error *error)
+static int output_forces_remove_old(const char *path, struct cloth_error *error)
 {
     struct stat status;
     if (lstat(path, &status) != 0)
         return 0;
-    if (!is_ours(path))
+    if (!output_forces_is_ours(path))
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%s is in the way, and is no point cache of an earlier run; give another "
                           "folder, or move the file away",
@@ -62,15 +62,15 @@ int output_forces_forget(const char *folder, struct cloth_error *error)
     char *path = output_path(folder, NAME, "");
     if (!path)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of %s", NAME);
-    const int code = is_ours(path) ? remove_old(path, error) : 0;
+    const int code = output_forces_is_ours(path) ? output_forces_remove_old(path, error) : 0;
     free(path);
     return code;
 }
 
-static int start(struct output_forces *forces, struct cloth_error *error)
+static int output_forces_start(struct output_forces *forces, struct cloth_error *error)
 {
     unsigned char header[OUTPUT_PC2_HEADER];
-    const int code = remove_old(forces->path, error);
+    const int code = output_forces_remove_old(forces->path, error);
     if (code)
         return code;
     forces->file = open(forces->path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -82,7 +82,8 @@ static int start(struct output_forces *forces, struct cloth_error *error)
                : output_fail(error, "write", forces->path);
 }
 
-static int go_on(struct output_forces *forces, uint64_t n_frames, struct cloth_error *error)
+static int output_forces_go_on(struct output_forces *forces, uint64_t n_frames,
+                               struct cloth_error *error)
 {
     forces->file = open(forces->path, O_RDWR | O_CLOEXEC);
     forces->n_frames = (uint32_t)n_frames;
@@ -91,7 +92,7 @@ static int go_on(struct output_forces *forces, uint64_t n_frames, struct cloth_e
                : output_cut_cache(forces->file, forces->path, forces->n_points, n_frames, error);
 }
 
-static int settle(void *context, uint32_t n, struct cloth_error *error)
+static int output_forces_settle(void *context, uint32_t n, struct cloth_error *error)
 {
     const struct output_forces *forces = context;
     unsigned char count[4];
@@ -114,14 +115,15 @@ int output_forces_open(struct output_forces **forces, const char *folder, uint32
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the forces of %s", folder);
     made->file = -1;
     made->n_points = n_vertices;
-    made->member = (struct output_member){.settle = settle, .context = made};
+    made->member = (struct output_member){.settle = output_forces_settle, .context = made};
     made->path = output_path(folder, NAME, "");
     made->bytes = malloc((size_t)12 * n_vertices + 1);
     int code = CLOTH_OK;
     if (!made->path || !made->bytes)
         code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for the forces of %s", folder);
     else
-        code = n_frames ? go_on(made, *n_frames, error) : start(made, error);
+        code = n_frames ? output_forces_go_on(made, *n_frames, error)
+                        : output_forces_start(made, error);
     if (code) {
         struct cloth_error ignored = {0};
         output_forces_close(&made, &ignored);
@@ -132,7 +134,7 @@ int output_forces_open(struct output_forces **forces, const char *folder, uint32
     return 0;
 }
 
-static int write_frame(struct output_forces *forces, struct cloth_error *error)
+static int output_forces_write_frame(struct output_forces *forces, struct cloth_error *error)
 {
     const size_t size = (size_t)12 * forces->n_points;
     if (output_write_at(forces->file, forces->bytes, size,
@@ -157,7 +159,7 @@ int output_forces_frame(void *context, uint64_t frame, const double *force,
         output_put_float(forces->bytes + 4 * i, (float)force[i]);
     }
     const int code = output_check_same(forces->file, forces->path, error);
-    return code ? code : write_frame(forces, error);
+    return code ? code : output_forces_write_frame(forces, error);
 }
 
 int output_forces_close(struct output_forces **forces, struct cloth_error *error)
@@ -191,8 +193,8 @@ static int read_floats(FILE *file, uint32_t n_points, uint64_t frame, double *fo
     return 0;
 }
 
-static int read_count(FILE *file, const char *path, uint32_t n_vertices, uint64_t *n_frames,
-                      struct cloth_error *error)
+static int output_forces_read_count(FILE *file, const char *path, uint32_t n_vertices,
+                                    uint64_t *n_frames, struct cloth_error *error)
 {
     unsigned char header[OUTPUT_PC2_HEADER];
     uint32_t n_points, n;
@@ -204,11 +206,11 @@ static int read_count(FILE *file, const char *path, uint32_t n_vertices, uint64_
     return CLOTH_OK;
 }
 
-static int read_frame(FILE *file, const char *path, uint32_t n_vertices, uint64_t frame,
-                      double *force, struct cloth_error *error)
+static int output_forces_read_frame(FILE *file, const char *path, uint32_t n_vertices,
+                                    uint64_t frame, double *force, struct cloth_error *error)
 {
     uint64_t n_frames;
-    const int code = read_count(file, path, n_vertices, &n_frames, error);
+    const int code = output_forces_read_count(file, path, n_vertices, &n_frames, error);
     if (code)
         return code;
     if (frame >= n_frames)
@@ -235,8 +237,8 @@ static int read_forces(const char *folder, uint32_t n_vertices, uint64_t frame, 
                           "on}",
                           path, cloth_file_why());
     else
-        code = force ? read_frame(file, path, n_vertices, frame, force, error)
-                     : read_count(file, path, n_vertices, n_frames, error);
+        code = force ? output_forces_read_frame(file, path, n_vertices, frame, force, error)
+                     : output_forces_read_count(file, path, n_vertices, n_frames, error);
     if (file)
         fclose(file);
     free(path);

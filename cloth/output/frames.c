@@ -114,9 +114,9 @@ static int check_mesh(const struct output_frames *frames, const char *path,
 }
 
 /* Checks a file of the folder, and its temporary file. */
-static int check_file(const struct output_frames *frames, const char *name, bool is_mesh,
-                      const struct output_setup *setup, const struct output_input *inputs,
-                      struct cloth_error *error)
+static int output_frames_check_file(const struct output_frames *frames, const char *name,
+                                    bool is_mesh, const struct output_setup *setup,
+                                    const struct output_input *inputs, struct cloth_error *error)
 {
     char *path = output_path(frames->folder, name, "");
     char *fresh = output_path(frames->folder, name, ".part");
@@ -137,15 +137,16 @@ static int check_ours(const struct output_frames *frames, const struct output_se
     struct output_input *inputs = output_inputs_find(setup);
     int code = inputs ? 0 : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the files read");
     for (int i = 0; i < N_PARTS && !code; i++)
-        code = check_file(frames, PART_NAME[i], i == PART_OBJ, setup, inputs, error);
+        code = output_frames_check_file(frames, PART_NAME[i], i == PART_OBJ, setup, inputs, error);
     for (uint32_t i = 1; i <= (n > before ? n : before) && !code; i++) {
         char name[OUTPUT_BODY_NAME];
         output_body_name(name, i, "");
-        code = check_file(frames, name, true, setup, inputs, error);
+        code = output_frames_check_file(frames, name, true, setup, inputs, error);
         output_pose_name(name, i);
         code = code ? code
-                    : check_file(frames, name, i <= n && setup->posed && setup->posed[i - 1], setup,
-                                 inputs, error);
+                    : output_frames_check_file(frames, name,
+                                               i <= n && setup->posed && setup->posed[i - 1], setup,
+                                               inputs, error);
     }
     free(inputs);
     return code;
@@ -204,8 +205,8 @@ static int open_part(const struct output_frames *frames, enum part part, int *fi
 
 /* Goes on with the files of an earlier run. The cache is cut first: it never counts a frame that
  * the index lacks. */
-static int go_on(struct output_frames *frames, const struct output_setup *setup,
-                 struct cloth_error *error)
+static int output_frames_go_on(struct output_frames *frames, const struct output_setup *setup,
+                               struct cloth_error *error)
 {
     const uint64_t n = *setup->n_frames;
     static const enum part parts[] = {PART_INDEX, PART_CACHE};
@@ -225,8 +226,8 @@ static int go_on(struct output_frames *frames, const struct output_setup *setup,
     return code ? code : output_poses_open(&frames->poses, setup, 0, error);
 }
 
-static int begin(struct output_frames *frames, const struct output_setup *setup,
-                 struct cloth_error *error)
+static int output_frames_begin(struct output_frames *frames, const struct output_setup *setup,
+                               struct cloth_error *error)
 {
     int code = check_ours(frames, setup, error);
     code = code ? code : start_files(frames, setup, error);
@@ -248,7 +249,8 @@ static int count_points(const struct output_setup *setup, uint32_t *n_points,
     return 0;
 }
 
-static int allocate(struct output_frames *frames, const char *folder, struct cloth_error *error)
+static int output_frames_allocate(struct output_frames *frames, const char *folder,
+                                  struct cloth_error *error)
 {
     bool whole = (frames->folder = strdup(folder)) &&
                  (frames->bytes = malloc((size_t)12 * frames->n_points));
@@ -257,7 +259,7 @@ static int allocate(struct output_frames *frames, const char *folder, struct clo
     return whole ? 0 : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the frames of %s", folder);
 }
 
-static void free_frames(struct output_frames *frames)
+static void output_frames_free(struct output_frames *frames)
 {
     for (int i = 0; i < N_PARTS; i++)
         free(frames->path[i]);
@@ -269,7 +271,7 @@ static void free_frames(struct output_frames *frames)
 /* ---- Bringing frames to the disk ---- */
 
 /* Cuts cache and index to the first n frames. A shorter file needs no room. */
-static void cut(const struct output_frames *frames, uint32_t n)
+static void output_frames_cut(const struct output_frames *frames, uint32_t n)
 {
     const uint64_t whole = OUTPUT_PC2_HEADER + (uint64_t)12 * frames->n_points * n;
     if (ftruncate(frames->cache, (off_t)whole) == 0)
@@ -299,10 +301,10 @@ static void forget_frames(const struct output_frames *frames)
     unsigned char count[4];
     output_put_u32(count, frames->settled);
     output_write_at(frames->cache, count, sizeof count, OUTPUT_PC2_COUNT);
-    cut(frames, frames->settled);
+    output_frames_cut(frames, frames->settled);
 }
 
-static int settle(void *context, uint32_t n, struct cloth_error *error)
+static int output_frames_settle(void *context, uint32_t n, struct cloth_error *error)
 {
     struct output_frames *frames = context;
     int code = output_poses_settle(frames->poses, n, error);
@@ -325,13 +327,14 @@ int output_open(struct output_frames **frames, const struct output_setup *setup,
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the frames of %s", setup->folder);
     made->index = made->cache = -1;
     made->index_size[0] = strlen("frame,time\n");
-    made->member = (struct output_member){.settle = settle, .context = made};
+    made->member = (struct output_member){.settle = output_frames_settle, .context = made};
     int code = count_points(setup, &made->n_points, error);
-    code = code ? code : allocate(made, setup->folder, error);
+    code = code ? code : output_frames_allocate(made, setup->folder, error);
     code = code ? code : output_make_folder(setup->folder, error);
     made->n_bodies_before = output_bodies_before(setup->folder);
     if (!code)
-        code = setup->n_frames ? go_on(made, setup, error) : begin(made, setup, error);
+        code = setup->n_frames ? output_frames_go_on(made, setup, error)
+                               : output_frames_begin(made, setup, error);
     if (code) {
         struct cloth_error ignored = {0};
         output_close(&made, &ignored);
@@ -354,8 +357,8 @@ void output_bodies_go_on(const struct output_frames *frames, const struct contac
     output_poses_go_on(frames->poses, bodies, begin);
 }
 
-static int encode(struct output_frames *frames, uint64_t frame, const double *position,
-                  struct cloth_error *error)
+static int output_frames_encode(struct output_frames *frames, uint64_t frame,
+                                const double *position, struct cloth_error *error)
 {
     for (size_t i = 0; i < (size_t)3 * frames->n_points; i++) {
         if (!(fabs(position[i]) <= (double)FLT_MAX))
@@ -368,8 +371,8 @@ static int encode(struct output_frames *frames, uint64_t frame, const double *po
     return 0;
 }
 
-static int write_frame(struct output_frames *frames, const char *line, size_t n,
-                       struct cloth_error *error)
+static int output_frames_write_frame(struct output_frames *frames, const char *line, size_t n,
+                                     struct cloth_error *error)
 {
     const size_t size = (size_t)12 * frames->n_points;
     if (output_write_at(frames->cache, frames->bytes, size,
@@ -388,7 +391,7 @@ int output_frame(void *context, uint64_t frame, double time, const double *posit
     if (frame != frames->n_frames || frame >= INT32_MAX)
         return cloth_fail(error, CLOTH_E_RUN, "%s: frame %ju came where frame %u was due",
                           frames->path[PART_CACHE], (uintmax_t)frame, frames->n_frames);
-    int code = encode(frames, frame, position, error);
+    int code = output_frames_encode(frames, frame, position, error);
     code = code ? code : output_check_same(frames->index, frames->path[PART_INDEX], error);
     code = code ? code : output_check_same(frames->cache, frames->path[PART_CACHE], error);
     code = code ? code : output_poses_frame(frames->poses, time, error);
@@ -396,9 +399,9 @@ int output_frame(void *context, uint64_t frame, double time, const double *posit
         return code;
     char line[64];
     int n = snprintf(line, sizeof line, "%ju,%.17g\n", (uintmax_t)frame, time);
-    code = write_frame(frames, line, (size_t)n, error);
+    code = output_frames_write_frame(frames, line, (size_t)n, error);
     if (code) {
-        cut(frames, frames->n_frames);
+        output_frames_cut(frames, frames->n_frames);
         return code;
     }
     const uint64_t end = frames->index_size[frame % REMEMBERED] + (uint64_t)n;
@@ -429,6 +432,6 @@ int output_close(struct output_frames **frames, struct cloth_error *error)
         code = output_fail(error, "close", gone->path[PART_CACHE]);
     const int poses = output_poses_close(&gone->poses, error);
     code = code ? code : poses;
-    free_frames(gone);
+    output_frames_free(gone);
     return code;
 }

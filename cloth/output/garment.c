@@ -39,7 +39,7 @@ static void put_edge(FILE *file, const struct garment_piece *piece, uint32_t n_e
     fputc(']', file);
 }
 
-static void put_panel(FILE *file, const struct both *both, uint32_t p)
+static void output_garment_put_panel(FILE *file, const struct both *both, uint32_t p)
 {
     const struct garment_panel *panel = &both->pattern->panel[p];
     const struct garment_piece *piece = &both->garment->piece[p];
@@ -52,7 +52,8 @@ static void put_panel(FILE *file, const struct both *both, uint32_t p)
     fputs("]}", file);
 }
 
-static void put_side(FILE *file, const struct both *both, const struct garment_side *side)
+static void output_garment_put_side(FILE *file, const struct both *both,
+                                    const struct garment_side *side)
 {
     const struct garment_panel *panel = &both->pattern->panel[side->panel];
     fputs("{\"panel\": ", file);
@@ -67,9 +68,9 @@ static void put_seam(FILE *file, const struct both *both, uint32_t s)
     const struct garment_seam *seam = &both->garment->seam[s];
     const struct garment_side *side = both->pattern->stitch[s].side;
     fputs(s ? ",\n    {\"sides\": [" : "\n    {\"sides\": [", file);
-    put_side(file, both, &side[0]);
+    output_garment_put_side(file, both, &side[0]);
     fputs(", ", file);
-    put_side(file, both, &side[1]);
+    output_garment_put_side(file, both, &side[1]);
     fprintf(file, "],\n     \"reversed\": %s, \"distances\": [", seam->reversed ? "true" : "false");
     output_json_number(file, seam->distance[0]);
     fputs(", ", file);
@@ -86,7 +87,7 @@ static int fill_seams(FILE *file, const void *what)
     fprintf(file, "{\n  \"schema\": 1, \"vertices\": %u, \"triangles\": %u,\n  \"panels\": [",
             both->garment->n_vertices, both->garment->n_triangles);
     for (uint32_t p = 0; p < both->garment->n_pieces; p++)
-        put_panel(file, both, p);
+        output_garment_put_panel(file, both, p);
     fputs("],\n  \"seams\": [", file);
     for (uint32_t s = 0; s < both->garment->n_seams; s++)
         put_seam(file, both, s);

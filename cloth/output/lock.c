@@ -120,7 +120,7 @@ static bool is_same(const struct holder *a, const struct holder *b)
 }
 
 /* False for an earlier process with the same number. */
-static bool is_ours(const struct holder *holder)
+static bool lock_is_ours(const struct holder *holder)
 {
     const struct holder self = this_process();
     bool holds = false;
@@ -174,8 +174,8 @@ static int write_lock(const char *path)
     return -1;
 }
 
-static int refuse(const char *folder, const char *path, const struct holder *holder,
-                  struct cloth_error *error)
+static int lock_refuse(const char *folder, const char *path, const struct holder *holder,
+                       struct cloth_error *error)
 {
     if (!holder->process)
         return cloth_fail(error, CLOTH_E_INPUT,
@@ -196,7 +196,7 @@ static int replace(const struct output_lock *lock, const char *folder, struct cl
     struct holder holder;
     if (read_holder(lock->path, &holder)) {
         if (!is_stale(&holder))
-            return refuse(folder, lock->path, &holder, error);
+            return lock_refuse(folder, lock->path, &holder, error);
         cloth_fail(note, CLOTH_E_IO,
                    "%s: process %ld of this host left %s and runs no more; this run has the "
                    "folder now",
@@ -209,11 +209,11 @@ static int replace(const struct output_lock *lock, const char *folder, struct cl
     if (errno != EEXIST)
         return output_refuse(error, "write", lock->path);
     read_holder(lock->path, &holder);
-    return refuse(folder, lock->path, &holder, error);
+    return lock_refuse(folder, lock->path, &holder, error);
 }
 
-static int take(const struct output_lock *lock, const char *folder, struct cloth_error *note,
-                struct cloth_error *error)
+static int lock_take(const struct output_lock *lock, const char *folder, struct cloth_error *note,
+                     struct cloth_error *error)
 {
     struct holder holder;
     if (write_lock(lock->path) == 0)
@@ -221,15 +221,15 @@ static int take(const struct output_lock *lock, const char *folder, struct cloth
     if (errno != EEXIST)
         return output_refuse(error, "write", lock->path);
     const bool locked = read_holder(lock->path, &holder);
-    if (locked && is_ours(&holder))
+    if (locked && lock_is_ours(&holder))
         return CLOTH_OK;
     if (locked && !is_stale(&holder))
-        return refuse(folder, lock->path, &holder, error);
+        return lock_refuse(folder, lock->path, &holder, error);
     if (write_lock(lock->take) != 0) {
         if (errno != EEXIST)
             return output_refuse(error, "write", lock->take);
         read_holder(lock->take, &holder);
-        return refuse(folder, lock->take, &holder, error);
+        return lock_refuse(folder, lock->take, &holder, error);
     }
     const int code = replace(lock, folder, note, error);
     unlink(lock->take);
@@ -238,7 +238,7 @@ static int take(const struct output_lock *lock, const char *folder, struct cloth
 
 /* ---- For the run ---- */
 
-static int make(struct output_lock *lock, const char *folder, struct cloth_error *error)
+static int lock_make(struct output_lock *lock, const char *folder, struct cloth_error *error)
 {
     lock->path = output_path(folder, "duite.lock", "");
     lock->take = output_path(folder, "duite.lock", ".take");
@@ -271,8 +271,8 @@ int output_lock_take(struct output_lock **lock, const char *folder, struct cloth
     if (!made)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the lock of %s", folder);
     catch_ends();
-    int code = make(made, folder, error);
-    code = code ? code : take(made, folder, note, error);
+    int code = lock_make(made, folder, error);
+    code = code ? code : lock_take(made, folder, note, error);
     if (code) {
         free_lock(made);
         return code;

@@ -3,7 +3,7 @@
 #include "cloth/output/files/json.h"
 #include "cloth/output/garment.h"
 
-static void put_numbers(FILE *file, const double *value, int n)
+static void output_pattern_put_numbers(FILE *file, const double *value, int n)
 {
     for (int i = 0; i < n; i++) {
         fputs(i ? ", " : "[", file);
@@ -24,25 +24,25 @@ static void put_curvature(FILE *file, const struct garment_edge *edge)
         fprintf(file, ", %d, %d]}", edge->large, edge->right);
         return;
     }
-    put_numbers(file, edge->control[0], 2);
+    output_pattern_put_numbers(file, edge->control[0], 2);
     if (edge->curve == GARMENT_CUBIC) {
         fputs(", ", file);
-        put_numbers(file, edge->control[1], 2);
+        output_pattern_put_numbers(file, edge->control[1], 2);
     }
     fputs("]}", file);
 }
 
-static void put_panel(FILE *file, const struct garment_panel *panel)
+static void output_pattern_put_panel(FILE *file, const struct garment_panel *panel)
 {
     output_json_string(file, panel->name);
     fputs(": {\n        \"translation\": ", file);
-    put_numbers(file, panel->translate, 3);
+    output_pattern_put_numbers(file, panel->translate, 3);
     fputs(", \"rotation\": ", file);
-    put_numbers(file, panel->rotate, 3);
+    output_pattern_put_numbers(file, panel->rotate, 3);
     fputs(",\n        \"vertices\": [", file);
     for (uint32_t c = 0; c < panel->n_corners; c++) {
         fputs(c ? ", " : "", file);
-        put_numbers(file, panel->corner[c], 2);
+        output_pattern_put_numbers(file, panel->corner[c], 2);
     }
     fputs("],\n        \"edges\": [", file);
     for (uint32_t e = 0; e < panel->n_edges; e++) {
@@ -75,7 +75,7 @@ static int fill_pattern(FILE *file, const void *what)
           file);
     for (uint32_t p = 0; p < pattern->n_panels && !ferror(file); p++) {
         fputs(p ? ",\n      " : "\n      ", file);
-        put_panel(file, &pattern->panel[p]);
+        output_pattern_put_panel(file, &pattern->panel[p]);
     }
     fputs("\n    },\n    \"stitches\": [", file);
     for (uint32_t s = 0; s < pattern->n_stitches && !ferror(file); s++) {

@@ -25,7 +25,7 @@ struct output_probes {
 enum { NUMBER = 26 }; /* bytes of a number, at most, with its comma */
 
 /* True if an existing file begins like ours. */
-static bool is_ours(const char *path)
+static bool output_probes_is_ours(const char *path)
 {
     char start[sizeof OURS] = "";
     const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
@@ -37,12 +37,12 @@ static bool is_ours(const char *path)
 }
 
 /* A table of the user's must not be taken for one of an earlier run. */
-static int remove_old(const char *path, bool replaced, struct cloth_error *error)
+static int output_probes_remove_old(const char *path, bool replaced, struct cloth_error *error)
 {
     struct stat status;
     if (lstat(path, &status) != 0)
         return 0;
-    if (is_ours(path))
+    if (output_probes_is_ours(path))
         return unlink(path) == 0 ? 0 : output_refuse(error, "replace", path);
     if (!replaced)
         return 0;
@@ -57,7 +57,7 @@ int output_probes_forget(const char *folder, struct cloth_error *error)
     char *path = output_path(folder, NAME, "");
     if (!path)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of %s", NAME);
-    const int code = remove_old(path, false, error);
+    const int code = output_probes_remove_old(path, false, error);
     free(path);
     return code;
 }
@@ -70,10 +70,11 @@ static size_t count_columns(const char *header)
     return n;
 }
 
-static int start(struct output_probes *probes, const char *header, struct cloth_error *error)
+static int output_probes_start(struct output_probes *probes, const char *header,
+                               struct cloth_error *error)
 {
     const size_t size = strlen(header);
-    int code = remove_old(probes->path, true, error);
+    int code = output_probes_remove_old(probes->path, true, error);
     if (code)
         return code;
     probes->file = open(probes->path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -87,8 +88,8 @@ static int start(struct output_probes *probes, const char *header, struct cloth_
 }
 
 /* Behind the rows of an earlier run that stay. */
-static int go_on(struct output_probes *probes, const char *header, uint64_t n_rows,
-                 struct cloth_error *error)
+static int output_probes_go_on(struct output_probes *probes, const char *header, uint64_t n_rows,
+                               struct cloth_error *error)
 {
     probes->file = open(probes->path, O_RDWR | O_CLOEXEC);
     if (probes->file < 0)
@@ -113,7 +114,8 @@ int output_probes_open(struct output_probes **probes, const char *folder, const 
                    ? output_make_folder(folder, error)
                    : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the probes of %s", folder);
     if (!code)
-        code = n_rows ? go_on(made, header, *n_rows, error) : start(made, header, error);
+        code = n_rows ? output_probes_go_on(made, header, *n_rows, error)
+                      : output_probes_start(made, header, error);
     if (code) {
         struct cloth_error ignored = {0};
         output_probes_close(&made, &ignored);

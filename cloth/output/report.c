@@ -30,7 +30,7 @@ int output_report_new(struct output_report **report, struct cloth_error *error)
     return 0;
 }
 
-static FILE *put_key(struct output_report *report, const char *key)
+static FILE *output_report_put_key(struct output_report *report, const char *key)
 {
     if (report->n_outside)
         fputs(report->n_keys++ ? ", " : "{", report->stream);
@@ -43,27 +43,27 @@ static FILE *put_key(struct output_report *report, const char *key)
 
 void output_report_text(struct output_report *report, const char *key, const char *value)
 {
-    output_json_string(put_key(report, key), value);
+    output_json_string(output_report_put_key(report, key), value);
 }
 
 void output_report_number(struct output_report *report, const char *key, double value)
 {
-    output_json_number(put_key(report, key), value);
+    output_json_number(output_report_put_key(report, key), value);
 }
 
 void output_report_integer(struct output_report *report, const char *key, uint64_t value)
 {
-    fprintf(put_key(report, key), "%ju", (uintmax_t)value);
+    fprintf(output_report_put_key(report, key), "%ju", (uintmax_t)value);
 }
 
 void output_report_null(struct output_report *report, const char *key)
 {
-    fputs("null", put_key(report, key));
+    fputs("null", output_report_put_key(report, key));
 }
 
 void output_report_list(struct output_report *report, const char *key)
 {
-    fputs("[", put_key(report, key));
+    fputs("[", output_report_put_key(report, key));
     report->n_outside = report->n_keys;
     report->n_items = report->n_keys = 0;
 }
@@ -185,8 +185,8 @@ static bool within(const char *folder, const char *made)
     return made && strncmp(folder, made, n) == 0 && (made[n] == '/' || !made[n]);
 }
 
-static int check_folder(const char *file, const char *path, const char *made,
-                        struct cloth_error *error)
+static int output_report_check_folder(const char *file, const char *path, const char *made,
+                                      struct cloth_error *error)
 {
     const char *slash = strrchr(file, '/');
     char *folder = slash ? strndup(file, (size_t)(slash - file) + 1) : strdup("./");
@@ -218,7 +218,7 @@ int output_report_check(const char *path, const char *made, struct cloth_error *
     char *file = follow(path);
     if (!file)
         return cloth_fail(error, CLOTH_E_INPUT, "cannot follow this link: %s", strerror(errno));
-    const int code = check_folder(file, path, made, error);
+    const int code = output_report_check_folder(file, path, made, error);
     free(file);
     return code;
 }

@@ -53,7 +53,7 @@ static void settle_all(struct output_settler *settler)
     pthread_cond_broadcast(&settler->change);
 }
 
-static void *run(void *context)
+static void *output_settle_run(void *context)
 {
     struct output_settler *settler = context;
     pthread_mutex_lock(&settler->lock);
@@ -67,17 +67,17 @@ static void *run(void *context)
 }
 
 /* Signals are the other threads'. */
-static int start(struct output_settler *settler)
+static int output_settle_start(struct output_settler *settler)
 {
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
-    const int failed = pthread_create(&settler->thread, NULL, run, settler);
+    const int failed = pthread_create(&settler->thread, NULL, output_settle_run, settler);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return failed;
 }
 
-static void drop(struct output_settler *settler)
+static void output_settle_drop(struct output_settler *settler)
 {
     pthread_cond_destroy(&settler->change);
     pthread_mutex_destroy(&settler->lock);
@@ -94,9 +94,9 @@ int output_settler_open(struct output_settler **settler, struct cloth_error *err
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for frames");
     pthread_mutex_init(&made->lock, NULL);
     pthread_cond_init(&made->change, NULL);
-    const int failed = start(made);
+    const int failed = output_settle_start(made);
     if (failed) {
-        drop(made);
+        output_settle_drop(made);
         return cloth_fail(error, CLOTH_E_LIBRARY, "no thread to bring frames to the disk: %s",
                           strerror(failed));
     }
@@ -137,7 +137,7 @@ int output_settler_close(struct output_settler **settler, struct cloth_error *er
     pthread_mutex_unlock(&gone->lock);
     pthread_join(gone->thread, NULL);
     const int code = tell(gone, error);
-    drop(gone);
+    output_settle_drop(gone);
     return code;
 }
 

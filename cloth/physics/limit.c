@@ -4,7 +4,7 @@
 #include <complex.h>
 #include <math.h>
 
-static double least(double a, double b)
+static double physics_limit_least(double a, double b)
 {
     return a < b ? a : b;
 }
@@ -15,7 +15,7 @@ double phys_limit_euler(double omega, double a)
     const double swings = a / square; /* determinant 1 - h a + h^2 omega^2 <= 1 */
     if (over <= 0)
         return swings;
-    return least(swings, 4 / (a + sqrt(over))); /* 1 + trace + determinant >= 0 */
+    return physics_limit_least(swings, 4 / (a + sqrt(over))); /* 1 + trace + determinant >= 0 */
 }
 
 double phys_limit_symplectic(double omega, double a)

@@ -21,7 +21,7 @@ static bool small_enough(double square, double wanted)
     return isfinite(square) && (square <= wanted || square < SOLVE_NOTHING);
 }
 
-static double wanted(const struct solve_stop *stop, double square)
+static double solve_cg_wanted(const struct solve_stop *stop, double square)
 {
     const double tolerance = stop->tolerance * stop->tolerance;
     return stop->relative ? tolerance * square : tolerance;
@@ -101,7 +101,7 @@ static int next_factors(const double dots[SOLVE_DOTS], struct solve_scalars *aft
 }
 
 /* Ends a solve that came to nothing. */
-static int fail(int code, struct solve_scalars *after)
+static int solve_cg_fail(int code, struct solve_scalars *after)
 {
     after->outcome = code;
     if (code)
@@ -135,7 +135,7 @@ static int judge(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
     const bool helps = after->restarts == 0 || left < HELPS * after->refused;
     after->refused = left;
     if (!helps || after->restarts == SOLVE_RESTARTS)
-        return fail(SOLVE_STALLED, after);
+        return solve_cg_fail(SOLVE_STALLED, after);
     after->phase = SOLVE_AGAIN;
     after->alpha = 0;
     after->restarts += 1;
@@ -150,7 +150,7 @@ static int open(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                 struct solve_scalars *after)
 {
     after->first = dots[SOLVE_RR];
-    after->wanted = wanted(stop, dots[SOLVE_RR]);
+    after->wanted = solve_cg_wanted(stop, dots[SOLVE_RR]);
     after->alpha = dots[SOLVE_PQ] > 0 ? dots[SOLVE_RQ] / dots[SOLVE_PQ] : 0;
     after->phase = SOLVE_AGAIN;
     return SOLVE_OK;
@@ -170,20 +170,20 @@ static bool ends(const struct solve_stop *stop, struct solve_scalars *after, int
     if (after->iterations == 0)
         after->first = fmax(after->first, after->square);
     if (after->wanted < 0)
-        after->wanted = wanted(stop, after->square);
+        after->wanted = solve_cg_wanted(stop, after->square);
     if (reached(stop, after)) {
         *code = arrive(stop, after);
         return true;
     }
     if (solve_scalars_iterations(after) < stop->max)
         return false;
-    *code = fail(stop->count ? SOLVE_OK : SOLVE_NOT_CONVERGED, after);
+    *code = solve_cg_fail(stop->count ? SOLVE_OK : SOLVE_NOT_CONVERGED, after);
     return true;
 }
 
 /* Takes the factors of the next pass from one of SOLVE_ON. */
-static int iterate(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
-                   struct solve_scalars *after)
+static int solve_cg_iterate(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
+                            struct solve_scalars *after)
 {
     int code;
     if (ends(stop, after, &code))
@@ -192,7 +192,7 @@ static int iterate(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
     after->phase = stop->count && after->iterations == stop->max ? SOLVE_LAST : SOLVE_ON;
     code = next_factors(dots, after);
     remember(after->alpha * dots[SOLVE_RZ], after);
-    return fail(code, after);
+    return solve_cg_fail(code, after);
 }
 
 int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
@@ -216,7 +216,7 @@ int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DO
         return open(stop, dots, after);
     after->phase = SOLVE_DONE;
     after->curvature = dots[SOLVE_PQ];
-    return before->phase == SOLVE_LAST ? SOLVE_OK : iterate(stop, dots, after);
+    return before->phase == SOLVE_LAST ? SOLVE_OK : solve_cg_iterate(stop, dots, after);
 }
 
 PHYS_KERNEL_OF(struct solve_norms, solve_norms,

@@ -63,8 +63,8 @@ PHYS_INLINE double get(const phys_vec *column, int i)
 }
 
 /* The entry of a place in a column. */
-static struct dense *entry_of(const struct solve_pattern *pattern, struct dense *entry, uint32_t k,
-                              uint32_t place)
+static struct dense *solve_coarse_entry_of(const struct solve_pattern *pattern, struct dense *entry,
+                                           uint32_t k, uint32_t place)
 {
     uint32_t i = pattern->first[k];
     while (pattern->row[i] != place)
@@ -100,9 +100,9 @@ void solve_coarse_fill(const struct solve_pattern *pattern, const uint32_t *firs
             continue;
         const uint32_t there = pattern->place[neighbour[i]];
         if (there < here) /* rows of the later block, columns of the first */
-            fill(coupling, false, entry_of(pattern, parts.entry, there, here));
+            fill(coupling, false, solve_coarse_entry_of(pattern, parts.entry, there, here));
         else
-            fill(coupling, true, entry_of(pattern, parts.entry, here, there));
+            fill(coupling, true, solve_coarse_entry_of(pattern, parts.entry, here, there));
     }
 }
 

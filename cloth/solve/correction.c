@@ -20,7 +20,7 @@ static double target_of(const struct solve_correction *c, const struct solve_edg
 }
 
 /* True if the edge turned by more than 60 degrees, or had no length. */
-static bool is_turned(const phys_vec *base, const phys_vec *d, double square)
+static bool correction_is_turned(const phys_vec *base, const phys_vec *d, double square)
 {
     const double along = phys_dot(base, d);
     return !(along > 0 && 4 * along * along >= phys_dot(base, base) * square);
@@ -39,7 +39,7 @@ bool solve_correct(const struct solve_correction *c, const struct solve_edge *ed
     const phys_vec d = end[1].x - end[0].x, base = end[1].base - end[0].base;
     const double target = target_of(c, edge, end), square = phys_dot(&d, &d);
     const double over = sqrt(square) - target;
-    const phys_vec line = is_turned(&base, &d, square) ? d : base;
+    const phys_vec line = correction_is_turned(&base, &d, square) ? d : base;
     for (int i = 0; i < 2; i++) {
         move[i] = line;
         solve_filter(&end[i].filter, move + i);

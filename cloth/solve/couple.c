@@ -12,7 +12,8 @@
 /* ---- The basis ---- */
 
 /* The two axes of a cloud of points, as solve_axes has them. */
-static void axes_of(size_t n, const phys_vec *position, const phys_vec *centre, phys_vec axis[2])
+static void couple_axes_of(size_t n, const phys_vec *position, const phys_vec *centre,
+                           phys_vec axis[2])
 {
     double m[3][3] = {{0}};
     for (size_t a = 0; a < n; a++) {
@@ -29,7 +30,7 @@ void solve_basis(size_t n, const double *free, const phys_vec *position, phys_ve
     phys_vec centre = {0}, axis[2];
     for (size_t a = 0; a < n; a++)
         centre += position[a] / (double)n;
-    axes_of(n, position, &centre, axis);
+    couple_axes_of(n, position, &centre, axis);
     for (size_t a = 0; a < n; a++) {
         const phys_vec d = position[a] - centre;
         basis[a] = free[a] * (phys_vec){1, phys_dot(&d, axis), phys_dot(&d, axis + 1), 0};
@@ -136,7 +137,7 @@ PHYS_INLINE void add_square(struct solve_symmetric sum[6], const phys_vec *phi,
 }
 
 /* Adds `sign` times a 3 x 3 block to that of functions k and l. */
-static void put(const struct solve_symmetric *m, double sign, int k, int l, double *matrix)
+static void couple_put(const struct solve_symmetric *m, double sign, int k, int l, double *matrix)
 {
     static const int pair[3][3] = {{0, 0, 2}, {0, 0, 1}, {2, 1, 0}};
     for (int c = 0; c < 3; c++)
@@ -150,9 +151,9 @@ static void put_squares(const struct solve_symmetric sum[6], double *matrix)
     int i = 0;
     for (int k = 0; k < 3; k++)
         for (int l = k; l < 3; l++, i++) {
-            put(sum + i, 1, k, l, matrix);
+            couple_put(sum + i, 1, k, l, matrix);
             if (l > k)
-                put(sum + i, 1, l, k, matrix);
+                couple_put(sum + i, 1, l, k, matrix);
         }
 }
 
@@ -271,7 +272,7 @@ PHYS_KERNEL(solve_couple_cut,
     put_filtered(&filtered_off_diagonal, off_diagonal);
     for (int k = 0; k < 3; k++)
         for (int l = 0; l < 3; l++) {
-            put(sum + 3 * k + l, -1, k, l, off_diagonal);
+            couple_put(sum + 3 * k + l, -1, k, l, off_diagonal);
             put_turn(turns + 3 * k + l, -1, k, l, off_diagonal);
         }
 }

@@ -86,7 +86,7 @@ struct solve_frame solve_frame_of_group(size_t n, const struct solve_frame *part
     return frame;
 }
 
-static double dot(const double a[3], const double b[3])
+static double frame_dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -99,11 +99,11 @@ void solve_lift(const struct solve_frame *part, const struct solve_frame *group,
     memset(to, 0, 9 * sizeof *to);
     to[0] = 1;
     for (int k = 0; k < 2; k++) {
-        const double *extent = group->extent[k], square = dot(extent, extent);
+        const double *extent = group->extent[k], square = frame_dot(extent, extent);
         if (!(square > 0))
             continue;
-        to[1 + k] = dot(d, extent) / square;
-        to[3 + 1 + k] = dot(part->extent[0], extent) / square;
-        to[6 + 1 + k] = dot(part->extent[1], extent) / square;
+        to[1 + k] = frame_dot(d, extent) / square;
+        to[3 + 1 + k] = frame_dot(part->extent[0], extent) / square;
+        to[6 + 1 + k] = frame_dot(part->extent[1], extent) / square;
     }
 }

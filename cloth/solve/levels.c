@@ -146,7 +146,7 @@ static int join_groups(struct solve_level *level, struct cloth_error *error)
 
 /* ---- Both ---- */
 
-static int make_room(struct solve_level *level, struct cloth_error *error)
+static int solve_levels_make_room(struct solve_level *level, struct cloth_error *error)
 {
     const size_t groups = level->n_groups, n = level->n;
     level->start = cloth_alloc(groups + 1, sizeof *level->start, error);
@@ -167,7 +167,7 @@ int solve_level_make(struct solve_level *level, uint32_t n, const uint32_t *firs
     *level =
         (struct solve_level){.n = n, .first = first, .neighbour = neighbour, .n_groups = n_groups};
     level->weight = n_groups == 1 ? 1 : lowest ? 0.5 : 1.5;
-    int code = make_room(level, error);
+    int code = solve_levels_make_room(level, error);
     if (code)
         return code;
     memcpy(level->start, start, ((size_t)n_groups + 1) * sizeof *start);
@@ -238,7 +238,7 @@ static void lift_block(const double *c, const double rows[9], const double colum
 }
 
 /* to += m, or, transposed, its transpose. */
-static void add_block(const double m[SOLVE_COUPLING], bool transposed, double *to)
+static void solve_levels_add_block(const double m[SOLVE_COUPLING], bool transposed, double *to)
 {
     for (int i = 0; i < SOLVE_COARSE; i++)
         for (int j = 0; j < SOLVE_COARSE; j++)
@@ -252,7 +252,7 @@ void solve_level_couple(const struct solve_level *level, uint32_t node, const do
     const uint32_t group = level->group[node];
     double lifted[SOLVE_COUPLING];
     lift_block(coupling, lift[node], lift[node], lifted);
-    add_block(lifted, false, to);
+    solve_levels_add_block(lifted, false, to);
     for (uint32_t i = level->first[node]; i < level->first[node + 1]; i++) {
         const uint32_t other = level->neighbour[i];
         if (other < node)
@@ -260,9 +260,9 @@ void solve_level_couple(const struct solve_level *level, uint32_t node, const do
         double *block = to + SOLVE_COUPLING * coupling_of(level, group, level->group[other]);
         coupling += SOLVE_COUPLING;
         lift_block(coupling, lift[node], lift[other], lifted);
-        add_block(lifted, false, block);
+        solve_levels_add_block(lifted, false, block);
         if (level->group[other] == group)
-            add_block(lifted, true, block);
+            solve_levels_add_block(lifted, true, block);
     }
 }
 

@@ -46,8 +46,8 @@ static void flush(struct gathering *all, uint32_t k, uint32_t l)
     gathered->n = 0;
 }
 
-static void gather(struct gathering *all, uint32_t k, uint32_t l, uint32_t at, uint32_t here,
-                   uint32_t there)
+static void patches_gather(struct gathering *all, uint32_t k, uint32_t l, uint32_t at,
+                           uint32_t here, uint32_t there)
 {
     struct gathered *gathered = &all->pair[k][l];
     gathered->at[gathered->n] = at;
@@ -64,7 +64,7 @@ static void flush_all(struct gathering *all)
             flush(all, k, l);
 }
 
-static void begin(struct gathering *all)
+static void patches_begin(struct gathering *all)
 {
     for (uint32_t k = 0; k < SOLVE_MAX_PATCHES; k++)
         for (uint32_t l = 0; l < SOLVE_MAX_PATCHES; l++)
@@ -75,7 +75,7 @@ void solve_couple_patches(const struct solve_block *block, const struct solve_pa
                           const void *values, const phys_vec *basis, struct solve_couplings *own)
 {
     struct gathering all;
-    begin(&all);
+    patches_begin(&all);
     all.block = block;
     all.values = values;
     all.basis = all.other_basis = basis;
@@ -91,7 +91,8 @@ void solve_couple_patches(const struct solve_block *block, const struct solve_pa
             while (i > block->row[a] && block->column[i - 1] >= patches->start[k + 1])
                 i--;
             for (; i < block->row[a + 1]; i++)
-                gather(&all, k, solve_patch_of(patches, block->column[i]), i, a, block->column[i]);
+                patches_gather(&all, k, solve_patch_of(patches, block->column[i]), i, a,
+                               block->column[i]);
         }
     flush_all(&all);
 }
@@ -103,7 +104,7 @@ void solve_couple_patches_cut(const struct solve_block *block, const struct solv
                               struct solve_couplings *off_diagonal)
 {
     struct gathering all;
-    begin(&all);
+    patches_begin(&all);
     all.block = block;
     all.values = values;
     all.basis = basis;
@@ -113,7 +114,7 @@ void solve_couple_patches_cut(const struct solve_block *block, const struct solv
     all.inside = false;
     memset(off_diagonal, 0, sizeof *off_diagonal);
     for (size_t i = 0; i < n; i++)
-        gather(&all, solve_patch_of(patches, end[i][0]), solve_patch_of(other, end[i][1]),
-               (uint32_t)(from + i), end[i][0], end[i][1]);
+        patches_gather(&all, solve_patch_of(patches, end[i][0]), solve_patch_of(other, end[i][1]),
+                       (uint32_t)(from + i), end[i][0], end[i][1]);
     flush_all(&all);
 }

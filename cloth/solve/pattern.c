@@ -26,7 +26,7 @@ static uint32_t count_bits(const struct graph *graph, uint32_t b)
     return count;
 }
 
-static bool meets(const struct graph *graph, uint32_t a, uint32_t b)
+static bool solve_pattern_meets(const struct graph *graph, uint32_t a, uint32_t b)
 {
     return row_of(graph, a)[b / 64] >> b % 64 & 1;
 }
@@ -37,7 +37,7 @@ static void forget(struct graph *graph, uint32_t a, uint32_t b)
 }
 
 /* The first block of least degree. */
-static uint32_t least(const struct graph *graph)
+static uint32_t solve_pattern_least(const struct graph *graph)
 {
     uint32_t best = 0;
     for (uint32_t b = 1; b < graph->n; b++)
@@ -50,7 +50,7 @@ static uint32_t least(const struct graph *graph)
 static void eliminate(struct graph *graph, uint32_t b)
 {
     for (uint32_t a = 0; a < graph->n; a++) {
-        if (!meets(graph, b, a))
+        if (!solve_pattern_meets(graph, b, a))
             continue;
         for (uint32_t w = 0; w < graph->words; w++)
             row_of(graph, a)[w] |= row_of(graph, b)[w];
@@ -66,7 +66,7 @@ static void order(struct graph *graph, struct solve_pattern *pattern)
 {
     pattern->first[0] = 0;
     for (uint32_t k = 0; k < graph->n; k++) {
-        const uint32_t b = least(graph);
+        const uint32_t b = solve_pattern_least(graph);
         pattern->block[k] = b;
         pattern->place[b] = k;
         pattern->first[k + 1] = pattern->first[k] + graph->degree[b];
@@ -85,7 +85,7 @@ static void list(const struct graph *graph, struct solve_pattern *pattern)
     for (uint32_t k = 0; k < graph->n; k++) {
         uint32_t *row = pattern->row + pattern->first[k], n = 0;
         for (uint32_t a = 0; a < graph->n; a++)
-            if (meets(graph, pattern->block[k], a))
+            if (solve_pattern_meets(graph, pattern->block[k], a))
                 row[n++] = pattern->place[a];
         qsort(row, n, sizeof *row, ascending);
     }

@@ -60,7 +60,7 @@ struct entry {
     int transposed;
 };
 
-static int compare(const void *va, const void *vb)
+static int solve_system_compare(const void *va, const void *vb)
 {
     const struct entry *a = va, *b = vb;
     for (int i = 0; i < 2; i++)
@@ -70,7 +70,8 @@ static int compare(const void *va, const void *vb)
 }
 
 /* Moves the data of pairs, `bytes` each, to their new places. room: as large. */
-static void move(const struct entry *entry, size_t n, size_t bytes, void *array, void *room)
+static void solve_system_move(const struct entry *entry, size_t n, size_t bytes, void *array,
+                              void *room)
 {
     char *to = array, *from = room;
     memcpy(from, to, n * bytes);
@@ -103,8 +104,8 @@ int solve_system_sort(struct solve_system *system, struct cloth_error *error)
         const uint32_t a = system->end[i][0], b = system->end[i][1];
         entry[i] = (struct entry){{a < b ? a : b, a < b ? b : a}, i, a > b};
     }
-    qsort(entry, n, sizeof *entry, compare);
-    move(entry, n, bytes, system->block ? (void *)system->block : system->value, room);
+    qsort(entry, n, sizeof *entry, solve_system_compare);
+    solve_system_move(entry, n, bytes, system->block ? (void *)system->block : system->value, room);
     for (size_t i = 0; i < n; i++) {
         memcpy(system->end[i], entry[i].end, sizeof system->end[i]);
         if (system->block && entry[i].transposed)
@@ -118,7 +119,7 @@ int solve_system_sort(struct solve_system *system, struct cloth_error *error)
 /* ---- Product ---- */
 
 /* (N + N') / 2 of the difference d, and the turn of N, (N - N') / 2, of p_a and p_b. */
-static void add_block(const double *n, const double p[2][3], double *y_a, double *y_b)
+static void solve_system_add_block(const double *n, const double p[2][3], double *y_a, double *y_b)
 {
     for (int c = 0; c < 3; c++) {
         double same = 0, a = 0, b = 0;
@@ -160,7 +161,8 @@ void solve_system_multiply(const struct solve_system *system, const double *p, d
             ends[1][c] = free[b] * p[3 * b + c];
         }
         if (system->block)
-            add_block(system->block[i], (const double(*)[3])ends, y + 3 * a, y + 3 * b);
+            solve_system_add_block(system->block[i], (const double(*)[3])ends, y + 3 * a,
+                                   y + 3 * b);
         else
             add_spring(system->value[i], (const double(*)[3])ends, y + 3 * a, y + 3 * b);
     }

@@ -87,7 +87,7 @@ static void mark_tangled(struct untangle *all)
     }
 }
 
-static bool pair_meets(const struct untangle *all, const struct verify_pair *pair)
+static bool cross_pair_meets(const struct untangle *all, const struct verify_pair *pair)
 {
     const uint32_t *t = pair->triangle;
     return untangle_meets(all, all->owner[t[0]], all->owner[t[1]]) &&
@@ -99,7 +99,7 @@ static void keep_meeting(struct untangle *all)
     struct verify_pair *pair = all->pairs.items;
     size_t n = 0;
     for (size_t i = 0; i < all->pairs.n; i++)
-        if (pair_meets(all, pair + i))
+        if (cross_pair_meets(all, pair + i))
             pair[n++] = pair[i];
     all->pairs.n = n;
 }

@@ -3,7 +3,7 @@
  * the nearest place of the inner cloth is its border. The inner cloth does not move. */
 #include "cloth/untangle/state.h"
 
-static bool is_of(const struct untangle *all, uint32_t triangle, const void *context)
+static bool layers_is_of(const struct untangle *all, uint32_t triangle, const void *context)
 {
     return all->owner[triangle] == *(const uint32_t *)context;
 }
@@ -12,7 +12,7 @@ bool untangle_beside(const struct untangle *all, uint32_t point, uint32_t cloth,
                      struct untangle_nearest *at, phys_vec *normal)
 {
     const double reach = UNTANGLE_REACH * all->of->thickness;
-    if (!untangle_find(all, all->x + point, reach, is_of, &cloth, at))
+    if (!untangle_find(all, all->x + point, reach, layers_is_of, &cloth, at))
         return false;
     bool border = true;
     *normal = (phys_vec){0};
@@ -87,7 +87,7 @@ int untangle_push_triangle(struct untangle *all, const struct untangle_crossing 
     return untangle_unit(&normal) ? push_end(all, crossing, &normal, -1, still) : CLOTH_OK;
 }
 
-static int look_at_vertex(struct untangle *all, uint32_t point, uint32_t inner)
+static int layers_look_at_vertex(struct untangle *all, uint32_t point, uint32_t inner)
 {
     struct untangle_nearest at;
     phys_vec normal;
@@ -124,6 +124,6 @@ int untangle_layers(struct untangle *all)
         for (uint32_t p = 0; p < all->n_cloth_points && !code; p++)
             if (all->used[p] && !all->shared[p] && layer[all->cloth[p]] > layer[inner] &&
                 untangle_meets(all, all->cloth[p], inner))
-                code = look_at_vertex(all, p, inner);
+                code = layers_look_at_vertex(all, p, inner);
     return code;
 }

@@ -55,13 +55,13 @@ static int push_apart(struct untangle *all, const struct corners *c,
     return CLOTH_OK;
 }
 
-static bool pair_meets(const struct untangle *all, const struct corners *c)
+static bool near_pair_meets(const struct untangle *all, const struct corners *c)
 {
     const uint32_t a = all->cloth[c->point[0]], b = all->cloth[c->point[3]];
     return untangle_meets(all, a, b) && !untangle_attached(all, 4, c->point, a > b ? a : b);
 }
 
-static void look_at(struct untangle *all, const struct corners *c)
+static void near_look_at(struct untangle *all, const struct corners *c)
 {
     struct contact_nearest nearest;
     phys_vec x[4];
@@ -71,14 +71,14 @@ static void look_at(struct untangle *all, const struct corners *c)
         tangled = tangled || all->tangled[c->point[k]];
     }
     contact_nearest_of(c->pair, x, &nearest);
-    if (tangled || nearest.gap >= all->open || !pair_meets(all, c))
+    if (tangled || nearest.gap >= all->open || !near_pair_meets(all, c))
         return;
     if (!all->count.near++)
         memcpy(all->near, c->point, sizeof all->near);
     push_apart(all, c, &nearest);
 }
 
-static void visit(void *to, uint32_t n, const struct contact_candidate *candidate)
+static void near_visit(void *to, uint32_t n, const struct contact_candidate *candidate)
 {
     const struct looking *looking = to;
     for (uint32_t i = 0; i < n && !looking->all->error->code; i++) {
@@ -90,7 +90,7 @@ static void visit(void *to, uint32_t n, const struct contact_candidate *candidat
         c.first = c.pair == CONTACT_VT ? 1 : 2;
         for (int k = 0; k < 4; k++)
             c.point[k] = looking->skin[side[k]]->id[point[k]];
-        look_at(looking->all, &c);
+        near_look_at(looking->all, &c);
     }
 }
 
@@ -99,7 +99,7 @@ int untangle_near(struct untangle *all)
     const struct contact_side cloth = {&all->skin, all->boxes, all->x, all->x};
     struct looking looking = {all, {&all->skin, &all->skin}};
     all->count.near = 0;
-    contact_query(&cloth, &cloth, all->open, visit, &looking);
+    contact_query(&cloth, &cloth, all->open, near_visit, &looking);
     for (size_t i = 0; i < all->n_obstacles; i++) {
         const struct untangle_body *at = all->body + i;
         if (!at->body)
@@ -107,7 +107,7 @@ int untangle_near(struct untangle *all)
         const phys_vec *x = all->x + at->first.point;
         const struct contact_side body = {&at->skin, at->boxes, x, x};
         looking.skin[1] = &at->skin;
-        contact_query(&cloth, &body, all->open, visit, &looking);
+        contact_query(&cloth, &body, all->open, near_visit, &looking);
     }
     return all->error->code;
 }

@@ -39,7 +39,7 @@ static int push_triangle(struct untangle *all, uint32_t triangle,
 }
 
 /* Pushes a vertex out that is too deep; true if it was. The caller looks at each vertex once. */
-static bool look_at_vertex(struct untangle *all, size_t obstacle, uint32_t point)
+static bool untangle_obstacles_look_at_vertex(struct untangle *all, size_t obstacle, uint32_t point)
 {
     struct contact_hit hit;
     const uint32_t owner = all->n_cloths + (uint32_t)obstacle;
@@ -55,7 +55,7 @@ static bool look_at_vertex(struct untangle *all, size_t obstacle, uint32_t point
 
 enum { SEEN = 1, DEEP };
 
-static int look_at_shape(struct untangle *all, size_t obstacle)
+static int untangle_obstacles_look_at_shape(struct untangle *all, size_t obstacle)
 {
     const struct contact_shape *shape = all->of->obstacles + obstacle;
     struct contact_solid solid;
@@ -71,7 +71,7 @@ static int look_at_shape(struct untangle *all, size_t obstacle)
         for (int k = 0; k < 3; k++) {
             unsigned char *seen = all->seen + corner[k];
             if (!*seen)
-                *seen = look_at_vertex(all, obstacle, corner[k]) ? DEEP : SEEN;
+                *seen = untangle_obstacles_look_at_vertex(all, obstacle, corner[k]) ? DEEP : SEEN;
             deep = deep || *seen == DEEP;
         }
         struct contact_solid_point at;
@@ -83,11 +83,11 @@ static int look_at_shape(struct untangle *all, size_t obstacle)
     return all->error->code;
 }
 
-static int look_at_body(struct untangle *all, size_t obstacle)
+static int untangle_obstacles_look_at_body(struct untangle *all, size_t obstacle)
 {
     for (uint32_t p = 0; p < all->n_cloth_points && !all->error->code; p++)
         if (all->used[p])
-            look_at_vertex(all, obstacle, p);
+            untangle_obstacles_look_at_vertex(all, obstacle, p);
     return all->error->code;
 }
 
@@ -97,6 +97,7 @@ int untangle_obstacles(struct untangle *all)
     all->count.entered = 0;
     memset(all->inside, 0, all->n_points);
     for (size_t i = 0; i < all->n_obstacles && !code; i++)
-        code = all->body[i].body ? look_at_body(all, i) : look_at_shape(all, i);
+        code = all->body[i].body ? untangle_obstacles_look_at_body(all, i)
+                                 : untangle_obstacles_look_at_shape(all, i);
     return code;
 }

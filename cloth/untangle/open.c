@@ -65,7 +65,7 @@ static int count_soup(struct untangle *all)
     return all->error->code;
 }
 
-static int make_room(struct untangle *all)
+static int open_make_room(struct untangle *all)
 {
     const uint32_t p = all->n_points, t = all->n_triangles;
     all->x = untangle_room(all, p, sizeof *all->x);
@@ -112,7 +112,7 @@ static void take_triangles(struct untangle *all)
             all->cloth[all->corner[t][k]] = all->owner[t];
 }
 
-static void take_cloths(struct untangle *all, const phys_vec *x)
+static void open_take_cloths(struct untangle *all, const phys_vec *x)
 {
     memcpy(all->x, x, all->n_cloth_points * sizeof *x);
     memcpy(all->held, all->of->held, all->n_cloth_points);
@@ -125,7 +125,7 @@ static void take_cloths(struct untangle *all, const phys_vec *x)
         }
 }
 
-static int place_body(struct untangle *all, const struct untangle_body *at)
+static int open_place_body(struct untangle *all, const struct untangle_body *at)
 {
     phys_vec way, *end = at->body ? untangle_room(all, at->body->n_vertices, sizeof *end) : NULL;
     if (!end)
@@ -137,7 +137,7 @@ static int place_body(struct untangle *all, const struct untangle_body *at)
 
 /* ---- Edges ---- */
 
-static void add_side(struct untangle *all, uint32_t side, bool is_new, const uint32_t end[2])
+static void open_add_side(struct untangle *all, uint32_t side, bool is_new, const uint32_t end[2])
 {
     const uint32_t opposite = all->corner[side / 3][(side % 3 + 2) % 3];
     if (is_new) {
@@ -155,7 +155,7 @@ static void add_side(struct untangle *all, uint32_t side, bool is_new, const uin
     edge->n++;
 }
 
-static int find_edges(struct untangle *all)
+static int open_find_edges(struct untangle *all)
 {
     const size_t n = 3 * (size_t)all->n_triangles;
     uint32_t(*ends)[2] = untangle_room(all, n, sizeof *ends);
@@ -170,8 +170,8 @@ static int find_edges(struct untangle *all)
     if (mesh_sort_pairs(order, n, *ends, all->n_points, all->error))
         return CLOTH_E_MEMORY;
     for (size_t i = 0; i < n; i++)
-        add_side(all, order[i], !i || memcmp(ends[order[i]], ends[order[i - 1]], sizeof *ends),
-                 ends[order[i]]);
+        open_add_side(all, order[i], !i || memcmp(ends[order[i]], ends[order[i - 1]], sizeof *ends),
+                      ends[order[i]]);
     for (uint32_t e = 0; e < all->n_edges; e++)
         for (int k = 0; k < 2 && all->edge[e].n == 1; k++)
             all->border[all->edge[e].end[k]] = 1;
@@ -201,7 +201,7 @@ static int find_features(struct untangle *all, unsigned char *stands, struct con
 }
 
 /* Points of bodies, behind those of cloths, are joined to nothing. */
-static int find_joined(struct untangle *all)
+static int open_find_joined(struct untangle *all)
 {
     const uint32_t *joined = all->of->apart ? all->of->apart->joined : NULL;
     if (!joined)
@@ -212,7 +212,7 @@ static int find_joined(struct untangle *all)
     return all->joined ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
-static int make_skin(struct untangle *all)
+static int open_make_skin(struct untangle *all)
 {
     unsigned char *stands = untangle_room(all, all->n_cloth_triangles, 1);
     uint32_t *id = untangle_room(all, all->n_cloth_points, sizeof *id);
@@ -254,7 +254,8 @@ static int make_body_skin(struct untangle *all, struct untangle_body *at)
 
 /* ---- The tree ---- */
 
-static void box_of(const struct untangle *all, uint32_t triangle, phys_vec *low, phys_vec *high)
+static void open_box_of(const struct untangle *all, uint32_t triangle, phys_vec *low,
+                        phys_vec *high)
 {
     const uint32_t *c = all->corner[triangle];
     for (int i = 0; i < 3; i++) {
@@ -275,7 +276,7 @@ static int make_tree(struct untangle *all)
     if (!low || !high || !order || !all->node || !all->facet)
         return CLOTH_E_MEMORY;
     for (uint32_t t = 0; t < n; t++)
-        box_of(all, t, low + t, high + t);
+        open_box_of(all, t, low + t, high + t);
     if (contact_tree_build(n, order, low, high, all->node, all->error))
         return CLOTH_E_MEMORY;
     for (uint32_t i = 0; i < n; i++) {
@@ -292,18 +293,18 @@ int untangle_open(struct untangle *all, phys_vec *x)
     all->open = OPEN * all->of->thickness;
     all->room = ROOM * all->of->thickness;
     int code = count_soup(all);
-    code = code ? code : make_room(all);
+    code = code ? code : open_make_room(all);
     if (!code) {
         take_triangles(all);
-        take_cloths(all, x);
+        open_take_cloths(all, x);
     }
     for (uint32_t i = 0; i < all->n_obstacles && !code; i++)
-        code = place_body(all, all->body + i);
+        code = open_place_body(all, all->body + i);
     if (!code)
         memcpy(all->start, all->x, all->n_points * sizeof *all->x);
-    code = code ? code : find_edges(all);
-    code = code ? code : find_joined(all);
-    code = code ? code : make_skin(all);
+    code = code ? code : open_find_edges(all);
+    code = code ? code : open_find_joined(all);
+    code = code ? code : open_make_skin(all);
     for (uint32_t i = 0; i < all->n_obstacles && !code; i++)
         code = make_body_skin(all, all->body + i);
     return code ? code : make_tree(all);

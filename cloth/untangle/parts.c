@@ -16,7 +16,7 @@ struct link {
 /* ---- Parts ---- */
 
 /* Joins points along edges of cloth. cut: by edge; NULL: none is. */
-static void join(const struct untangle *all, const unsigned char *cut, uint32_t *root)
+static void parts_join(const struct untangle *all, const unsigned char *cut, uint32_t *root)
 {
     cloth_sets_start(root, all->n_cloth_points);
     for (uint32_t e = 0; e < all->n_edges; e++) {
@@ -37,7 +37,7 @@ static bool is_cut(const struct untangle *all, const struct untangle_crossing *c
 }
 
 /* All parts but the largest of each piece, of equal ones the first. largest: room, by point. */
-static void find_wrong(struct untangle *all, uint32_t *largest)
+static void parts_find_wrong(struct untangle *all, uint32_t *largest)
 {
     const uint32_t n = all->n_cloth_points;
     memset(all->size, 0, n * sizeof *all->size);
@@ -158,9 +158,9 @@ int untangle_parts(struct untangle *all)
     }
     if (!any)
         return CLOTH_OK;
-    join(all, NULL, all->piece);
-    join(all, all->cut, all->part);
-    find_wrong(all, all->largest);
+    parts_join(all, NULL, all->piece);
+    parts_join(all, all->cut, all->part);
+    parts_find_wrong(all, all->largest);
     for (size_t i = 0; i < all->crossings.n; i++)
         all->cut[crossing[i].edge] = 0;
     code = find_links(all);

@@ -6,7 +6,7 @@
 
 enum { ROUNDS = 300, PATIENCE = 60 };
 
-static int find_wrong(struct untangle *all)
+static int untangle_find_wrong(struct untangle *all)
 {
     all->pushes.n = 0;
     untangle_refit(all);
@@ -24,14 +24,15 @@ static uint64_t sum_of(const struct untangle_count *count)
 }
 
 /* The round with the least wrong so far. */
-static void keep(struct untangle *all, struct untangle_result *result)
+static void untangle_keep(struct untangle *all, struct untangle_result *result)
 {
     memcpy(all->best, all->x, all->n_points * sizeof *all->best);
     memcpy(result->near, all->near, sizeof result->near);
     result->left = all->count;
 }
 
-static void conclude(const struct untangle *all, phys_vec *x, struct untangle_result *result)
+static void untangle_conclude(const struct untangle *all, phys_vec *x,
+                              struct untangle_result *result)
 {
     for (uint32_t p = 0; p < all->n_cloth_points; p++) {
         const phys_vec way = all->best[p] - all->start[p];
@@ -50,11 +51,11 @@ static int go_round(struct untangle *all, const struct untangle_listener *listen
     uint64_t least = UINT64_MAX;
     uint32_t since = 0;
     int code;
-    while (!(code = find_wrong(all))) {
+    while (!(code = untangle_find_wrong(all))) {
         const uint64_t wrong = sum_of(&all->count);
         since++;
         if (wrong < least) {
-            keep(all, result);
+            untangle_keep(all, result);
             least = wrong;
             since = 0;
         }
@@ -79,7 +80,7 @@ int untangle(const struct untangle_cloths *cloths, phys_vec *x,
     int code = untangle_open(&all, x);
     code = code ? code : go_round(&all, listener, result);
     if (!code)
-        conclude(&all, x, result);
+        untangle_conclude(&all, x, result);
     untangle_close(&all);
     return code;
 }

@@ -109,7 +109,7 @@ static void find_labels(struct untangle *all, const struct zoned *zoned)
     }
 }
 
-static void count_votes(struct untangle *all, const struct zoned *zoned)
+static void zones_count_votes(struct untangle *all, const struct zoned *zoned)
 {
     cloth_sets_start(all->zone, all->n_cloth_points);
     for (uint32_t p = 0; p < all->n_cloth_points; p++)
@@ -127,7 +127,7 @@ static void count_votes(struct untangle *all, const struct zoned *zoned)
 }
 
 /* The right side of a point's zone: 1 or -1; 0: it is in no zone. */
-static int side_of(struct untangle *all, uint32_t point)
+static int zones_side_of(struct untangle *all, uint32_t point)
 {
     const uint32_t root = cloth_sets_root(all->zone, point);
     return !all->label[point] ? 0 : all->votes[1][root] >= all->votes[0][root] ? 1 : -1;
@@ -139,7 +139,7 @@ static int push_vertices(struct untangle *all, const struct zoned *zoned)
 {
     int code = CLOTH_OK;
     for (uint32_t p = 0; p < all->n_cloth_points && !code; p++) {
-        const int side = side_of(all, p);
+        const int side = zones_side_of(all, p);
         struct untangle_nearest at;
         phys_vec normal;
         if (!side || side == all->label[p] ||
@@ -159,13 +159,13 @@ static int push_crossing(struct untangle *all, const struct untangle_crossing *c
     int side = 0;
     if (edge->owner == zoned->cloth[0] && owner == zoned->cloth[1]) {
         for (int k = 0; k < 2 && !side; k++)
-            side = side_of(all, edge->end[k]);
+            side = zones_side_of(all, edge->end[k]);
         return side ? untangle_push_edge(all, crossing, side, false) : CLOTH_OK;
     }
     if (edge->owner != zoned->cloth[1] || owner != zoned->cloth[0])
         return CLOTH_OK;
     for (int k = 0; k < 3 && !side; k++)
-        side = side_of(all, all->corner[crossing->triangle][k]);
+        side = zones_side_of(all, all->corner[crossing->triangle][k]);
     return side ? untangle_push_triangle(all, crossing, side, false) : CLOTH_OK;
 }
 
@@ -176,7 +176,7 @@ int untangle_zones(struct untangle *all)
     const struct zoned *zoned = all->zoned.items;
     for (size_t k = 0; k < all->zoned.n && !code; k++) {
         find_labels(all, zoned + k);
-        count_votes(all, zoned + k);
+        zones_count_votes(all, zoned + k);
         code = push_vertices(all, zoned + k);
         for (size_t i = 0; i < all->crossings.n && !code; i++)
             code = push_crossing(all, crossing + i, zoned + k);

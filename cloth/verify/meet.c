@@ -38,8 +38,8 @@ static bool lines_meet(const double *p, const double *q, const double *a, const 
 /* True if a line separates an edge from a triangle in the same plane, as seen along an axis. The
  * line of the edge or of a side of the triangle is enough. side: the sign of the triangle's area
  * in this view. */
-static bool are_apart(const double *p, const double *q, const double *const x[3], int side, int i,
-                      int j)
+static bool verify_meet_are_apart(const double *p, const double *q, const double *const x[3],
+                                  int side, int i, int j)
 {
     for (int k = 0; k < 3; k++) {
         const double *a = x[k], *b = x[(k + 1) % 3];
@@ -75,7 +75,7 @@ static bool edge_meets_flat(const double *p, const double *q, const double *cons
         const int k = (front + n) % 3, i = (k + 1) % 3, j = (k + 2) % 3;
         const int side = verify_orient_seen(x[0], x[1], x[2], i, j);
         if (side)
-            return !are_apart(p, q, x, side, i, j);
+            return !verify_meet_are_apart(p, q, x, side, i, j);
     }
     return lines_meet(p, q, x[0], x[1]) || lines_meet(p, q, x[1], x[2]) ||
            lines_meet(p, q, x[2], x[0]);
@@ -105,7 +105,8 @@ struct side {
     int shared;
 };
 
-static void take_side(const double (*x)[3], const uint32_t corner[3], int shared, struct side *to)
+static void verify_meet_take_side(const double (*x)[3], const uint32_t corner[3], int shared,
+                                  struct side *to)
 {
     to->shared = shared;
     for (int i = 0; i < 3; i++)
@@ -120,7 +121,7 @@ static void take_side(const double (*x)[3], const uint32_t corner[3], int shared
 
 /* Marks the edges that may meet the other triangle; edge i begins at corner i. Edges at a shared
  * corner do not count. Boxes, compared exactly, rule out most of the others. */
-static int find_edges(const struct side *of, const struct side *other, bool edge[3])
+static int verify_meet_find_edges(const struct side *of, const struct side *other, bool edge[3])
 {
     int n = 0;
     for (int i = 0; i < 3; i++) {
@@ -180,9 +181,10 @@ bool verify_meet(const double (*x)[3], const uint32_t a[3], const uint32_t b[3])
     bool edge_a[3], edge_b[3];
     if (count_shared(a, b, shared) > 1)
         return false;
-    take_side(x, a, shared[0], &of_a);
-    take_side(x, b, shared[1], &of_b);
-    const int n_a = find_edges(&of_a, &of_b, edge_a), n_b = find_edges(&of_b, &of_a, edge_b);
+    verify_meet_take_side(x, a, shared[0], &of_a);
+    verify_meet_take_side(x, b, shared[1], &of_b);
+    const int n_a = verify_meet_find_edges(&of_a, &of_b, edge_a),
+              n_b = verify_meet_find_edges(&of_b, &of_a, edge_b);
     return n_a + n_b && find_sides(&of_b, &of_a, side_b) && find_sides(&of_a, &of_b, side_a) &&
            (edges_meet(&of_b, &of_a, edge_b, side_b) || edges_meet(&of_a, &of_b, edge_a, side_a));
 }

@@ -52,7 +52,7 @@ static int put_part(double *to, int n, double part)
 }
 
 /* Sums of n and of m parts; at most n + m are left. */
-static int add_parts(int n, const double *e, int m, const double *f, double *to)
+static int orient_add_parts(int n, const double *e, int m, const double *f, double *to)
 {
     int i = 0, j = 0, count = 0;
     double sum = 0, rest;
@@ -89,7 +89,7 @@ static int multiply_parts(int n, const double *e, int m, const double *differenc
         return 0;
     const int n_low = scale_parts(n, e, difference[0], low);
     const int n_high = m > 1 ? scale_parts(n, e, difference[1], high) : 0;
-    return add_parts(n_low, low, n_high, high, to);
+    return orient_add_parts(n_low, low, n_high, high, to);
 }
 
 static int sign_of_parts(int n, const double *e)
@@ -121,7 +121,7 @@ static int minor_parts(const struct difference *a0, const struct difference *a1,
     const int m = multiply_parts(a1->n, a1->part, b0->n, b0->part, right);
     for (int i = 0; i < m; i++)
         right[i] = -right[i];
-    return add_parts(n, left, m, right, to);
+    return orient_add_parts(n, left, m, right, to);
 }
 
 /* The rows are a - d, b - d, c - d. */
@@ -138,7 +138,7 @@ static int sign_of_3(const double *const from[3], const double d[3])
         const struct difference *u = row[(r + 1) % 3], *v = row[(r + 2) % 3], *w = &row[r][2];
         const int n_minor = minor_parts(u, u + 1, v, v + 1, minor);
         const int n_term = multiply_parts(n_minor, minor, w->n, w->part, term);
-        n = add_parts(n, sum[r % 2], n_term, term, sum[(r + 1) % 2]);
+        n = orient_add_parts(n, sum[r % 2], n_term, term, sum[(r + 1) % 2]);
     }
     return sign_of_parts(n, sum[1]);
 }

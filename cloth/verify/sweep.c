@@ -107,7 +107,7 @@ static void choose_axes(struct sweep *sweep, struct span *across)
     sweep->n_strips = strips < n ? (uint32_t)fmax(strips, 1) : (uint32_t)n;
 }
 
-static int by_low(const void *left, const void *right)
+static int sweep_by_low(const void *left, const void *right)
 {
     const struct start *a = left, *b = right;
     if (a->low < b->low || a->low > b->low)
@@ -120,7 +120,7 @@ static void sort_starts(struct sweep *sweep)
     const uint32_t n = sweep->soup->n_triangles;
     for (uint32_t t = 0; t < n; t++)
         sweep->order[t] = (struct start){sweep->box[t].low[sweep->along], t};
-    qsort(sweep->order, n, sizeof *sweep->order, by_low);
+    qsort(sweep->order, n, sizeof *sweep->order, sweep_by_low);
 }
 
 static int fill_strips(struct sweep *sweep, const struct span *across)
@@ -154,7 +154,7 @@ static int fill_strips(struct sweep *sweep, const struct span *across)
 
 /* True if two boxes meet along the axes that are not swept, the strip is the first with both,
  * and one of them is of the first triangles. */
-static bool boxes_meet(const struct sweep *sweep, uint32_t a, uint32_t b, uint32_t strip)
+static bool sweep_boxes_meet(const struct sweep *sweep, uint32_t a, uint32_t b, uint32_t strip)
 {
     const struct box *p = sweep->box + a, *q = sweep->box + b;
     const int i = sweep->across, j = sweep->third;
@@ -196,7 +196,7 @@ static int sweep_strip(struct sweep *sweep, uint32_t strip)
         for (uint64_t j = i + 1; j < sweep->first[strip + 1]; j++) {
             if (sweep->box[member[j]].low[along] > high)
                 break;
-            if (boxes_meet(sweep, member[i], member[j], strip) &&
+            if (sweep_boxes_meet(sweep, member[i], member[j], strip) &&
                 try_pair(sweep, member[i], member[j]))
                 return CLOTH_E_MEMORY;
         }

@@ -49,16 +49,16 @@ void view_fit_start(struct view_fit *fit, double azimuth, double elevation, doub
     }
 }
 
-static double dot(const double a[3], const double b[3])
+static double camera_dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void show(struct view_fit *fit, const double p[3])
+static void camera_show(struct view_fit *fit, const double p[3])
 {
-    double z = dot(fit->side[2], p);
+    double z = camera_dot(fit->side[2], p);
     for (int i = 0; i < 2; i++) {
-        double x = dot(fit->side[i], p), t = fit->tangent[i];
+        double x = camera_dot(fit->side[i], p), t = fit->tangent[i];
         fit->max[2 * i] = fmax(fit->max[2 * i], x + t * z);
         fit->max[2 * i + 1] = fmax(fit->max[2 * i + 1], t * z - x);
     }
@@ -70,7 +70,7 @@ void view_fit_add(struct view_fit *fit, size_t n, const double *position)
 {
     for (size_t v = 0; v < n; v++) {
         const double *p = position + 3 * v;
-        show(fit, p);
+        camera_show(fit, p);
         for (int i = 0; i < 3; i++) {
             fit->low[i] = fmin(fit->low[i], p[i]);
             fit->high[i] = fmax(fit->high[i], p[i]);
@@ -95,17 +95,18 @@ void view_fit_planes(struct view_fit *fit, size_t n, const double (*planes)[6])
             double p[3];
             for (int k = 0; k < 3; k++)
                 p[k] = corner >> k & 1 ? fit->high[k] : fit->low[k];
-            double height = (dot(p, normal) - dot(point, normal)) / dot(normal, normal);
-            if (!(fabs(height) * sqrt(dot(normal, normal)) <= extent(fit)))
+            double height =
+                (camera_dot(p, normal) - camera_dot(point, normal)) / camera_dot(normal, normal);
+            if (!(fabs(height) * sqrt(camera_dot(normal, normal)) <= extent(fit)))
                 continue;
             for (int k = 0; k < 3; k++)
                 p[k] -= height * normal[k];
-            show(fit, p);
+            camera_show(fit, p);
         }
     }
 }
 
-static bool is_near(const struct view_fit *fit, const double p[3])
+static bool camera_is_near(const struct view_fit *fit, const double p[3])
 {
     const double margin = 0.5 * extent(fit);
     bool near = true;
@@ -121,7 +122,7 @@ static bool is_worn(const struct view_fit *fit, size_t n, const double (*vertex)
     bool near = false;
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < n; i++) {
-        near = near || is_near(fit, vertex[i]);
+        near = near || camera_is_near(fit, vertex[i]);
         for (int k = 0; k < 3; k++) {
             low[k] = fmin(low[k], vertex[i][k]);
             high[k] = fmax(high[k], vertex[i][k]);
@@ -136,8 +137,8 @@ void view_fit_near(struct view_fit *fit, size_t n, const double (*vertex)[6], bo
 {
     const bool whole = body && is_worn(fit, n, vertex);
     for (size_t i = 0; i < n; i++)
-        if (whole || is_near(fit, vertex[i]))
-            show(fit, vertex[i]);
+        if (whole || camera_is_near(fit, vertex[i]))
+            camera_show(fit, vertex[i]);
 }
 
 static void place_eye(const struct view_fit *fit, double size, double eye[3])
@@ -183,7 +184,7 @@ void view_orbit_camera(const struct view_orbit *orbit, double aspect, struct vie
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++)
             view[k][i] = (float)side[i][k];
-        view[3][i] = (float)-(dot(side[i], orbit->target) + (i == 2 ? orbit->distance : 0));
+        view[3][i] = (float)-(camera_dot(side[i], orbit->target) + (i == 2 ? orbit->distance : 0));
     }
     const double angle = 2 * atan(tan(radians(HALF_ANGLE)) / orbit->zoom);
     const double near = fmax(0.3 * (orbit->distance - orbit->front), 0.01 * orbit->distance);

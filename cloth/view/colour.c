@@ -140,8 +140,8 @@ const float view_hue[VIEW_HUES][3] = {
     RGB(0x00, 0x72, 0xb2), RGB(0xd5, 0x5e, 0x00), RGB(0xcc, 0x79, 0xa7), RGB(0xbb, 0xbb, 0xbb)};
 
 /* The colours of the earlier neighbours of each part, as bits. */
-static void find_near(uint32_t n_triangles, const uint32_t *triangle, const int32_t *part,
-                      uint32_t n_parts, const unsigned char *hue, unsigned *near)
+static void colour_find_near(uint32_t n_triangles, const uint32_t *triangle, const int32_t *part,
+                             uint32_t n_parts, const unsigned char *hue, unsigned *near)
 {
     memset(near, 0, n_parts * sizeof *near);
     for (size_t i = 0; i < (size_t)3 * n_triangles; i++) {
@@ -168,7 +168,7 @@ void view_hues_spread(uint32_t n_triangles, const uint32_t *triangle, const int3
         hue[p] = (unsigned char)(p % VIEW_HUES);
     while (changed) {
         changed = false;
-        find_near(n_triangles, triangle, part, n_parts, hue, near);
+        colour_find_near(n_triangles, triangle, part, n_parts, hue, near);
         for (uint32_t p = 0; p < n_parts; p++) {
             const unsigned char next = first_free(p, near[p]);
             changed = changed || next != hue[p];

@@ -23,7 +23,7 @@ struct view_colours {
     int32_t *part; /* of each vertex */
 };
 
-static int take_room(struct view_colours *colours, struct cloth_error *error)
+static int view_colours_take_room(struct view_colours *colours, struct cloth_error *error)
 {
     const size_t n = colours->cache->mesh.n_vertices;
     colours->value = cloth_alloc(n, sizeof *colours->value, error);
@@ -43,14 +43,14 @@ int view_colours_open(struct view_colours **colours, struct output_cache *cache,
     made->cache = cache;
     made->has_scale[first->by] = first->has_scale;
     made->scale[first->by] = first->scale;
-    int code = take_room(made, error);
+    int code = view_colours_take_room(made, error);
     code = code ? code : view_values_open(&made->values, cache, folder, error);
     return code ? code : view_colours_pick(made, first->by, error);
 }
 
 /* ---- Scales ---- */
 
-static void find_range(const double *value, size_t n, double *low, double *high)
+static void view_colours_find_range(const double *value, size_t n, double *low, double *high)
 {
     *low = *high = (double)NAN;
     for (size_t v = 0; v < n; v++) {
@@ -59,7 +59,7 @@ static void find_range(const double *value, size_t n, double *low, double *high)
     }
 }
 
-static int compare(const void *a, const void *b)
+static int view_colours_compare(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
@@ -75,7 +75,7 @@ static double find_high(double *value, size_t n)
     for (size_t v = 0; v < n; v += stride)
         if (value[v] > 0)
             value[found++] = value[v];
-    qsort(value, found, sizeof *value, compare);
+    qsort(value, found, sizeof *value, view_colours_compare);
     return found ? value[found - 1 - found / 20] : (double)NAN;
 }
 
@@ -120,7 +120,8 @@ enum view_colour view_colours_by(const struct view_colours *colours)
 /* ---- Frames ---- */
 
 /* Room for as many parts as there are. */
-static int take_parts(struct view_colours *colours, uint32_t n, struct cloth_error *error)
+static int view_colours_take_parts(struct view_colours *colours, uint32_t n,
+                                   struct cloth_error *error)
 {
     free(colours->hue);
     free(colours->near);
@@ -138,7 +139,7 @@ static int find_hues(struct view_colours *colours, struct cloth_error *error)
         last = colours->part[v] > last ? colours->part[v] : last;
     }
     const uint32_t n = (uint32_t)last + 1;
-    const int code = take_parts(colours, n, error);
+    const int code = view_colours_take_parts(colours, n, error);
     if (code)
         return code;
     view_hues_spread(mesh->n_triangles, mesh->triangle, colours->part, n, colours->hue,
@@ -160,7 +161,7 @@ int view_colours_frame(struct view_colours *colours, uint64_t frame, const doubl
     const int code = view_values_at(colours->values, by, frame, position, colours->value, error);
     if (code)
         return code;
-    find_range(colours->value, n, &colours->low, &colours->high);
+    view_colours_find_range(colours->value, n, &colours->low, &colours->high);
     if (view_colour_is_of_parts(by))
         return find_hues(colours, error);
     for (size_t v = 0; v < n; v++)

@@ -57,8 +57,8 @@ static int spawn(struct view_film *film, char *const *command, const int ends[2]
     return trouble;
 }
 
-static int start(struct view_film *film, const char *size, const char *rate,
-                 struct cloth_error *error)
+static int film_start(struct view_film *film, const char *size, const char *rate,
+                      struct cloth_error *error)
 {
     char *const command[] = {"ffmpeg",     "-nostdin",
                              "-loglevel",  "error",
@@ -121,7 +121,7 @@ int view_film_open(struct view_film **film, const char *path, int width, int hei
     if (!made->said)
         return cloth_fail(error, CLOTH_E_IO, "no temporary file for a film: %s", strerror(errno));
     ignore_pipe(made);
-    return start(made, size, rate, error);
+    return film_start(made, size, rate, error);
 }
 
 /* Ends ffmpeg's input, and ffmpeg. */

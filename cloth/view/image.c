@@ -11,18 +11,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static int fail(struct cloth_error *error, const char *path, const char *reason)
+static int view_image_fail(struct cloth_error *error, const char *path, const char *reason)
 {
     return cloth_fail(error, CLOTH_E_IO, "cannot write %s: %s", path, reason);
 }
 
 /* name: the file that is opened; path: its final name, for sentences. */
-static int write_file(const struct view_picture *picture, const char *name, const char *path,
-                      struct cloth_error *error)
+static int view_image_write_file(const struct view_picture *picture, const char *name,
+                                 const char *path, struct cloth_error *error)
 {
     FILE *file = fopen(name, "wbe");
     if (!file)
-        return fail(error, path, strerror(errno));
+        return view_image_fail(error, path, strerror(errno));
     png_image image = {.version = PNG_IMAGE_VERSION,
                        .width = (png_uint_32)picture->width,
                        .height = (png_uint_32)picture->height,
@@ -34,7 +34,7 @@ static int write_file(const struct view_picture *picture, const char *name, cons
         whole = false;
         reason = errno;
     }
-    return whole ? 0 : fail(error, path, reason ? strerror(reason) : image.message);
+    return whole ? 0 : view_image_fail(error, path, reason ? strerror(reason) : image.message);
 }
 
 int view_picture_write(const struct view_picture *picture, const char *path,
@@ -42,13 +42,13 @@ int view_picture_write(const struct view_picture *picture, const char *path,
 {
     struct stat status;
     if (stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode))
-        return write_file(picture, path, path, error); /* a pipe or a device */
+        return view_image_write_file(picture, path, path, error); /* a pipe or a device */
     char *part = NULL;
     if (asprintf(&part, "%s.part", path) < 0)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory to write %s", path);
-    int code = write_file(picture, part, path, error);
+    int code = view_image_write_file(picture, part, path, error);
     if (!code && rename(part, path) != 0)
-        code = fail(error, path, strerror(errno));
+        code = view_image_fail(error, path, strerror(errno));
     if (code)
         unlink(part);
     free(part);

@@ -18,7 +18,7 @@ struct place {
     double letter, right, top, bar, height;
 };
 
-static struct place place_of(int width, int height)
+static struct place legend_place_of(int width, int height)
 {
     const double letter = fmin(fmax(height / 48.0, 9), 40);
     return (struct place){.letter = letter,
@@ -98,7 +98,7 @@ static void paint_parts(cairo_t *cairo, const struct place *at, const struct vie
 void view_legend_paint(const struct view_legend *legend, void *surface, int width, int height)
 {
     cairo_t *cairo = surface;
-    const struct place at = place_of(width, height);
+    const struct place at = legend_place_of(width, height);
     const bool parts = view_colour_is_of_parts(legend->by);
     const bool listed =
         legend->n_parts <= LISTED && 1.5 * legend->n_parts * at.letter < 0.8 * height;
@@ -119,7 +119,7 @@ void view_legend_paint(const struct view_legend *legend, void *surface, int widt
 }
 
 /* The surface has premultiplied colours, a word a pixel. */
-static void blend(const unsigned char *words, int stride, struct view_picture *picture)
+static void legend_blend(const unsigned char *words, int stride, struct view_picture *picture)
 {
     const size_t width = (size_t)picture->width;
     for (size_t y = 0; y < (size_t)picture->height; y++)
@@ -148,8 +148,8 @@ int view_legend_lay(const struct view_legend *legend, struct view_picture *pictu
     cairo_destroy(cairo);
     cairo_surface_flush(surface);
     if (status == CAIRO_STATUS_SUCCESS)
-        blend(cairo_image_surface_get_data(surface), cairo_image_surface_get_stride(surface),
-              picture);
+        legend_blend(cairo_image_surface_get_data(surface), cairo_image_surface_get_stride(surface),
+                     picture);
     cairo_surface_destroy(surface);
     return status == CAIRO_STATUS_SUCCESS
                ? 0

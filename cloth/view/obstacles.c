@@ -17,7 +17,7 @@ static void count_surface(const struct view_obstacles *obstacles, size_t i, uint
                           n_triangles);
 }
 
-static int take_room(struct view_obstacles *obstacles, struct cloth_error *error)
+static int view_obstacles_take_room(struct view_obstacles *obstacles, struct cloth_error *error)
 {
     uint64_t n_vertices = 0, n_triangles = 0;
     for (size_t i = 0; i < obstacles->n; i++) {
@@ -61,7 +61,7 @@ int view_obstacles_make(struct view_obstacles *obstacles, size_t n,
                         const struct contact_bodies *bodies, struct cloth_error *error)
 {
     *obstacles = (struct view_obstacles){.n = n, .shape = shape, .keys = keys, .bodies = bodies};
-    if (take_room(obstacles, error))
+    if (view_obstacles_take_room(obstacles, error))
         return CLOTH_E_MEMORY;
     make_surfaces(obstacles, false);
     view_obstacles_at(obstacles, 0);
@@ -69,7 +69,7 @@ int view_obstacles_make(struct view_obstacles *obstacles, size_t n,
 }
 
 /* A point and a direction, moved. */
-static void move(const struct contact_pose *pose, const double from[6], double to[6])
+static void view_obstacles_move(const struct contact_pose *pose, const double from[6], double to[6])
 {
     phys_vec x = {from[0], from[1], from[2], 0}, normal = {from[3], from[4], from[5], 0};
     if (pose->moves) {
@@ -94,9 +94,9 @@ void view_obstacles_at(struct view_obstacles *obstacles, double time)
         contact_pose_over(shape, obstacles->keys, obstacles->bodies, time, time, &pose);
         count_surface(obstacles, i, &vertices, &triangles);
         if (!vertices)
-            move(&pose, shape->value, obstacles->plane[obstacles->n_planes++]);
+            view_obstacles_move(&pose, shape->value, obstacles->plane[obstacles->n_planes++]);
         for (uint32_t v = 0; v < vertices; v++, at++)
-            move(&pose, obstacles->own[at], obstacles->vertex[at]);
+            view_obstacles_move(&pose, obstacles->own[at], obstacles->vertex[at]);
     }
 }
 

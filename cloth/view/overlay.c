@@ -115,7 +115,7 @@ static int paint(cairo_surface_t *surface, const struct view_overlay_text *text,
                             cairo_status_to_string(status));
 }
 
-static void lay(const struct view_overlay *overlay, cairo_surface_t *surface)
+static void overlay_lay(const struct view_overlay *overlay, cairo_surface_t *surface)
 {
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D, overlay->texture);
@@ -140,7 +140,7 @@ int view_overlay_draw(struct view_overlay *overlay, const struct view_overlay_te
     cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height);
     const int code = paint(surface, text, width, height, error);
     if (!code)
-        lay(overlay, surface);
+        overlay_lay(overlay, surface);
     cairo_surface_destroy(surface);
     return code;
 }

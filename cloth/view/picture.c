@@ -62,7 +62,7 @@ static int read_back(struct view_picture *picture, struct cloth_error *error)
     return 0;
 }
 
-static int check_size(const struct view_picture *picture, struct cloth_error *error)
+static int picture_check_size(const struct view_picture *picture, struct cloth_error *error)
 {
     GLint max = 0;
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &max);
@@ -86,7 +86,7 @@ int view_picture_draw(struct view_picture *picture, struct view_scene *scene,
                       const struct view_camera *camera, struct cloth_error *error)
 {
     picture->rgb = NULL;
-    int code = check_size(picture, error);
+    int code = picture_check_size(picture, error);
     if (code)
         return code;
     struct target target = {0};
@@ -104,7 +104,7 @@ int view_window_draw(int width, int height, struct view_scene *scene,
                      const struct view_camera *camera, struct cloth_error *error)
 {
     const struct view_picture picture = {width, height, NULL};
-    int code = check_size(&picture, error);
+    int code = picture_check_size(&picture, error);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     code = code ? code : view_scene_draw(scene, camera, width, height, error);
     return code ? code : fail_to_draw(error);

@@ -103,7 +103,7 @@ static int fit_camera(struct view_show *show, struct cloth_error *error)
     return 0;
 }
 
-static int take_room(struct view_show *show, struct cloth_error *error)
+static int show_take_room(struct view_show *show, struct cloth_error *error)
 {
     const size_t n = show->cache->mesh.n_vertices;
     show->used = malloc(n);
@@ -124,7 +124,7 @@ int view_show_open(struct view_show **show, struct output_cache *cache,
     made->wire = wish->wire;
     int code = view_obstacles_make(&made->obstacles, cache->n_obstacles, cache->obstacles,
                                    cache->keys, &cache->bodies, error);
-    code = code ? code : take_room(made, error);
+    code = code ? code : show_take_room(made, error);
     if (!code)
         mesh_used(&cache->mesh, made->used);
     code = code ? code : fit_camera(made, error);

@@ -37,7 +37,7 @@ int view_values_open(struct view_values **values, struct output_cache *cache, co
     return made->weight && made->number && made->force ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
-static int open_colours(struct view_values *values, struct cloth_error *error)
+static int view_values_open_colours(struct view_values *values, struct cloth_error *error)
 {
     if (values->colours)
         return CLOTH_OK;
@@ -50,8 +50,8 @@ static int open_colours(struct view_values *values, struct cloth_error *error)
     return code;
 }
 
-static int find_parts(const struct view_values *values, enum view_colour by, uint64_t frame,
-                      double *value, struct cloth_error *error)
+static int view_values_find_parts(const struct view_values *values, enum view_colour by,
+                                  uint64_t frame, double *value, struct cloth_error *error)
 {
     const int code = by == VIEW_COLOUR_BLOCK
                          ? output_colours_blocks(values->colours, frame, values->number, error)
@@ -62,8 +62,8 @@ static int find_parts(const struct view_values *values, enum view_colour by, uin
 }
 
 /* A run that goes on, or was killed, has the forces of its last frames not yet, or never. */
-static int find_forces(const struct view_values *values, uint64_t frame, double *value,
-                       struct cloth_error *error)
+static int view_values_find_forces(const struct view_values *values, uint64_t frame, double *value,
+                                   struct cloth_error *error)
 {
     const uint32_t n = values->cache->mesh.n_vertices;
     uint64_t n_frames = 0;
@@ -156,8 +156,8 @@ static double principal(const double stress[3])
     return 0.5 * (stress[0] + stress[1]) + sqrt(half * half + stress[2] * stress[2]);
 }
 
-static void add(struct view_values *values, double *value, const uint32_t *corner, int corners,
-                double cell, double weight)
+static void view_values_add(struct view_values *values, double *value, const uint32_t *corner,
+                            int corners, double cell, double weight)
 {
     for (int i = 0; i < corners && !isnan(cell); i++) {
         value[corner[i]] += weight * cell;
@@ -166,21 +166,21 @@ static void add(struct view_values *values, double *value, const uint32_t *corne
 }
 
 /* Averages cells to vertices. Edges count for vertices without triangles. */
-static void gather(struct view_values *values, double *value)
+static void view_values_gather(struct view_values *values, double *value)
 {
     const struct element_strains *strains = &values->strains;
     const size_t n = strains->n_vertices;
     memset(value, 0, n * sizeof *value);
     memset(values->weight, 0, n * sizeof *values->weight);
     for (size_t t = 0; t < strains->n_triangles; t++)
-        add(values, value, strains->corner[t], 3, values->cell[t], strains->area[t]);
+        view_values_add(values, value, strains->corner[t], 3, values->cell[t], strains->area[t]);
     for (size_t v = 0; v < n; v++)
         values->number[v] = values->weight[v] > 0;
     for (size_t e = 0; e < strains->n_edges; e++)
         for (int i = 0; i < 2; i++)
             if (!values->number[strains->edge[e][i]])
-                add(values, value, strains->edge[e] + i, 1, values->cell[strains->n_triangles + e],
-                    strains->length[e]);
+                view_values_add(values, value, strains->edge[e] + i, 1,
+                                values->cell[strains->n_triangles + e], strains->length[e]);
     for (size_t v = 0; v < n; v++)
         value[v] = values->weight[v] > 0 ? value[v] / values->weight[v] : (double)NAN;
 }
@@ -208,7 +208,7 @@ static int find_strains(struct view_values *values, bool stress, uint64_t frame,
     const size_t n = (size_t)values->strains.n_triangles + values->strains.n_edges;
     for (size_t i = 0; i < n && stress; i++)
         values->cell[i] = principal(values->stress[i]);
-    gather(values, value);
+    view_values_gather(values, value);
     return CLOTH_OK;
 }
 
@@ -222,12 +222,12 @@ int view_values_at(struct view_values *values, enum view_colour by, uint64_t fra
                           "a run that goes on shows its cloth's own colours: it sends positions "
                           "alone; other colours are of a folder of frames");
     if (by == VIEW_COLOUR_CONTACT)
-        return find_forces(values, frame, value, error);
-    const int code = open_colours(values, error);
+        return view_values_find_forces(values, frame, value, error);
+    const int code = view_values_open_colours(values, error);
     if (code)
         return code;
     return view_colour_is_of_parts(by)
-               ? find_parts(values, by, frame, value, error)
+               ? view_values_find_parts(values, by, frame, value, error)
                : find_strains(values, by == VIEW_COLOUR_STRESS, frame, position, value, error);
 }
 

@@ -228,7 +228,7 @@ static int draw_overlay(struct window *w, bool lined, int width, int height,
     return view_overlay_draw(w->overlay, &text, width, height, error);
 }
 
-static int draw(struct window *w, bool lined, struct cloth_error *error)
+static int window_draw(struct window *w, bool lined, struct cloth_error *error)
 {
     int width, height;
     glfwGetFramebufferSize(w->glfw, &width, &height);
@@ -261,7 +261,7 @@ static int save(struct window *w, struct cloth_error *error)
 }
 
 /* Takes the news of a live run. */
-static int look(struct window *w, struct cloth_error *error)
+static int window_look(struct window *w, struct cloth_error *error)
 {
     if (!w->live)
         return 0;
@@ -274,13 +274,13 @@ static int look(struct window *w, struct cloth_error *error)
     return code;
 }
 
-static int run(struct window *w, struct cloth_error *error)
+static int window_run(struct window *w, struct cloth_error *error)
 {
     uint64_t seen = w->player.frame;
     bool lined = false;
     int code = view_show_frame(w->show, seen, error);
     for (w->changed = true; !code && !glfwWindowShouldClose(w->glfw);
-         code = code ? code : look(w, error)) {
+         code = code ? code : window_look(w, error)) {
         const double now = glfwGetTime();
         const uint64_t frame = view_player_at(&w->player, now);
         const bool line = has_line(w, now);
@@ -290,7 +290,7 @@ static int run(struct window *w, struct cloth_error *error)
             code = view_show_next_colour(w->show, error);
         if (!code && (w->changed || frame != seen || line != lined)) {
             w->changed = false;
-            code = draw(w, line, error);
+            code = window_draw(w, line, error);
         }
         if (!code && w->save)
             code = save(w, error);
@@ -312,7 +312,7 @@ static int open_and_run(struct window *w, const struct view_wish *wish, struct c
     w->moved = -SEEN;
     int code = open_glfw(w, wish, error);
     code = code ? code : view_overlay_new(&w->overlay, error);
-    code = code ? code : run(w, error);
+    code = code ? code : window_run(w, error);
     if (w->glfw) {
         view_overlay_free(w->overlay);
         if (w->show)

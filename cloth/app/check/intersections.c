@@ -25,9 +25,9 @@ struct look {
 
 /* ---- Findings ---- */
 
-static void say(const struct look *look, const char *format, ...)
+static void check_intersections_say(const struct look *look, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-static void say(const struct look *look, const char *format, ...)
+static void check_intersections_say(const struct look *look, const char *format, ...)
 {
     va_list list;
     va_start(list, format);
@@ -67,7 +67,7 @@ static void say_pair(struct look *look, const struct verify_pair *pair)
         return;
     name_triangle(look->all, pair->triangle[0], one);
     name_triangle(look->all, pair->triangle[1], other);
-    say(look, "%s and %s intersect (vertices count from 1)", one, other);
+    check_intersections_say(look, "%s and %s intersect (vertices count from 1)", one, other);
 }
 
 static void say_entered(struct look *look, uint32_t triangle, size_t obstacle)
@@ -76,8 +76,8 @@ static void say_entered(struct look *look, uint32_t triangle, size_t obstacle)
     if (!is_said(look))
         return;
     name_triangle(look->all, triangle, one);
-    say(look, "%s enters obstacles[%zu], a %s (vertices count from 1)", one, obstacle,
-        contact_kinds[look->all->obstacles[obstacle].kind]->name);
+    check_intersections_say(look, "%s enters obstacles[%zu], a %s (vertices count from 1)", one,
+                            obstacle, contact_kinds[look->all->obstacles[obstacle].kind]->name);
 }
 
 static void say_inside(struct look *look, uint32_t point, size_t obstacle)
@@ -86,7 +86,8 @@ static void say_inside(struct look *look, uint32_t point, size_t obstacle)
     if (!is_said(look))
         return;
     const uint32_t cloth = contact_soup_cloth(&all->soup, point);
-    say(look, "vertex %" PRIu32 "%s%.100s%s is inside obstacles[%zu] (vertices count from 1)",
+    check_intersections_say(
+        look, "vertex %" PRIu32 "%s%.100s%s is inside obstacles[%zu] (vertices count from 1)",
         point - all->soup.surface[cloth].point + 1, all->name ? " of cloth '" : "",
         all->name ? all->name[cloth] : "", all->name ? "'" : "", obstacle);
 }
@@ -94,7 +95,7 @@ static void say_inside(struct look *look, uint32_t point, size_t obstacle)
 /* ---- Pairs that do not meet ---- */
 
 /* A folder has all cloths in one mesh. */
-static uint32_t cloth_of(const struct intersections *all, uint32_t t)
+static uint32_t intersections_cloth_of(const struct intersections *all, uint32_t t)
 {
     return all->apart->apart ? contact_apart_cloth(all->apart, all->soup.corner[t][0], 0)
                              : contact_soup_owner(&all->soup, t);
@@ -104,22 +105,23 @@ static uint32_t cloth_of(const struct intersections *all, uint32_t t)
 static bool misses(const struct intersections *all, uint32_t t, size_t obstacle)
 {
     return contact_is_attached(all->apart, 3, all->soup.corner[t], (uint32_t)obstacle) ||
-           contact_are_apart(all->apart, cloth_of(all, t),
+           contact_are_apart(all->apart, intersections_cloth_of(all, t),
                              all->apart->n_cloths + (uint32_t)obstacle);
 }
 
-static bool is_left_out(const struct intersections *all, const struct verify_pair *pair)
+static bool intersections_is_left_out(const struct intersections *all,
+                                      const struct verify_pair *pair)
 {
-    const uint32_t *t = pair->triangle, a = cloth_of(all, t[0]);
+    const uint32_t *t = pair->triangle, a = intersections_cloth_of(all, t[0]);
     if (t[1] < all->checked.n_first)
-        return (all->self_off && a == cloth_of(all, t[1])) ||
-               contact_are_apart(all->apart, a, cloth_of(all, t[1]));
+        return (all->self_off && a == intersections_cloth_of(all, t[1])) ||
+               contact_are_apart(all->apart, a, intersections_cloth_of(all, t[1]));
     return misses(all, t[0], contact_soup_owner(&all->soup, t[1]) - all->soup.n_cloths);
 }
 
 /* ---- A frame ---- */
 
-static void place_body(const struct look *look, size_t obstacle)
+static void intersections_place_body(const struct look *look, size_t obstacle)
 {
     const struct intersections *all = look->all;
     const struct contact_shape *shape = all->obstacles + obstacle;
@@ -141,7 +143,7 @@ static void place_body(const struct look *look, size_t obstacle)
     }
 }
 
-static void place_points(const struct look *look, const double *position)
+static void intersections_place_points(const struct look *look, const double *position)
 {
     const struct intersections *all = look->all;
     for (uint32_t v = 0; v < contact_soup_cloths(&all->soup).point; v++)
@@ -150,7 +152,7 @@ static void place_points(const struct look *look, const double *position)
             all->x[v][c] = verify_coordinate(look->written ? (double)(float)x : x);
         }
     for (size_t i = 0; i < all->soup.n_obstacles; i++)
-        place_body(look, i);
+        intersections_place_body(look, i);
 }
 
 static int look_at_pairs(struct look *look, uint64_t *pairs, uint64_t *with_bodies,
@@ -162,7 +164,7 @@ static int look_at_pairs(struct look *look, uint64_t *pairs, uint64_t *with_bodi
     const struct verify_pair *pair = all->pairs.items;
     for (size_t i = 0; i < all->pairs.n && !code; i++) {
         const bool cloths = pair[i].triangle[1] < all->checked.n_first;
-        if (is_left_out(all, pair + i))
+        if (intersections_is_left_out(all, pair + i))
             continue;
         *pairs += cloths;
         *with_bodies += !cloths;
@@ -171,8 +173,8 @@ static int look_at_pairs(struct look *look, uint64_t *pairs, uint64_t *with_bodi
     return code;
 }
 
-static int look_at_shape(struct look *look, size_t obstacle, uint64_t *entered,
-                         struct cloth_error *error)
+static int intersections_look_at_shape(struct look *look, size_t obstacle, uint64_t *entered,
+                                       struct cloth_error *error)
 {
     struct intersections *all = look->all;
     const struct contact_shape *shape = all->obstacles + obstacle;
@@ -254,17 +256,17 @@ int intersections_frame(struct intersections *intersections, uint64_t frame, dou
                         .written = written,
                         .says = intersections->program && !intersections->found.bad};
     uint64_t pairs = 0, with_shapes = 0;
-    place_points(&look, position);
+    intersections_place_points(&look, position);
     int code = look_at_pairs(&look, &pairs, &with_shapes, error);
     for (size_t i = 0; i < intersections->soup.n_obstacles && !code; i++)
         if (intersections->obstacles[i].body)
             look_inside(&look, i, &with_shapes);
         else
-            code = look_at_shape(&look, i, &with_shapes, error);
+            code = intersections_look_at_shape(&look, i, &with_shapes, error);
     if (code)
         return code;
     if (look.n > SAID && look.says)
-        say(&look, "and %" PRIu64 " more", look.n - SAID);
+        check_intersections_say(&look, "and %" PRIu64 " more", look.n - SAID);
     add_found(&look, pairs, with_shapes);
     return CLOTH_OK;
 }

@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 
-static int compare_places(const double *x, const double *y)
+static int intersections_folder_compare_places(const double *x, const double *y)
 {
     for (int c = 0; c < 3; c++)
         if (x[c] < y[c] || x[c] > y[c])
@@ -19,13 +19,13 @@ static int by_place(const void *left, const void *right, void *position)
 {
     const uint32_t a = *(const uint32_t *)left, b = *(const uint32_t *)right;
     const double *x = position;
-    const int places = compare_places(x + 3 * (size_t)a, x + 3 * (size_t)b);
+    const int places = intersections_folder_compare_places(x + 3 * (size_t)a, x + 3 * (size_t)b);
     return places ? places : (a > b) - (a < b);
 }
 
 static bool is_at(const double *x, uint32_t a, uint32_t b)
 {
-    return compare_places(x + 3 * (size_t)a, x + 3 * (size_t)b) == 0;
+    return intersections_folder_compare_places(x + 3 * (size_t)a, x + 3 * (size_t)b) == 0;
 }
 
 /* Finds the lowest vertex at the place of each vertex. */
@@ -62,8 +62,9 @@ static int find_same(const struct folder *folder, struct cloth_error *error)
     return code;
 }
 
-static int check_frames(const struct folder *folder, struct intersections *intersections,
-                        struct cloth_error *error)
+static int intersections_folder_check_frames(const struct folder *folder,
+                                             struct intersections *intersections,
+                                             struct cloth_error *error)
 {
     struct output_cache *cache = folder->cache;
     int code = CLOTH_OK;
@@ -77,8 +78,8 @@ static int check_frames(const struct folder *folder, struct intersections *inter
     return code;
 }
 
-static int check_folder(struct folder *folder, const char *program,
-                        struct intersections_found *found, struct cloth_error *error)
+static int intersections_folder_check(struct folder *folder, const char *program,
+                                      struct intersections_found *found, struct cloth_error *error)
 {
     const struct output_cache *cache = folder->cache;
     const struct mesh *mesh = &cache->mesh;
@@ -98,7 +99,7 @@ static int check_folder(struct folder *folder, const char *program,
     }
     code = code ? code : intersections_open(&intersections, &setup, error);
     contact_soup_free(&soup);
-    code = code ? code : check_frames(folder, intersections, error);
+    code = code ? code : intersections_folder_check_frames(folder, intersections, error);
     if (!code)
         *found = intersections_found(intersections);
     intersections_close(&intersections);
@@ -114,7 +115,7 @@ int intersections_of_folder(struct output_cache *cache, const char *program,
                             .order = cloth_alloc(n, sizeof *folder.order, error),
                             .same = cloth_alloc(n, sizeof *folder.same, error)};
     const int code = folder.position && folder.order && folder.same
-                         ? check_folder(&folder, program, found, error)
+                         ? intersections_folder_check(&folder, program, found, error)
                          : CLOTH_E_MEMORY;
     free(folder.position);
     free(folder.order);

@@ -26,7 +26,7 @@ static int take_arrays(struct intersections *all, struct cloth_error *error)
 }
 
 /* Vertices that seams or welds join share one number. */
-static int take_sewn(struct intersections *all, struct cloth_error *error)
+static int intersections_open_take_sewn(struct intersections *all, struct cloth_error *error)
 {
     const uint32_t *joined = all->apart->joined, n = contact_soup_cloths(&all->soup).point;
     if (!joined)
@@ -55,7 +55,7 @@ static int take_names(struct intersections *all, const char *const *names,
     return error->code;
 }
 
-static int find_parts(struct intersections *all, struct cloth_error *error)
+static int intersections_open_find_parts(struct intersections *all, struct cloth_error *error)
 {
     const struct contact_surface cloths = contact_soup_cloths(&all->soup);
     bool *used = cloth_alloc(cloths.point, sizeof *used, error);
@@ -92,8 +92,8 @@ int intersections_open(struct intersections **intersections,
     *setup->soup = (struct contact_soup){0};
     int code = take_names(all, setup->names, error);
     code = code ? code : take_arrays(all, error);
-    code = code ? code : take_sewn(all, error);
-    code = code ? code : find_parts(all, error);
+    code = code ? code : intersections_open_take_sewn(all, error);
+    code = code ? code : intersections_open_find_parts(all, error);
     if (code)
         intersections_close(intersections);
     return code;

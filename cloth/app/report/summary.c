@@ -237,7 +237,7 @@ static void add_drape(struct output_report *json, const struct drape_found *foun
 }
 
 /* Adds the phases that began and did not fail. */
-static void add_phases(struct output_report *json, const struct phases *phases)
+static void summary_add_phases(struct output_report *json, const struct phases *phases)
 {
     if (!phases->named)
         return;
@@ -273,7 +273,7 @@ int summary_write(const struct summary *summary, const char *path, struct cloth_
     add_intersections(json, summary->intersections);
     add_drape(json, summary->drape);
     add_hash(json, "state_hash", summary->report->state_hash);
-    add_phases(json, summary->phases);
+    summary_add_phases(json, summary->phases);
     summary_seams_add(json, summary->model, summary->report);
     if (!code)
         code = output_report_write(json, path, error);

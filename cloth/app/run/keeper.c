@@ -28,7 +28,7 @@ struct keeper {
     bool warned;
 };
 
-static double now(void)
+static double keeper_now(void)
 {
     struct timespec time;
     clock_gettime(CLOCK_MONOTONIC, &time);
@@ -37,7 +37,7 @@ static double now(void)
 
 /* ---- The thread ---- */
 
-static void warn(struct keeper *keeper, const char *why)
+static void keeper_warn(struct keeper *keeper, const char *why)
 {
     const char *last = output_checkpoints_last(keeper->checkpoints);
     if (!keeper->warned)
@@ -60,14 +60,14 @@ static void write_one(struct keeper *keeper)
              !output_probes_sync(keeper->folder, &error))
         output_checkpoints_write(keeper->checkpoints, keeper->part, &error);
     if (error.code)
-        warn(keeper, error.text);
+        keeper_warn(keeper, error.text);
     for (int i = 1; i < OUTPUT_CHECKPOINT_PARTS; i++) {
         free((void *)keeper->part[i].bytes);
         keeper->part[i] = (struct output_part){0};
     }
 }
 
-static void *run(void *context)
+static void *keeper_run(void *context)
 {
     struct keeper *keeper = context;
     pthread_mutex_lock(&keeper->lock);
@@ -88,11 +88,11 @@ static void *run(void *context)
 
 /* ---- For the run ---- */
 
-static int start(struct keeper *keeper, struct cloth_error *error)
+static int keeper_start(struct keeper *keeper, struct cloth_error *error)
 {
     pthread_mutex_init(&keeper->lock, NULL);
     pthread_cond_init(&keeper->changed, NULL);
-    const int failed = pthread_create(&keeper->thread, NULL, run, keeper);
+    const int failed = pthread_create(&keeper->thread, NULL, keeper_run, keeper);
     if (!failed)
         return CLOTH_OK;
     pthread_mutex_destroy(&keeper->lock);
@@ -101,7 +101,7 @@ static int start(struct keeper *keeper, struct cloth_error *error)
                       strerror(failed));
 }
 
-static void drop(struct keeper *keeper)
+static void keeper_drop(struct keeper *keeper)
 {
     output_checkpoints_close(&keeper->checkpoints);
     free(keeper->folder);
@@ -118,14 +118,14 @@ int keeper_open(struct keeper **keeper, const char *folder, double seconds, cons
     made->seconds = seconds;
     made->settler = settler;
     made->hdf5 = hdf5;
-    made->next = now() + seconds;
+    made->next = keeper_now() + seconds;
     made->part[0] = (struct output_part){settings, strlen(settings)};
     made->folder = strdup(folder);
     int code = made->folder ? output_checkpoints_open(&made->checkpoints, folder, error)
                             : cloth_fail(error, CLOTH_E_MEMORY, "no memory for checkpoints");
-    code = code ? code : start(made, error);
+    code = code ? code : keeper_start(made, error);
     if (code)
-        drop(made);
+        keeper_drop(made);
     else
         *keeper = made;
     return code;
@@ -134,7 +134,7 @@ int keeper_open(struct keeper **keeper, const char *folder, double seconds, cons
 int keeper_due(struct keeper *keeper)
 {
     pthread_mutex_lock(&keeper->lock);
-    const bool due = !keeper->asked && !keeper->busy && now() >= keeper->next;
+    const bool due = !keeper->asked && !keeper->busy && keeper_now() >= keeper->next;
     keeper->asked = keeper->asked || due;
     pthread_mutex_unlock(&keeper->lock);
     return due;
@@ -149,7 +149,7 @@ void keeper_take(struct keeper *keeper, struct output_part program, struct outpu
     keeper->part[2] = flow;
     keeper->busy = true;
     keeper->asked = false;
-    keeper->next = now() + keeper->seconds;
+    keeper->next = keeper_now() + keeper->seconds;
     pthread_cond_broadcast(&keeper->changed);
     pthread_mutex_unlock(&keeper->lock);
 }
@@ -167,5 +167,5 @@ void keeper_close(struct keeper **keeper)
     pthread_join(gone->thread, NULL);
     pthread_mutex_destroy(&gone->lock);
     pthread_cond_destroy(&gone->changed);
-    drop(gone);
+    keeper_drop(gone);
 }

@@ -13,7 +13,7 @@
 
 /* ---- The environment ---- */
 
-static const char *name_of(const char *variable, const char *otherwise)
+static const char *options_name_of(const char *variable, const char *otherwise)
 {
     const char *name = getenv(variable);
     return name ? name : otherwise;
@@ -23,11 +23,11 @@ void environment_begin(struct simulate_options *run)
 {
     const duite_options defaults = duite_options_default();
     run->scheduler = defaults.scheduler;
-    run->scheduler_name = name_of("DUITE_SCHEDULER", duite_scheduler_names()[0]);
+    run->scheduler_name = options_name_of("DUITE_SCHEDULER", duite_scheduler_names()[0]);
     run->mapping = defaults.mapping;
-    run->mapping_name = name_of("DUITE_MAPPING", duite_mapping_names()[0]);
+    run->mapping_name = options_name_of("DUITE_MAPPING", duite_mapping_names()[0]);
     run->balance = defaults.balance;
-    run->balance_name = name_of("DUITE_BALANCE", duite_balancer_names()[0]);
+    run->balance_name = options_name_of("DUITE_BALANCE", duite_balancer_names()[0]);
     run->threads = defaults.threads;
     run->seed = defaults.seed;
     run->trace = defaults.trace;

@@ -23,7 +23,7 @@ static int lock_folder(struct output_lock **lock, const char *folder, struct clo
 }
 
 /* The live view's thread calls it, too. */
-static void warn(const char *text)
+static void outputs_warn(const char *text)
 {
     fprintf(stderr, "duite-cloth: warning: %s\n", text);
 }
@@ -64,8 +64,9 @@ static int open_probes(struct outputs *to, const struct flow *flow, const uint64
 }
 
 /* The shapes of a later phase follow when it begins. */
-static int open_colours(struct outputs *to, const struct phases *phases, const struct flow *flow,
-                        const uint64_t *n_frames, struct cloth_error *error)
+static int outputs_open_colours(struct outputs *to, const struct phases *phases,
+                                const struct flow *flow, const uint64_t *n_frames,
+                                struct cloth_error *error)
 {
     const int code = output_colours_open(&to->colours, to->options->output,
                                          (uint32_t)flow_vertices(flow), n_frames, error);
@@ -99,7 +100,7 @@ static int open_output(struct outputs *to, const struct phases *phases, const st
     int code = output_settler_open(&to->settler, error);
     setup->settler = to->settler;
     code = code ? code : output_open(&to->frames, setup, error);
-    code = code ? code : open_colours(to, phases, flow, n_frames, error);
+    code = code ? code : outputs_open_colours(to, phases, flow, n_frames, error);
     code = code ? code : outputs_hdf5_open(&to->hdf5, model, to->options->output, n_frames, error);
     code = code ? code : open_forces(to, model, flow, n_frames, error);
     return code ? code : open_probes(to, flow, stays ? &stays->rows : NULL, error);
@@ -134,7 +135,7 @@ static int open_live(struct outputs *to, struct cloth_error *error)
 {
     const char *address = to->options->live;
     char host[65] = "";
-    const int code = live_publish_open(&to->live, address, warn, error);
+    const int code = live_publish_open(&to->live, address, outputs_warn, error);
     gethostname(host, sizeof host - 1);
     if (!code && (!to->options->quiet || is_any_port(address)))
         fprintf(stderr, "duite-cloth: live view: duite-view --connect %s on %s\n",
@@ -143,9 +144,9 @@ static int open_live(struct outputs *to, struct cloth_error *error)
 }
 
 /* Files, and the scene of the live view, of the first phase of this run. */
-static int open_frames(struct outputs *to, const struct phases *phases, const struct flow *flow,
-                       const struct contact_apart *apart, const struct flow_resumed *resumed,
-                       struct cloth_error *error)
+static int outputs_open_frames(struct outputs *to, const struct phases *phases,
+                               const struct flow *flow, const struct contact_apart *apart,
+                               const struct flow_resumed *resumed, struct cloth_error *error)
 {
     const struct flow_before before = phases_before(phases);
     const struct stays stays = {.frames = resumed ? resumed->frames : 0,
@@ -179,7 +180,7 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
     if (!code)
         code = outputs_lock(to, options, error);
     if (!code && (options->output || options->live))
-        code = open_frames(to, phases, flow, apart, resumed, error);
+        code = outputs_open_frames(to, phases, flow, apart, resumed, error);
     if (!code && options->output)
         code = open_keeper(to, phases, resumed, error);
     return code || !phases->now ? code : outputs_go_on(to, phases, apart, error);
@@ -272,8 +273,8 @@ int outputs_system(void *context, const struct solve_system *system, struct clot
 }
 
 /* Checks the state, then, if frames are written, their floats. */
-static int check_frame(const struct outputs *of, uint64_t frame, double time,
-                       const double *position, struct cloth_error *error)
+static int outputs_check_frame(const struct outputs *of, uint64_t frame, double time,
+                               const double *position, struct cloth_error *error)
 {
     const int code = intersections_frame(of->intersections, frame, time, position, false, error);
     if (code || !of->frames)
@@ -295,7 +296,7 @@ int outputs_frame(void *context, uint64_t frame, double time, const double *posi
     if (!code && of->live)
         live_publish_frame(of->live, frame, time, position);
     if (!code && of->intersections)
-        code = check_frame(of, frame, time, position, error);
+        code = outputs_check_frame(of, frame, time, position, error);
     if (of->drape)
         drape_frame(of->drape, position);
     return code;

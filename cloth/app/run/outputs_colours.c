@@ -18,7 +18,8 @@ double outputs_colours_bytes(const struct model *model, uint64_t n_vertices)
     return (double)output_colours_bytes((uint32_t)n_vertices, (uint32_t)blocks, &rest);
 }
 
-static void copy(const struct element_strains *strains, const struct output_rest *rest)
+static void outputs_colours_copy(const struct element_strains *strains,
+                                 const struct output_rest *rest)
 {
     for (uint32_t t = 0; t < rest->n_triangles; t++) {
         memcpy(rest->corner[t], strains->corner[t], sizeof *rest->corner);
@@ -38,7 +39,8 @@ static void copy(const struct element_strains *strains, const struct output_rest
 }
 
 /* Goes on without the file that was not written. */
-static int go_on(struct output_colours **colours, int code, struct cloth_error *error)
+static int outputs_colours_go_on(struct output_colours **colours, int code,
+                                 struct cloth_error *error)
 {
     struct cloth_error ignored = {0};
     if (code != CLOTH_E_IO)
@@ -64,8 +66,9 @@ int outputs_colours_rest(struct output_colours **colours, const struct model *mo
     rest.n_edges = strains.n_edges;
     code = code ? code : output_rest_make(&rest, error);
     if (!code) {
-        copy(&strains, &rest);
-        code = go_on(colours, output_colours_rest(*colours, frame, &rest, error), error);
+        outputs_colours_copy(&strains, &rest);
+        code = outputs_colours_go_on(colours, output_colours_rest(*colours, frame, &rest, error),
+                                     error);
     }
     output_rest_free(&rest);
     element_strains_free(&strains);
@@ -75,9 +78,10 @@ int outputs_colours_rest(struct output_colours **colours, const struct model *mo
 int outputs_colours_places(struct output_colours **colours, uint64_t frame,
                            const struct flow_places *places, struct cloth_error *error)
 {
-    return *colours ? go_on(colours,
-                            output_colours_places(*colours, frame, places->block, places->n_blocks,
-                                                  places->rank, error),
-                            error)
-                    : CLOTH_OK;
+    return *colours
+               ? outputs_colours_go_on(colours,
+                                       output_colours_places(*colours, frame, places->block,
+                                                             places->n_blocks, places->rank, error),
+                                       error)
+               : CLOTH_OK;
 }

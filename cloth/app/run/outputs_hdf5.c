@@ -10,7 +10,7 @@
 
 enum { POSITION = 1, BESIDE = 2, FORCE = 4 };
 
-static void warn(const char *text)
+static void outputs_hdf5_warn(const char *text)
 {
     fprintf(stderr, "duite-cloth: warning: %s\n", text);
 }
@@ -30,7 +30,7 @@ static struct output_hdf5_setup setup_of(const struct model *model)
                                       .every = hdf5->every,
                                       .level = hdf5->level,
                                       .derive = derive,
-                                      .warn = warn};
+                                      .warn = outputs_hdf5_warn};
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         setup.n_points += model->cloths[c].mesh.n_vertices;
         setup.n_triangles += model->cloths[c].mesh.n_triangles;
@@ -102,7 +102,7 @@ void outputs_hdf5_close(struct outputs_hdf5 *of)
     element_strains_free(&of->strains);
 }
 
-static void take(struct outputs_hdf5 *of, unsigned part)
+static void outputs_hdf5_take(struct outputs_hdf5 *of, unsigned part)
 {
     of->have |= part;
     if (of->have != of->parts)
@@ -119,7 +119,7 @@ void outputs_hdf5_position(struct outputs_hdf5 *of, uint64_t frame, double time,
     of->state = output_hdf5_begin(of->frames, frame, time);
     of->have = 0;
     memcpy(of->state->position, position, 3 * of->strains.n_vertices * sizeof *position);
-    take(of, POSITION);
+    outputs_hdf5_take(of, POSITION);
 }
 
 void outputs_hdf5_beside(struct outputs_hdf5 *of, const struct flow_beside *beside)
@@ -135,7 +135,7 @@ void outputs_hdf5_beside(struct outputs_hdf5 *of, const struct flow_beside *besi
         memcpy(block, beside->block, n * sizeof *block);
     if (rank)
         memcpy(rank, beside->rank, n * sizeof *rank);
-    take(of, BESIDE);
+    outputs_hdf5_take(of, BESIDE);
 }
 
 void outputs_hdf5_force(struct outputs_hdf5 *of, const double *force)
@@ -143,5 +143,5 @@ void outputs_hdf5_force(struct outputs_hdf5 *of, const double *force)
     if (!of->state || !of->state->field[OUTPUT_FORCE])
         return;
     memcpy(of->state->field[OUTPUT_FORCE], force, 3 * of->strains.n_vertices * sizeof *force);
-    take(of, FORCE);
+    outputs_hdf5_take(of, FORCE);
 }

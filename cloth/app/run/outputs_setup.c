@@ -16,8 +16,8 @@ static bool *find_posed(const struct phases *phases, struct cloth_error *error)
     return posed;
 }
 
-static int find_cloths(struct outputs_setup *made, const struct model *model,
-                       struct cloth_error *error)
+static int outputs_setup_find_cloths(struct outputs_setup *made, const struct model *model,
+                                     struct cloth_error *error)
 {
     made->meshes = cloth_alloc(model->n_cloths, sizeof *made->meshes, error);
     made->names = cloth_alloc(model->n_cloths, sizeof *made->names, error);
@@ -31,8 +31,8 @@ static int find_cloths(struct outputs_setup *made, const struct model *model,
 }
 
 /* Adds motions and seams of earlier phases. */
-static int add_phases(struct outputs_setup *made, const struct phases *phases,
-                      struct cloth_error *error)
+static int outputs_setup_add_phases(struct outputs_setup *made, const struct phases *phases,
+                                    struct cloth_error *error)
 {
     const int code = phases_motions(phases, &made->motions, error);
     made->setup.obstacles = made->motions.obstacles;
@@ -51,7 +51,7 @@ int outputs_setup_make(struct outputs_setup *made, const struct simulate_options
 {
     const struct model *model = phases_model(phases);
     *made = (struct outputs_setup){.all = *apart};
-    int code = find_cloths(made, model, error);
+    int code = outputs_setup_find_cloths(made, model, error);
     made->posed = code ? NULL : find_posed(phases, error);
     code = error->code;
     made->setup = (struct output_setup){.folder = options->output,
@@ -67,7 +67,7 @@ int outputs_setup_make(struct outputs_setup *made, const struct simulate_options
                                         .apart = &made->all,
                                         .n_inputs = model->n_files,
                                         .inputs = (const char *const *)model->files};
-    return code || !phases->now ? code : add_phases(made, phases, error);
+    return code || !phases->now ? code : outputs_setup_add_phases(made, phases, error);
 }
 
 void outputs_setup_free(struct outputs_setup *made)

@@ -12,7 +12,7 @@ struct comparison {
     struct cloth_error *error;
 };
 
-static int differs(const struct comparison *of, const char *what)
+static int phases_check_differs(const struct comparison *of, const char *what)
 {
     return model_fail(of->phase->place, of->error,
                       "phase '%.60s' has %s than the first phase; frames, probes and their names "
@@ -23,7 +23,7 @@ static int differs(const struct comparison *of, const char *what)
 static int check_cloths(const struct comparison *of)
 {
     if (of->first->n_cloths != of->model->n_cloths)
-        return differs(of, "another number of cloths");
+        return phases_check_differs(of, "another number of cloths");
     for (uint32_t c = 0; c < of->first->n_cloths; c++) {
         const struct model_cloth *a = of->first->cloths + c, *b = of->model->cloths + c;
         char what[160];
@@ -35,7 +35,7 @@ static int check_cloths(const struct comparison *of)
                  renamed ? "another name of cloth '%.60s'"
                          : "other vertices or triangles of cloth '%.60s'",
                  a->name);
-        return differs(of, what);
+        return phases_check_differs(of, what);
     }
     return CLOTH_OK;
 }
@@ -63,7 +63,7 @@ static int check_probes(const struct comparison *of)
     bool same = of->first->n_probes == of->model->n_probes;
     for (uint32_t i = 0; same && i < of->first->n_probes; i++)
         same = same_probe(of->first->probes + i, of->model->probes + i);
-    return same ? CLOTH_OK : differs(of, "other probes");
+    return same ? CLOTH_OK : phases_check_differs(of, "other probes");
 }
 
 static bool same_body(const struct contact_body *a, const struct contact_body *b)
@@ -87,7 +87,8 @@ static int check_obstacles(const struct comparison *of)
     bool same = of->first->n_obstacles == of->model->n_obstacles;
     for (uint32_t i = 0; same && i < of->first->n_obstacles; i++)
         same = same_obstacle(of, i);
-    return same ? CLOTH_OK : differs(of, "other obstacles, or motions about other points,");
+    return same ? CLOTH_OK
+                : phases_check_differs(of, "other obstacles, or motions about other points,");
 }
 
 static bool same_hdf5(const struct model_hdf5 *a, const struct model_hdf5 *b)
@@ -103,13 +104,14 @@ int phases_check(const struct model *first, const struct model *model, uint32_t 
 {
     const struct comparison of = {first, model, model->phases + phase, error};
     if (strcmp(first->name, model->name) != 0)
-        return differs(&of, "another name of the scene");
+        return phases_check_differs(&of, "another name of the scene");
     if (first->fps < model->fps || first->fps > model->fps)
-        return differs(&of, "another time.fps");
+        return phases_check_differs(&of, "another time.fps");
     if (model_shows_contact(first) != model_shows_contact(model))
-        return differs(&of, "another contact.force, or contact that is not certified in both,");
+        return phases_check_differs(
+            &of, "another contact.force, or contact that is not certified in both,");
     if (!same_hdf5(&first->hdf5, &model->hdf5))
-        return differs(&of, "another output.hdf5");
+        return phases_check_differs(&of, "another output.hdf5");
     int code = check_cloths(&of);
     if (!code)
         code = check_obstacles(&of);

@@ -53,7 +53,7 @@ struct course {
     uint32_t n;
 };
 
-static void add(struct course *to, struct phys_key key, double time)
+static void phases_motions_add(struct course *to, struct phys_key key, double time)
 {
     const struct phys_key *last = to->n ? to->key + to->n - 1 : NULL;
     key.time = time;
@@ -70,18 +70,19 @@ static void add_phase(struct course *to, const struct model *model, uint32_t obs
                       double seconds)
 {
     const struct contact_shape *shape = model->obstacles + obstacle;
-    add(to, key_at(model, shape, 0), begin);
+    phases_motions_add(to, key_at(model, shape, 0), begin);
     for (uint32_t i = 0; i < shape->n; i++) {
         const struct phys_key *key = &model->keys[shape->first + i];
         if (key->time > 0 && key->time < seconds)
-            add(to, *key, begin + key->time);
+            phases_motions_add(to, *key, begin + key->time);
     }
     if (!isinf(seconds))
-        add(to, key_at(model, shape, seconds), begin + seconds);
+        phases_motions_add(to, key_at(model, shape, seconds), begin + seconds);
 }
 
 /* Begins are added up as the runs count the times of their frames. */
-static void add_phases(struct course *to, const struct phases *phases, uint32_t obstacle)
+static void phases_motions_add_phases(struct course *to, const struct phases *phases,
+                                      uint32_t obstacle)
 {
     double begin = 0;
     for (uint32_t p = 0; p <= phases->now; p++) {
@@ -93,8 +94,8 @@ static void add_phases(struct course *to, const struct phases *phases, uint32_t 
 }
 
 /* The shape and the motion of an obstacle, behind those of the ones before it. */
-static uint32_t take(const struct phases *phases, uint32_t obstacle, uint32_t first,
-                     struct phases_motions *motions)
+static uint32_t phases_motions_take(const struct phases *phases, uint32_t obstacle, uint32_t first,
+                                    struct phases_motions *motions)
 {
     struct contact_shape *shape = motions->obstacles + obstacle;
     struct course course = {motions->keys + first, 0};
@@ -106,7 +107,7 @@ static uint32_t take(const struct phases *phases, uint32_t obstacle, uint32_t fi
         moves = moves || of->n;
     }
     if (moves)
-        add_phases(&course, phases, obstacle);
+        phases_motions_add_phases(&course, phases, obstacle);
     shape->first = first;
     shape->n = course.n;
     return first + course.n;
@@ -127,7 +128,7 @@ int phases_motions(const struct phases *phases, struct phases_motions *motions,
     uint32_t n = 0;
     for (uint32_t i = 0; i < model->n_obstacles; i++) {
         motions->obstacles[i] = model->obstacles[i];
-        n = take(phases, i, n, motions);
+        n = phases_motions_take(phases, i, n, motions);
     }
     return CLOTH_OK;
 }

@@ -11,7 +11,8 @@
 #include <string.h>
 #include <xxhash.h>
 
-static int put_file(FILE *to, const char *phase, const char *path, struct cloth_error *error)
+static int phases_settings_put_file(FILE *to, const char *phase, const char *path,
+                                    struct cloth_error *error)
 {
     unsigned char bytes[1 << 14];
     XXH64_state_t *hash = XXH64_createState();
@@ -47,7 +48,7 @@ static int put_phase(FILE *to, const struct phases *phases, uint32_t i, struct c
         line += n + (line[n] == '\n');
     }
     for (uint32_t k = 1; k < model->n_files && !code; k++)
-        code = put_file(to, phase, model->files[k], error);
+        code = phases_settings_put_file(to, phase, model->files[k], error);
     return code;
 }
 
@@ -83,7 +84,8 @@ static size_t key_length(const char *line, size_t n)
     return length;
 }
 
-static int differs(const char *path, const char *now, const char *was, struct cloth_error *error)
+static int phases_settings_differs(const char *path, const char *now, const char *was,
+                                   struct cloth_error *error)
 {
     const size_t n = strcspn(now, "\n"), m = strcspn(was, "\n");
     const size_t key = key_length(now, n), key_was = key_length(was, m);
@@ -114,7 +116,8 @@ int phases_compare(const char *path, const char *now, const void *was_bytes, siz
     size_t line = 0, i = 0;
     for (; now[i] && now[i] == was[i]; i++)
         line = now[i] == '\n' ? i + 1 : line;
-    const int code = now[i] == was[i] ? CLOTH_OK : differs(path, now + line, was + line, error);
+    const int code =
+        now[i] == was[i] ? CLOTH_OK : phases_settings_differs(path, now + line, was + line, error);
     free(was);
     return code;
 }

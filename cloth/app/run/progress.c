@@ -9,7 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
-static double now(void)
+static double progress_now(void)
 {
     struct timespec time;
     clock_gettime(CLOCK_MONOTONIC, &time);
@@ -19,7 +19,7 @@ static double now(void)
 void progress_begin(struct progress *progress, const char *phase)
 {
     *progress = (struct progress){.phase = phase, .terminal = isatty(STDERR_FILENO) == 1};
-    progress->begun = progress->shown = now();
+    progress->begun = progress->shown = progress_now();
 }
 
 /* Columns that the line may have. */
@@ -109,7 +109,7 @@ void progress_step(struct progress *progress, uint64_t step, uint64_t steps,
                    const struct progress_counts *counts)
 {
     progress->first = progress->first ? progress->first : step;
-    double time = now(), pause = progress->terminal ? 0.1 : 10;
+    double time = progress_now(), pause = progress->terminal ? 0.1 : 10;
     if (time - progress->shown < pause && !(progress->terminal && step == steps))
         return;
     char line[400];

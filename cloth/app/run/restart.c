@@ -23,7 +23,7 @@ struct saved_phase {
 
 /* ---- Reading ---- */
 
-static int refuse(const struct restart *restart, struct cloth_error *error)
+static int restart_refuse(const struct restart *restart, struct cloth_error *error)
 {
     return cloth_fail(error, CLOTH_E_INPUT, "%s does not fit this scene", restart->checkpoint.path);
 }
@@ -43,14 +43,14 @@ static int open_saved(const struct restart *restart, struct saved *saved, struct
 {
     const struct output_part *part = restart->checkpoint.part + 1;
     if (part->n < sizeof *saved)
-        return refuse(restart, error);
+        return restart_refuse(restart, error);
     memcpy(saved, part->bytes, sizeof *saved);
     const uint64_t most = part->n / sizeof(double);
     if (saved->n_start > most || saved->n_drape > most || saved->now >= saved->n_phases ||
         part->n != sizeof *saved + saved->n_phases * sizeof(struct saved_phase) +
                        (saved->n_start + saved->n_drape) * sizeof(double) ||
         !memchr(saved->total.contact_pinch, 0, sizeof saved->total.contact_pinch))
-        return refuse(restart, error);
+        return restart_refuse(restart, error);
     return CLOTH_OK;
 }
 
@@ -82,7 +82,7 @@ static int take_phases(const struct restart *restart, struct phases *phases,
     struct saved saved;
     int code = open_saved(restart, &saved, error);
     if (!code && saved.n_phases != phases->n)
-        code = refuse(restart, error);
+        code = restart_refuse(restart, error);
     const struct saved_phase *of = phases_in(restart);
     for (uint32_t i = 0; i < saved.now && !code; i++) {
         struct phase_done *done = phases->done + i;
@@ -93,7 +93,7 @@ static int take_phases(const struct restart *restart, struct phases *phases,
         done->wall_seconds = of[i].wall_seconds;
         done->ended = word_of(of[i].ended);
         if (!code && !done->ended)
-            code = refuse(restart, error);
+            code = restart_refuse(restart, error);
     }
     if (code)
         return code;
@@ -102,7 +102,7 @@ static int take_phases(const struct restart *restart, struct phases *phases,
     if (!saved.now)
         return CLOTH_OK;
     if (saved.n_start != phases_numbers(phases))
-        return refuse(restart, error);
+        return restart_refuse(restart, error);
     return phases_start(phases, numbers_in(restart, &saved), error);
 }
 
@@ -143,7 +143,7 @@ int restart_outputs(const struct restart *restart, struct outputs *to, struct cl
         return code;
     to->found = saved.found;
     if (saved.n_drape != (to->drape ? drape_numbers(to->drape) : 0))
-        return refuse(restart, error);
+        return restart_refuse(restart, error);
     if (to->drape)
         drape_set(to->drape, numbers_in(restart, &saved) + saved.n_start);
     return CLOTH_OK;

@@ -31,7 +31,8 @@ static void free_tangle(struct tangle *tangle)
     free(tangle->layer);
 }
 
-static int make_room(struct tangle *to, const struct model *model, struct cloth_error *error)
+static int run_start_make_room(struct tangle *to, const struct model *model,
+                               struct cloth_error *error)
 {
     to->n = model_first(model, model->n_cloths);
     to->start = cloth_alloc(to->n, sizeof *to->start, error);
@@ -44,7 +45,8 @@ static int make_room(struct tangle *to, const struct model *model, struct cloth_
     return error->code ? error->code : model_soup(model, &to->soup, error);
 }
 
-static void take_cloths(const struct model *model, const struct flow *flow, struct tangle *to)
+static void run_start_take_cloths(const struct model *model, const struct flow *flow,
+                                  struct tangle *to)
 {
     const uint32_t *same = to->soup.same;
     flow_starts(flow, to->start, to->held);
@@ -120,8 +122,8 @@ static void name_point(const struct model *model, uint32_t n, uint32_t point, ch
 }
 
 /* Pairs that intersect start_check names. */
-static int refuse(const struct model *model, const struct untangle_result *result,
-                  struct cloth_error *error)
+static int run_start_refuse(const struct model *model, const struct untangle_result *result,
+                            struct cloth_error *error)
 {
     const struct untangle_count *left = &result->left;
     char near[4][80] = {""};
@@ -139,14 +141,14 @@ static int refuse(const struct model *model, const struct untangle_result *resul
                       near[2], near[3]);
 }
 
-static bool is_free(const struct untangle_count *left)
+static bool run_start_is_free(const struct untangle_count *left)
 {
     return !(left->pairs + left->entered + left->near + left->layers);
 }
 
-static int check(const struct model *model, const struct contact_apart *apart,
-                 const double *position, struct intersections_found *found,
-                 struct cloth_error *error)
+static int run_start_check(const struct model *model, const struct contact_apart *apart,
+                           const double *position, struct intersections_found *found,
+                           struct cloth_error *error)
 {
     struct intersections *intersections = NULL;
     int code =
@@ -168,7 +170,7 @@ static int name_pairs(const struct model *model, const struct tangle *of, struct
     for (uint32_t v = 0; v < of->n; v++)
         for (size_t k = 0; k < 3; k++)
             position[3 * (size_t)v + k] = of->x[of->soup.same[v]][k];
-    const int code = check(model, &of->apart, position, &found, error);
+    const int code = run_start_check(model, &of->apart, position, &found, error);
     free(position);
     return code;
 }
@@ -188,9 +190,9 @@ static int make_free(struct model *model, struct flow **flow, int ranks, bool sa
                                            .bodies = &model->bodies};
     const struct untangle_listener listener = {&says, say_round};
     int code = untangle(&cloths, tangle->x, &listener, result, error);
-    if (!code && !is_free(&result->left)) {
+    if (!code && !run_start_is_free(&result->left)) {
         code = name_pairs(model, tangle, error);
-        return code ? code : refuse(model, result, error);
+        return code ? code : run_start_refuse(model, result, error);
     }
     if (code || !result->moved)
         return code;
@@ -209,9 +211,9 @@ int start_untangle(struct model *model, struct flow **flow, int ranks, bool says
     *result = (struct untangle_result){0};
     if (!model_promise(model).apart || !model->contact.untangle)
         return CLOTH_OK;
-    int code = make_room(&tangle, model, error);
+    int code = run_start_make_room(&tangle, model, error);
     if (!code) {
-        take_cloths(model, *flow, &tangle);
+        run_start_take_cloths(model, *flow, &tangle);
         code = make_free(model, flow, ranks, says, &tangle, result, error);
     }
     free_tangle(&tangle);
@@ -226,7 +228,7 @@ int start_check(const struct model *model, const struct flow *flow,
     if (!position)
         return CLOTH_E_MEMORY;
     flow_start(flow, position);
-    int code = check(model, apart, position, &found, error);
+    int code = run_start_check(model, apart, position, &found, error);
     if (!code && found.bad)
         code = cloth_fail(error, CLOTH_E_INPUT,
                           "%s: where the run starts %" PRIu64

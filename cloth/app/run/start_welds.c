@@ -49,7 +49,7 @@ static bool moves(const struct motion *motion, uint32_t v)
     return differs;
 }
 
-static void fail(struct motion *motion, uint32_t n, const uint32_t *vertex)
+static void start_welds_fail(struct motion *motion, uint32_t n, const uint32_t *vertex)
 {
     if (!motion->fails)
         for (uint32_t k = 0; k < n; k++)
@@ -84,7 +84,7 @@ static bool passes(enum contact_pair pair, const phys_vec x[4], const phys_vec y
     return all;
 }
 
-static bool meets(const struct motion *motion, uint32_t n, const uint32_t *vertex)
+static bool start_welds_meets(const struct motion *motion, uint32_t n, const uint32_t *vertex)
 {
     const struct model *model = motion->model;
     const uint32_t cloth = contact_soup_cloth(&motion->soup, vertex[0]);
@@ -94,7 +94,7 @@ static bool meets(const struct motion *motion, uint32_t n, const uint32_t *verte
     return model_meets(model, cloth, contact_soup_cloth(&motion->soup, vertex[n - 1]));
 }
 
-static void look_at(struct motion *motion, const struct contact_candidate *candidate)
+static void start_welds_look_at(struct motion *motion, const struct contact_candidate *candidate)
 {
     const struct contact_skin *other = motion->body ? motion->body->skin : &motion->skin;
     uint32_t point[4], vertex[4], n = 0;
@@ -111,20 +111,20 @@ static void look_at(struct motion *motion, const struct contact_candidate *candi
         if (!of_body)
             vertex[n++] = point[k];
     }
-    if (moving && meets(motion, n, vertex) && !passes(pair, x, y))
-        fail(motion, n, vertex);
+    if (moving && start_welds_meets(motion, n, vertex) && !passes(pair, x, y))
+        start_welds_fail(motion, n, vertex);
 }
 
-static void visit(void *to, uint32_t n, const struct contact_candidate *candidate)
+static void start_welds_visit(void *to, uint32_t n, const struct contact_candidate *candidate)
 {
     for (uint32_t i = 0; i < n; i++)
-        look_at(to, candidate + i);
+        start_welds_look_at(to, candidate + i);
 }
 
 /* ---- Obstacles ---- */
 
-static int look_at_body(struct motion *motion, const struct contact_body *body,
-                        const struct contact_pose *pose, struct cloth_error *error)
+static int start_welds_look_at_body(struct motion *motion, const struct contact_body *body,
+                                    const struct contact_pose *pose, struct cloth_error *error)
 {
     const size_t n = body->n_vertices;
     const phys_vec none = {0};
@@ -141,7 +141,7 @@ static int look_at_body(struct motion *motion, const struct contact_body *body,
         contact_body_ends(body, pose, x, y, &way);
         contact_refit(&skin, x, x, &none, boxes);
         motion->body = &side;
-        contact_query(&motion->side, &side, REACH, visit, motion);
+        contact_query(&motion->side, &side, REACH, start_welds_visit, motion);
         motion->body = NULL;
     }
     free(x);
@@ -161,8 +161,8 @@ static void look_at_solid(struct motion *motion, const struct contact_shape *sha
         const phys_vec x[3] = {motion->x[v[0]], motion->x[v[1]], motion->x[v[2]]};
         const phys_vec y[3] = {motion->y[v[0]], motion->y[v[1]], motion->y[v[2]]};
         const bool moving = moves(motion, v[0]) || moves(motion, v[1]) || moves(motion, v[2]);
-        if (moving && meets(motion, 3, v) && !contact_solid_certify(&solid, x, y, 0))
-            fail(motion, 3, v);
+        if (moving && start_welds_meets(motion, 3, v) && !contact_solid_certify(&solid, x, y, 0))
+            start_welds_fail(motion, 3, v);
     }
 }
 
@@ -177,7 +177,7 @@ static int look_at_obstacles(struct motion *motion, struct cloth_error *error)
         contact_pose_over(shape, model->keys, &model->bodies, 0, 0, &pose);
         motion->obstacle = i + 1;
         if (body)
-            code = look_at_body(motion, body, &pose, error);
+            code = start_welds_look_at_body(motion, body, &pose, error);
         else
             look_at_solid(motion, shape, &pose);
     }
@@ -186,7 +186,7 @@ static int look_at_obstacles(struct motion *motion, struct cloth_error *error)
 
 /* ---- The cloths ---- */
 
-static int make_room(struct motion *motion, struct cloth_error *error)
+static int start_welds_make_room(struct motion *motion, struct cloth_error *error)
 {
     const struct model *model = motion->model;
     if (model_soup(model, &motion->soup, error))
@@ -205,7 +205,8 @@ static int make_room(struct motion *motion, struct cloth_error *error)
 }
 
 /* Returns true if anything moves. */
-static bool take_places(struct motion *motion, const double (*before)[3], const double *after)
+static bool start_welds_take_places(struct motion *motion, const double (*before)[3],
+                                    const double *after)
 {
     bool any = false;
     for (uint32_t v = 0; v < motion->n; v++) {
@@ -222,7 +223,7 @@ static bool take_places(struct motion *motion, const double (*before)[3], const 
     return any;
 }
 
-static int make_skin(struct motion *motion, struct cloth_error *error)
+static int start_welds_make_skin(struct motion *motion, struct cloth_error *error)
 {
     const phys_vec none = {0};
     const struct contact_skin counts = {.n_points = motion->n,
@@ -250,7 +251,8 @@ static int make_skin(struct motion *motion, struct cloth_error *error)
     return CLOTH_OK;
 }
 
-static int refuse(const struct motion *motion, const char *scene, struct cloth_error *error)
+static int start_welds_refuse(const struct motion *motion, const char *scene,
+                              struct cloth_error *error)
 {
     const struct model *model = motion->model;
     char vertices[200] = "", with[60] = "the cloth";
@@ -286,20 +288,20 @@ static int certify(struct motion *motion, const struct flow *flow, const char *s
                    struct cloth_error *error)
 {
     double *after = cloth_alloc(flow_vertices(flow), 3 * sizeof *after, error);
-    int code = after ? make_room(motion, error) : CLOTH_E_MEMORY;
+    int code = after ? start_welds_make_room(motion, error) : CLOTH_E_MEMORY;
     if (!code)
         flow_start(flow, after);
-    const bool any = !code && take_places(motion, flow_unwelded(flow), after);
+    const bool any = !code && start_welds_take_places(motion, flow_unwelded(flow), after);
     free(after);
     if (!any)
         return code;
     memset(motion->stands, ALL_FEATURES, motion->n_triangles);
-    code = make_skin(motion, error);
+    code = start_welds_make_skin(motion, error);
     if (code)
         return code;
-    contact_query(&motion->side, &motion->side, REACH, visit, motion);
+    contact_query(&motion->side, &motion->side, REACH, start_welds_visit, motion);
     code = look_at_obstacles(motion, error);
-    return code || !motion->fails ? code : refuse(motion, scene, error);
+    return code || !motion->fails ? code : start_welds_refuse(motion, scene, error);
 }
 
 int start_welds(const struct model *model, const struct flow *flow,

@@ -60,7 +60,7 @@ static int open_show(struct live *live, struct cloth_error *error)
 }
 
 /* Waits for news, and reads the frame. */
-static int look(struct live *live, double seconds, bool *fresh, struct cloth_error *error)
+static int live_look(struct live *live, double seconds, bool *fresh, struct cloth_error *error)
 {
     enum live_news news;
     int code = live_follow(live->follower, seconds, &news, error);
@@ -110,7 +110,7 @@ int view_live_picture(const struct view_wish *wish, const char *png, double seco
     struct live live = {.wish = wish};
     bool fresh = false;
     int code = live_follow_open(&live.follower, wish->folder, error);
-    code = code ? code : look(&live, seconds, &fresh, error);
+    code = code ? code : live_look(&live, seconds, &fresh, error);
     if (!code && !fresh)
         code = fail_late(&live, seconds, error);
     code = code ? code : draw_picture(&live, png, error);
@@ -124,7 +124,7 @@ int view_live_picture(const struct view_wish *wish, const char *png, double seco
 static int look_again(struct view_live *view, struct cloth_error *error)
 {
     struct live *live = view->context;
-    const int code = look(live, 0, &view->fresh, error);
+    const int code = live_look(live, 0, &view->fresh, error);
     view->show = live->show;
     view->line = live_follow_state(live->follower, &view->waits);
     view->frame = live_follow_frame(live->follower);
@@ -138,7 +138,7 @@ static int wait_for_first(struct live *live, struct cloth_error *error)
     bool fresh = false, waits;
     int code = 0;
     while (!code && !fresh) {
-        code = look(live, 0.2, &fresh, error);
+        code = live_look(live, 0.2, &fresh, error);
         const char *line = live_follow_state(live->follower, &waits);
         if (!code && !fresh && strcmp(line, said) != 0)
             fprintf(stderr, "duite-view: %s\n", line);

@@ -96,8 +96,8 @@ static bool has_ties(const struct flow *flow, const struct flow_saved *saved,
     return whole;
 }
 
-static bool has_meetings(const struct flow *flow, const struct flow_saved *saved,
-                         const struct flow_saved_side *side, const uint32_t *kept)
+static bool checkpoint_check_has_meetings(const struct flow *flow, const struct flow_saved *saved,
+                                          const struct flow_saved_side *side, const uint32_t *kept)
 {
     const uint32_t n_sides = saved->n_blocks + flow->model->n_obstacles;
     if (saved->n_kept != (flow_contact_mode(flow->model)->carries ? saved->n_blocks : 0) ||
@@ -127,7 +127,7 @@ const char *flow_saved_wrong(const struct flow *flow, const unsigned char *bytes
         return "counts steps or frames that cannot be";
     if (!has_ties(flow, &saved, &arrays.tied))
         return "has ties between blocks that this scene cannot have";
-    if (!has_meetings(flow, &saved, arrays.side, arrays.kept))
+    if (!checkpoint_check_has_meetings(flow, &saved, arrays.side, arrays.kept))
         return "has contacts between blocks or obstacles that this scene does not have";
     return NULL;
 }
@@ -153,7 +153,7 @@ static uint32_t points_of(const struct flow *flow, uint32_t side)
     return body ? body->n_vertices : 0;
 }
 
-static bool has_corners(const struct flow *flow, const struct flow_tie_corners *at)
+static bool checkpoint_check_has_corners(const struct flow *flow, const struct flow_tie_corners *at)
 {
     for (uint32_t k = 0; k < at->n; k++)
         if (at->block[k] >= flow->tables.n_blocks ||
@@ -185,7 +185,7 @@ static bool is_contact(const struct flow *flow, uint32_t block, const struct flo
                  : contact->kind > CONTACT_TV || contact->first == SOLVE_TIE_CORNERS ||
                        contact->at.n != (other < n_blocks ? SOLVE_TIE_CORNERS : contact->first))
         return false;
-    return has_points(flow, contact) && has_corners(flow, &contact->at);
+    return has_points(flow, contact) && checkpoint_check_has_corners(flow, &contact->at);
 }
 
 bool flow_saved_are_contacts(const struct flow *flow, uint32_t block, const unsigned char *bytes,

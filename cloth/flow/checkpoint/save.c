@@ -97,7 +97,7 @@ static struct flow_saved describe_saved(const struct flow_state *state, bool fin
     return saved;
 }
 
-static unsigned char *put_bytes(unsigned char *to, const void *from, size_t n)
+static unsigned char *save_put_bytes(unsigned char *to, const void *from, size_t n)
 {
     if (n)
         memcpy(to, from, n);
@@ -109,20 +109,20 @@ static void put_main(const struct flow_state *state, const struct flow_saved *sa
 {
     const struct flow_tied_blocks *tied = &state->tied.now;
     const unsigned char *end = to + saved->main_bytes;
-    to = put_bytes(to, saved, sizeof *saved);
+    to = save_put_bytes(to, saved, sizeof *saved);
     if (saved->has_ties) {
-        to = put_bytes(to, tied->room, saved->n_blocks * sizeof *tied->room);
-        to = put_bytes(to, tied->first, ((size_t)saved->n_blocks + 1) * sizeof *tied->first);
-        to = put_bytes(to, tied->other, saved->n_others * sizeof *tied->other);
-        to = put_bytes(to, tied->place, saved->n_others * sizeof *tied->place);
+        to = save_put_bytes(to, tied->room, saved->n_blocks * sizeof *tied->room);
+        to = save_put_bytes(to, tied->first, ((size_t)saved->n_blocks + 1) * sizeof *tied->first);
+        to = save_put_bytes(to, tied->other, saved->n_others * sizeof *tied->other);
+        to = save_put_bytes(to, tied->place, saved->n_others * sizeof *tied->place);
     }
     for (uint32_t i = 0; i < saved->n_meetings; i++) {
         const struct flow_meeting *of = state->contact.meetings.all + i;
         const struct flow_saved_side side = {{of->side[0], of->side[1]}, of->room};
-        to = put_bytes(to, &side, sizeof side);
+        to = save_put_bytes(to, &side, sizeof side);
     }
     for (uint32_t b = 0; b < saved->n_kept; b++)
-        to = put_bytes(to, &state->contact.kept[b].n[state->contact.begin], sizeof(uint32_t));
+        to = save_put_bytes(to, &state->contact.kept[b].n[state->contact.begin], sizeof(uint32_t));
     memset(to, 0, (size_t)(end - to));
 }
 

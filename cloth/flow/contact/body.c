@@ -6,14 +6,14 @@
 #include "cloth/flow/run/step.h"
 #include "cloth/flow/state/bodies.h"
 
-static const struct contact_body *body_of(const struct model *model, uint32_t obstacle)
+static const struct contact_body *contact_body_of(const struct model *model, uint32_t obstacle)
 {
     return contact_bodies_at(&model->bodies, model->obstacles[obstacle].body);
 }
 
 /* ---- Places in the fields ---- */
 
-static size_t whole_lines(size_t bytes)
+static size_t contact_body_whole_lines(size_t bytes)
 {
     return (bytes + CONTACT_ALIGN - 1) / CONTACT_ALIGN * CONTACT_ALIGN;
 }
@@ -22,13 +22,13 @@ struct flow_body_place flow_body_place(const struct model *model, uint32_t obsta
 {
     struct flow_body_place place = {0};
     for (uint32_t i = 0; i < obstacle; i++) {
-        const struct contact_body *body = body_of(model, i);
+        const struct contact_body *body = contact_body_of(model, i);
         if (!body)
             continue;
-        place.skin += whole_lines(contact_body_skin_bytes(body));
+        place.skin += contact_body_whole_lines(contact_body_skin_bytes(body));
         place.vertex += body->n_vertices;
         place.point += 2 * (size_t)body->n_vertices;
-        place.boxes += whole_lines(contact_body_boxes_bytes(body));
+        place.boxes += contact_body_whole_lines(contact_body_boxes_bytes(body));
     }
     return place;
 }
@@ -45,7 +45,7 @@ bool flow_bodies_move(const struct model *model)
 {
     bool move = false;
     for (uint32_t i = 0; i < model->n_obstacles; i++) {
-        const struct contact_body *body = body_of(model, i);
+        const struct contact_body *body = contact_body_of(model, i);
         move = move || (body && (model->obstacles[i].n || body->n_frames));
     }
     return move;
@@ -75,7 +75,7 @@ static int body_skin_body(const duite_call *call, const struct body_skin_fields 
     struct cloth_error error = {0};
     memset(on->body_skins, 0, flow_body_place(model, model->n_obstacles).skin);
     for (uint32_t i = 0; i < model->n_obstacles; i++) {
-        const struct contact_body *body = body_of(model, i);
+        const struct contact_body *body = contact_body_of(model, i);
         const struct flow_body_place place = flow_body_place(model, i);
         if (!body)
             continue;
@@ -109,7 +109,7 @@ static int body_refit_body(const duite_call *call, const struct body_refit_field
     const struct model *model = flow_of(call)->model;
     memset(on->body_boxes, 0, flow_body_place(model, model->n_obstacles).boxes);
     for (uint32_t i = 0; i < model->n_obstacles; i++) {
-        const struct contact_body *body = body_of(model, i);
+        const struct contact_body *body = contact_body_of(model, i);
         const struct flow_body_place place = flow_body_place(model, i);
         struct contact_pose pose;
         phys_vec way;

@@ -47,7 +47,7 @@ __attribute__((format(printf, 3, 4))) static void append_text(char *text, size_t
 }
 
 /* The cloth of a vertex that counts over all cloths. */
-static uint32_t cloth_of(const struct flow *flow, uint32_t vertex)
+static uint32_t certified_cloth_of(const struct flow *flow, uint32_t vertex)
 {
     uint32_t c = flow->model->n_cloths - 1;
     while (flow->cloth_first[c] > vertex)
@@ -57,8 +57,8 @@ static uint32_t cloth_of(const struct flow *flow, uint32_t vertex)
 
 /* Writes the parts of a pair: vertices as their meshes count them, from 1, and the obstacle. Only
  * rank 0 knows them. */
-static void describe_pair(const struct flow_state *state, const struct flow_near *near, size_t size,
-                          char *text)
+static void certified_describe_pair(const struct flow_state *state, const struct flow_near *near,
+                                    size_t size, char *text)
 {
     const struct flow *flow = state->flow;
     const struct flow_tie_corners *at = &near->contact.at;
@@ -70,7 +70,7 @@ static void describe_pair(const struct flow_state *state, const struct flow_near
     append_text(text, size, "vertices");
     for (uint32_t k = 0; k < at->n; k++) {
         const uint32_t place = flow->tables.block[at->block[k]].first + at->row[k];
-        const uint32_t vertex = flow->vertex[place], c = cloth_of(flow, vertex);
+        const uint32_t vertex = flow->vertex[place], c = certified_cloth_of(flow, vertex);
         if (k && c != last)
             append_text(text, size, " of '%.40s' and", flow->model->cloths[last].name);
         append_text(text, size, " %" PRIu32 "%s", vertex - flow->cloth_first[c] + 1,
@@ -103,7 +103,7 @@ static int describe_first_of(struct flow_state *state, const struct flow_meeting
     while (!code && i < list->n && !near[i].fails)
         i++;
     if (!code && i < list->n)
-        describe_pair(state, near + i, size, text);
+        certified_describe_pair(state, near + i, size, text);
     free(list);
     return code;
 }
@@ -297,7 +297,7 @@ static void note_settled(struct flow_state *state, bool accepted)
 
 /* ---- In tasks ---- */
 
-static bool is_certified(const struct model *model)
+static bool certified_is(const struct model *model)
 {
     return model_promise(model).apart;
 }
@@ -318,7 +318,7 @@ static void press_row(const struct contact_spring *spring, const struct flow_tie
     to->against = to->value;
 }
 
-const struct flow_contact_mode flow_contact_certified = {.is = is_certified,
+const struct flow_contact_mode flow_contact_certified = {.is = certified_is,
                                                          .start = start_certified,
                                                          .resume = flow_bodies_make,
                                                          .begin = begin_certified,

@@ -26,7 +26,7 @@ FLOW_KERNEL(cut, FLOW_COLLIDE, struct cut_args,
              MAX(cut_longest), REST_R(meetings)))
 
 /* Finds the part of its way that each row may go, by all failing pairs. */
-static void find_parts(const struct cut_fields *on, double *part)
+static void contact_cut_find_parts(const struct cut_fields *on, double *part)
 {
     const uint32_t block = on->args->block;
     for (size_t at = 0; at < on->n_meetings; at++) {
@@ -67,7 +67,7 @@ static int cut_body(const duite_call *call, const struct cut_fields *on)
         return duite_fail(call, FLOW_NO_MEMORY, "out of memory for the ways of a block");
     for (uint32_t i = 0; i < table.n; i++)
         part[i] = 1;
-    find_parts(on, part);
+    contact_cut_find_parts(on, part);
     for (uint32_t i = 0; i < table.n; i++) {
         if (part[i] >= 1)
             continue;

@@ -17,7 +17,7 @@ size_t flow_contact_index_room(size_t n, uint32_t n_blocks)
 }
 
 /* True if no earlier corner is in the block of corner k. */
-static bool is_first(const struct flow_tie_corners *at, uint32_t k)
+static bool contact_index_is_first(const struct flow_tie_corners *at, uint32_t k)
 {
     bool first = true;
     for (uint32_t j = 0; j < k; j++)
@@ -32,12 +32,12 @@ size_t flow_contact_index(struct flow_list *list, uint32_t n_blocks)
     memset(start, 0, (n_blocks + 2) * sizeof *start);
     for (uint32_t i = 0; i < list->n; i++)
         for (uint32_t k = 0; k < contact[i].at.n; k++)
-            start[contact[i].at.block[k] + 2] += is_first(&contact[i].at, k);
+            start[contact[i].at.block[k] + 2] += contact_index_is_first(&contact[i].at, k);
     for (uint32_t b = 0; b < n_blocks; b++)
         start[b + 2] += start[b + 1];
     for (uint32_t i = 0; i < list->n; i++)
         for (uint32_t k = 0; k < contact[i].at.n; k++)
-            if (is_first(&contact[i].at, k))
+            if (contact_index_is_first(&contact[i].at, k))
                 place[start[contact[i].at.block[k] + 1]++] = i;
     return (size_t)((char *)(place + start[n_blocks]) - (char *)list);
 }

@@ -43,8 +43,8 @@ struct corners {
     unsigned held; /* bit k: corner k cannot be cut */
 };
 
-static void find_corners(const struct meeting *m, const struct contact_candidate *candidate,
-                         struct corners *to)
+static void contact_meet_find_corners(const struct meeting *m,
+                                      const struct contact_candidate *candidate, struct corners *to)
 {
     to->pair = contact_candidate_corners(m->skin, m->skin + 1, candidate, to->point, to->side);
     for (unsigned k = 0; k < 4; k++) {
@@ -63,8 +63,8 @@ static void find_held_corners(const struct meeting *m, struct corners *to)
 }
 
 /* The cloth, or behind all cloths the obstacle, that n corners are of, from one on. */
-static uint32_t side_of(const struct meeting *m, const uint32_t point[4],
-                        const unsigned char side[4], uint32_t from, uint32_t n)
+static uint32_t contact_meet_side_of(const struct meeting *m, const uint32_t point[4],
+                                     const unsigned char side[4], uint32_t from, uint32_t n)
 {
     return m->body && side[from] ? m->flow->n_cloths + (m->args->side[1] - m->flow->tables.n_blocks)
                                  : flow_cloth_of(m->skin + side[from], n, point + from);
@@ -75,13 +75,14 @@ static double friction_of(const struct meeting *m, enum contact_pair pair, const
                           const unsigned char side[4])
 {
     const uint32_t n = pair == CONTACT_EE ? 2 : 1; /* of the first one's corners */
-    const uint32_t a = side_of(m, point, side, 0, n), b = side_of(m, point, side, n, 4 - n);
+    const uint32_t a = contact_meet_side_of(m, point, side, 0, n),
+                   b = contact_meet_side_of(m, point, side, n, 4 - n);
     return a < m->flow->n_cloths ? flow_friction_of(m->flow, a, b)
                                  : flow_friction_of(m->flow, b, a);
 }
 
 /* True for a body's vertex and a block's triangle: the triangle comes first. */
-static bool is_turned(const struct meeting *m, const struct corners *corners)
+static bool contact_meet_is_turned(const struct meeting *m, const struct corners *corners)
 {
     return m->body && corners->side[0] == 1;
 }
@@ -100,12 +101,14 @@ static void describe_corner(const struct corners *corners, const struct contact_
 }
 
 /* Fills a contact, in zeroed memory. places: of the corners; they give the row's origin. */
-static void describe_pair(const struct meeting *m, const struct contact_candidate *candidate,
-                          const struct corners *corners, const phys_vec places[4],
-                          const struct contact_nearest *nearest, struct flow_contact *to)
+static void contact_meet_describe_pair(const struct meeting *m,
+                                       const struct contact_candidate *candidate,
+                                       const struct corners *corners, const phys_vec places[4],
+                                       const struct contact_nearest *nearest,
+                                       struct flow_contact *to)
 {
     const int second = corners->side[0]; /* 1: of a triangle of the first side and a vertex */
-    const bool turned = is_turned(m, corners);
+    const bool turned = contact_meet_is_turned(m, corners);
     const double sign = turned ? -1 : 1;
     to->kind = turned ? (uint32_t)CONTACT_TV : (uint32_t)corners->pair;
     to->first = corners->pair == CONTACT_EE ? 2 : (turned ? 3 : 1);
@@ -167,7 +170,7 @@ static bool is_ridge(const struct meeting *m, int side, uint32_t edge, const phy
 static bool presses_body(const struct meeting *m, const struct corners *corners,
                          const struct contact_nearest *nearest)
 {
-    const bool turned = is_turned(m, corners);
+    const bool turned = contact_meet_is_turned(m, corners);
     const phys_vec normal = turned ? -nearest->normal : nearest->normal;
     uint32_t n = 0, vertex[3];
     phys_vec point = {0};
@@ -189,7 +192,7 @@ static bool presses_body(const struct meeting *m, const struct corners *corners,
 
 /* True if two features are nearest inside both: a vertex is above the inside of a triangle, edges
  * cross. */
-static bool is_inside(const struct contact_nearest *nearest)
+static bool contact_meet_is_inside(const struct contact_nearest *nearest)
 {
     bool inside = true;
     for (int k = 0; k < 4; k++)
@@ -208,8 +211,9 @@ static bool presses(const struct meeting *m, const struct contact_candidate *can
     if (m->body)
         return presses_body(m, corners, nearest);
     if (candidate->kind != CONTACT_EE)
-        return is_inside(nearest) || nearest->gap < m->model->contact.thickness;
-    return is_inside(nearest) && is_ridge(m, 0, candidate->of[0], &nearest->normal, 1) &&
+        return contact_meet_is_inside(nearest) || nearest->gap < m->model->contact.thickness;
+    return contact_meet_is_inside(nearest) &&
+           is_ridge(m, 0, candidate->of[0], &nearest->normal, 1) &&
            is_ridge(m, 1, candidate->of[1], &nearest->normal, -1);
 }
 
@@ -220,7 +224,7 @@ static void list_pair(struct meeting *m, const struct contact_candidate *candida
     struct flow_near near;
     memset(&near, 0, sizeof near); /* padding, too: lists are compared byte by byte */
     find_held_corners(m, corners);
-    describe_pair(m, candidate, corners, corners->y, nearest, &near.contact);
+    contact_meet_describe_pair(m, candidate, corners, corners->y, nearest, &near.contact);
     for (uint32_t k = 0; k < 4; k++)
         near.part[k] = 1;
     append_pair(m, &near);
@@ -246,14 +250,14 @@ static void fail_pair(struct meeting *m, const struct contact_candidate *candida
     memset(&near, 0, sizeof near);
     find_held_corners(m, corners);
     contact_nearest_of(corners->pair, corners->x, &nearest);
-    describe_pair(m, candidate, corners, corners->x, &nearest, &near.contact);
+    contact_meet_describe_pair(m, candidate, corners, corners->x, &nearest, &near.contact);
     near.fails = true;
     near.presses = true;
     near.contact.row.firm = contact_row_firm_for(&near.contact.row, gap_ahead(corners, &nearest));
     (void)contact_cut(corners->pair, corners->x, corners->y, m->model->contact.thickness,
                       corners->held, part);
     for (uint32_t k = 0; k < 4; k++)
-        near.part[k] = part[(k + is_turned(m, corners)) % 4];
+        near.part[k] = part[(k + contact_meet_is_turned(m, corners)) % 4];
     append_pair(m, &near);
 }
 
@@ -283,7 +287,8 @@ static void look_at_pair(struct meeting *m, const struct contact_candidate *cand
 }
 
 /* True if the two sides do not meet, or the block's feature is attached to the body. */
-static bool is_left_out(const struct meeting *m, const struct contact_candidate *candidate)
+static bool contact_meet_is_left_out(const struct meeting *m,
+                                     const struct contact_candidate *candidate)
 {
     uint32_t point[4];
     unsigned char side[4];
@@ -306,9 +311,9 @@ static void visit_pairs(void *to, uint32_t n, const struct contact_candidate *ca
     for (uint32_t i = 0; i < n; i += AT_ONCE) {
         const uint32_t some = n - i < AT_ONCE ? n - i : AT_ONCE;
         for (uint32_t k = 0; k < some; k++)
-            find_corners(m, candidate + i + k, corners + k);
+            contact_meet_find_corners(m, candidate + i + k, corners + k);
         for (uint32_t k = 0; k < some; k++)
-            if (!m->leaves_out || !is_left_out(m, candidate + i + k))
+            if (!m->leaves_out || !contact_meet_is_left_out(m, candidate + i + k))
                 look_at_pair(m, candidate + i + k, corners + k);
     }
 }

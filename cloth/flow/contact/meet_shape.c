@@ -80,7 +80,8 @@ static void describe_place(const struct meeting *m, uint32_t n, const uint32_t *
 
 /* ---- The gap ahead ---- */
 
-static bool is_certified(const struct meeting *m, const phys_vec x[3], const phys_vec y[3])
+static bool meet_shape_is_certified(const struct meeting *m, const phys_vec x[3],
+                                    const phys_vec y[3])
 {
     return contact_solid_certify(&m->solid, x, y, m->model->contact.thickness);
 }
@@ -104,7 +105,7 @@ static bool fails_alone(const struct meeting *m, const phys_vec x[3], const phys
     bool fails = false;
     for (int k = 0; k < 3; k++) {
         const phys_vec begin[3] = {x[k], x[k], x[k]}, end[3] = {y[k], y[k], y[k]};
-        fails = fails || !is_certified(m, begin, end);
+        fails = fails || !meet_shape_is_certified(m, begin, end);
     }
     return fails;
 }
@@ -197,7 +198,7 @@ static void list_vertex(struct meeting *m, uint32_t point, const phys_vec x[3], 
     append_place(m, near);
 }
 
-static void look_at_vertex(struct meeting *m, uint32_t vertex)
+static void meet_shape_look_at_vertex(struct meeting *m, uint32_t vertex)
 {
     const uint32_t point = m->skin.vertex[vertex];
     const phys_vec x[3] = {m->x[point], m->x[point], m->x[point]};
@@ -206,7 +207,7 @@ static void look_at_vertex(struct meeting *m, uint32_t vertex)
     memset(&near, 0, sizeof near);
     near.contact.feature[0] = vertex;
     near.contact.feature[1] = FLOW_ON_VERTEX;
-    if (is_certified(m, x, y)) {
+    if (meet_shape_is_certified(m, x, y)) {
         list_vertex(m, point, x, y, &near);
         return;
     }
@@ -269,14 +270,14 @@ static void look_at_places(struct meeting *m)
     look_at_vertices(m);
 }
 
-static void look_at_shape(struct meeting *m)
+static void meet_shape_look_at(struct meeting *m)
 {
     for (uint32_t i = 0; i < m->skin.n_triangles; i++)
         if (!are_left_out(m, 3, m->skin.corner[i]))
             look_at_triangle(m, i);
     for (uint32_t i = 0; i < m->skin.n_vertices; i++)
         if (!are_left_out(m, 1, m->skin.vertex + i))
-            look_at_vertex(m, i);
+            meet_shape_look_at_vertex(m, i);
 }
 
 /* ---- The task ---- */
@@ -309,7 +310,7 @@ static int meet_shape_body(const duite_call *call, const struct meet_shape_field
     m.x = on->skin_x;
     m.y = m.x + m.skin.n_points;
     if (m.sweeps)
-        look_at_shape(&m);
+        meet_shape_look_at(&m);
     else
         look_at_places(&m);
     m.counts[FLOW_COUNT_ALL] = (double)m.n;

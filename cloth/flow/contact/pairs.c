@@ -61,7 +61,7 @@ static int get_root_boxes(struct flow_state *state)
 }
 
 /* True if two boxes are nearer than reach. */
-static bool is_near(const double *a, const double *b, double reach)
+static bool pairs_is_near(const double *a, const double *b, double reach)
 {
     bool near = true;
     for (int c = 0; c < 3; c++)
@@ -105,11 +105,11 @@ static bool sides_are_near(const struct flow_state *state, uint32_t a, uint32_t 
     const bool near =
         is_shape(state, b)
             ? !contact_solid_apart(state->contact.solid + (b - n_blocks), own, own + 3, reach)
-            : is_near(own, root + FLOW_ROOT * (size_t)b, reach);
+            : pairs_is_near(own, root + FLOW_ROOT * (size_t)b, reach);
     return near && sides_meet(state, a, b);
 }
 
-static uint32_t count_sides(const struct flow_state *state)
+static uint32_t pairs_count_sides(const struct flow_state *state)
 {
     return state->flow->tables.n_blocks + state->flow->model->n_obstacles;
 }
@@ -118,7 +118,7 @@ static uint32_t count_sides(const struct flow_state *state)
 static bool all_meet(const struct flow_state *state)
 {
     const struct flow_meetings *meetings = &state->contact.meetings;
-    const uint32_t n_blocks = state->flow->tables.n_blocks, n_sides = count_sides(state);
+    const uint32_t n_blocks = state->flow->tables.n_blocks, n_sides = pairs_count_sides(state);
     const double reach = flow_contact_reach(state->flow->model);
     uint32_t at = 0;
     for (uint32_t a = 0; a < n_blocks; a++)
@@ -134,7 +134,7 @@ static bool all_meet(const struct flow_state *state)
 
 static uint32_t count_near(const struct flow_state *state, double reach)
 {
-    const uint32_t n_blocks = state->flow->tables.n_blocks, n_sides = count_sides(state);
+    const uint32_t n_blocks = state->flow->tables.n_blocks, n_sides = pairs_count_sides(state);
     uint32_t n = 0;
     for (uint32_t a = 0; a < n_blocks; a++)
         for (uint32_t b = a; b < n_sides; b++)
@@ -144,7 +144,7 @@ static uint32_t count_near(const struct flow_state *state, double reach)
 
 /* The object of a list lives with the first side where the sum of both is even, else with the
  * second: so neighbours share the work. */
-static void make_list(struct flow_state *state, struct flow_meeting *meeting)
+static void pairs_make_list(struct flow_state *state, struct flow_meeting *meeting)
 {
     const uint32_t *side = meeting->side;
     const bool second = (side[0] + side[1]) % 2 && side[1] < state->flow->tables.n_blocks;
@@ -164,7 +164,7 @@ static int make_counts(struct flow_state *state)
 static int make_meetings(struct flow_state *state)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
-    const uint32_t n_blocks = state->flow->tables.n_blocks, n_sides = count_sides(state);
+    const uint32_t n_blocks = state->flow->tables.n_blocks, n_sides = pairs_count_sides(state);
     const double reach =
         flow_contact_reach(state->flow->model) + SPARE * state->flow->model->contact.thickness;
     flow_contact_part(state);
@@ -177,7 +177,7 @@ static int make_meetings(struct flow_state *state)
                 continue;
             struct flow_meeting *meeting = meetings->all + meetings->n++;
             *meeting = (struct flow_meeting){.side = {a, b}, .room = LEAST_ROOM};
-            make_list(state, meeting);
+            pairs_make_list(state, meeting);
         }
     return make_counts(state);
 }
@@ -193,7 +193,7 @@ int flow_contact_meet_again(struct flow_state *state, uint32_t n,
         struct flow_meeting *meeting = meetings->all + meetings->n++;
         *meeting =
             (struct flow_meeting){.side = {side[i].side[0], side[i].side[1]}, .room = side[i].room};
-        make_list(state, meeting);
+        pairs_make_list(state, meeting);
     }
     return n ? make_counts(state) : DUITE_OK;
 }
@@ -201,7 +201,7 @@ int flow_contact_meet_again(struct flow_state *state, uint32_t n,
 /* ---- The meetings of a block ---- */
 
 /* True if a block may have a corner of a side's contacts: it is the side or its neighbour. */
-static bool has_corners(const struct flow_state *state, uint32_t block, uint32_t side)
+static bool pairs_has_corners(const struct flow_state *state, uint32_t block, uint32_t side)
 {
     if (side >= state->flow->tables.n_blocks)
         return false;
@@ -215,8 +215,8 @@ static bool has_corners(const struct flow_state *state, uint32_t block, uint32_t
 static bool concerns_block(const struct flow_state *state, const struct flow_meeting *meeting,
                            uint32_t block)
 {
-    return has_corners(state, block, meeting->side[0]) ||
-           has_corners(state, block, meeting->side[1]);
+    return pairs_has_corners(state, block, meeting->side[0]) ||
+           pairs_has_corners(state, block, meeting->side[1]);
 }
 
 uint32_t flow_contact_lists(const struct flow_state *state, uint32_t block, duite_object *to)
@@ -288,14 +288,14 @@ static bool make_longer(struct flow_state *state)
         while (meeting->room < found)
             meeting->room *= 2;
         duite_free(state->rt, meeting->near);
-        make_list(state, meeting);
+        pairs_make_list(state, meeting);
         any = true;
     }
     return any;
 }
 
 /* Sums the counts of all meetings, and how many contacts each block is to keep. */
-static void sum_up(struct flow_state *state, struct flow_seen *seen)
+static void pairs_sum_up(struct flow_state *state, struct flow_seen *seen)
 {
     const struct flow_meetings *meetings = &state->contact.meetings;
     uint32_t *found = state->contact.found;
@@ -339,6 +339,6 @@ int flow_contact_look(struct flow_state *state, struct flow_seen *seen)
     do
         code = code ? code : fork_meetings(state);
     while (!code && make_longer(state));
-    sum_up(state, seen);
+    pairs_sum_up(state, seen);
     return code;
 }

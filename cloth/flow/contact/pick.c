@@ -15,7 +15,7 @@ static bool are_of_one(const struct flow_contact *a, const struct flow_contact *
 }
 
 /* True if the nearest point is inside the triangle that a vertex meets. */
-static bool is_inside(const struct flow_contact *contact)
+static bool pick_is_inside(const struct flow_contact *contact)
 {
     bool inside = true;
     for (uint32_t k = contact->first; k < contact->at.n; k++)
@@ -24,7 +24,7 @@ static bool is_inside(const struct flow_contact *contact)
 }
 
 /* True if the vertex of a contact meets a triangle of that surface from above. */
-static bool is_met(const struct flow_contact *list, size_t n, size_t i)
+static bool pick_is_met(const struct flow_contact *list, size_t n, size_t i)
 {
     const struct flow_contact *contact = list + i;
     size_t from = i;
@@ -32,7 +32,7 @@ static bool is_met(const struct flow_contact *list, size_t n, size_t i)
     while (from > 0 && are_of_one(list + from - 1, contact))
         from--;
     for (size_t to = from; to < n && are_of_one(list + to, contact); to++)
-        met = met || (is_inside(list + to) &&
+        met = met || (pick_is_inside(list + to) &&
                       phys_dot(&list[to].row.normal, &contact->row.normal) > SAME_WAY);
     return met;
 }
@@ -41,7 +41,8 @@ size_t flow_contact_drop_aslant(struct flow_contact *list, size_t n, unsigned ch
 {
     size_t kept = 0;
     for (size_t i = 0; i < n; i++)
-        marks[i] = list[i].kind == CONTACT_VT && !is_inside(list + i) && is_met(list, n, i);
+        marks[i] =
+            list[i].kind == CONTACT_VT && !pick_is_inside(list + i) && pick_is_met(list, n, i);
     for (size_t i = 0; i < n; i++)
         if (!marks[i])
             list[kept++] = list[i];

@@ -63,7 +63,7 @@ struct meeting {
 };
 
 /* True if a row's cloth meets the obstacle. The search begins at the cloth of the row before. */
-static bool is_met(const struct meeting *m, uint32_t row, uint32_t *cloth)
+static bool project_is_met(const struct meeting *m, uint32_t row, uint32_t *cloth)
 {
     if (!m->apart->apart)
         return true;
@@ -77,9 +77,9 @@ static size_t project_rows(const struct meeting *m, uint32_t from, uint32_t to)
     size_t touched = 0;
     uint32_t cloth = 0;
     while (from < to) {
-        const bool met = is_met(m, from, &cloth);
+        const bool met = project_is_met(m, from, &cloth);
         uint32_t end = m->apart->apart ? from + 1 : to;
-        while (end < to && is_met(m, end, &cloth) == met)
+        while (end < to && project_is_met(m, end, &cloth) == met)
             end++;
         if (met)
             touched += contact_project(m->obstacle, &m->pose, end - from, m->table->free + from,
@@ -107,7 +107,7 @@ static size_t obstacle_meets(const duite_call *call, const struct flow_step_args
         const uint32_t row = t->sliding[i][0];
         touched += project_rows(m, from, row);
         from = row + 1;
-        if (!is_met(m, row, &cloth))
+        if (!project_is_met(m, row, &cloth))
             continue;
         contact_closest(m->obstacle, &m->pose, 1, m->x + row, &hit);
         flow_pins_slider(&pins, i, &slider);

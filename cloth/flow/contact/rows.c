@@ -50,7 +50,7 @@ static void forget_contacts(struct found_contacts *found)
     free(found->corners);
 }
 
-static int no_memory(const duite_call *call)
+static int rows_no_memory(const duite_call *call)
 {
     return duite_fail(call, FLOW_NO_MEMORY, "out of memory for the contacts of a block");
 }
@@ -88,12 +88,12 @@ static int tie_count_body(const duite_call *call, const struct tie_count_fields 
     uint64_t *scratch = NULL;
     int code = find_contacts(on->n_keepers, on->keepers, max_links, args->block, &found)
                    ? 0
-                   : no_memory(call);
+                   : rows_no_memory(call);
     const struct flow_tie_list list = ties_of(flow, &args->step, &found);
     if (!code)
         scratch = malloc((flow_ties_scratch(list.n_joints + found.n) + 1) * sizeof *scratch);
     if (!code && !scratch)
-        code = no_memory(call);
+        code = rows_no_memory(call);
     if (!code) /* links fit: there is room for all blocks */
         flow_ties_count(&list, args->block, scratch, max_links, record, link);
     free(scratch);
@@ -198,7 +198,7 @@ static int tie_contacts_body(const duite_call *call, const struct tie_contacts_f
     struct found_contacts found;
     int code = find_contacts(on->n_keepers, on->keepers, flow->tables.n_blocks, args->block, &found)
                    ? 0
-                   : no_memory(call);
+                   : rows_no_memory(call);
     const struct flow_tie_list list = ties_of(flow, &args->step, &found);
     const struct flow_ties_of of = {.block = args->block,
                                     .n_rows = table.n,
@@ -243,8 +243,8 @@ int flow_contact_tie(struct flow_state *state)
 
 /* The point of a contact (contact_row.h) after corners have moved for `ahead` seconds at their
  * velocities. */
-static void find_point(const struct flow_ties *ties, const struct flow_view *view, double ahead,
-                       uint32_t i, phys_vec *point)
+static void rows_find_point(const struct flow_ties *ties, const struct flow_view *view,
+                            double ahead, uint32_t i, phys_vec *point)
 {
     *point = (phys_vec){0};
     for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
@@ -295,7 +295,7 @@ static void press_contact(const struct law *law, const struct flow_ties *ties,
                           struct flow_pressed *to)
 {
     phys_vec point;
-    find_point(ties, view, ahead, i, &point);
+    rows_find_point(ties, view, ahead, i, &point);
     law->mode->press(&law->spring, ties, view, law->h, left, i, &point, to);
 }
 
@@ -323,7 +323,7 @@ void flow_contact_solved(const struct flow *flow, const struct flow_view *view,
         phys_vec point, force;
         if (ties.of[i] < flow->n_ties)
             continue;
-        find_point(&ties, view, 0, i, &point);
+        rows_find_point(&ties, view, 0, i, &point);
         contact_row_force(view->contact_rows + i, &point, value + i, &force);
         spread_force(&ties, i, 1, &force, f);
         for (int k = 0; k < SOLVE_TIE_CORNERS && obstacle[i]; k++)

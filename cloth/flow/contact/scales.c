@@ -13,8 +13,8 @@ struct shorts {
 };
 
 /* first: number of the cloth's first vertex. */
-static void find_shorts(const struct model *model, const struct mesh *rest, uint32_t first,
-                        struct shorts *shorts)
+static void scales_find_shorts(const struct model *model, const struct mesh *rest, uint32_t first,
+                               struct shorts *shorts)
 {
     const uint32_t *joined = model->contact.apart.joined;
     *shorts = (struct shorts){.least = INFINITY};
@@ -43,7 +43,7 @@ int flow_thickness_check(const struct model *model, struct cloth_error *error)
         const struct model_cloth *cloth = model->cloths + c;
         const struct mesh *rest = model_rest(cloth);
         struct shorts shorts;
-        find_shorts(model, rest, model_first(model, c), &shorts);
+        scales_find_shorts(model, rest, model_first(model, c), &shorts);
         if (shorts.n)
             code = model_fail(cloth->place, error,
                               "cloth '%.60s': the edge between vertices %u and %u (counted from 0) "

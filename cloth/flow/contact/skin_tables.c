@@ -26,8 +26,8 @@ struct finder {
 };
 
 /* The places of the corners of a triangle, by its number among those of all cloths. */
-static void find_corners(const struct flow_source *source, struct finder *finder, uint32_t number,
-                         uint32_t place[3])
+static void skin_tables_find_corners(const struct flow_source *source, struct finder *finder,
+                                     uint32_t number, uint32_t place[3])
 {
     const struct model_cloth *cloths = source->model->cloths;
     if (number < finder->triangle)
@@ -58,7 +58,8 @@ static uint32_t count_triangles(const struct model *model)
 }
 
 /* Lists the triangles by block, in each in their own order. */
-static int list_triangles(struct flow_source *source, uint32_t n, struct cloth_error *error)
+static int skin_tables_list_triangles(struct flow_source *source, uint32_t n,
+                                      struct cloth_error *error)
 {
     struct flow_skins *skins = &source->skins;
     const uint32_t n_blocks = source->blocks.n_blocks;
@@ -68,7 +69,7 @@ static int list_triangles(struct flow_source *source, uint32_t n, struct cloth_e
     if (!of)
         return CLOTH_E_MEMORY;
     for (uint32_t t = 0; t < n; t++) {
-        find_corners(source, &finder, t, place);
+        skin_tables_find_corners(source, &finder, t, place);
         of[t] = block = flow_source_block(&source->blocks, lowest(place), block);
         skins->start[block + 1]++;
     }
@@ -111,7 +112,7 @@ static int mark_features(struct flow_source *source, uint32_t n, struct cloth_er
     int code = seen && edge ? CLOTH_OK : CLOTH_E_MEMORY;
     for (uint32_t i = 0; i < n && !code; i++) {
         uint32_t place[3];
-        find_corners(source, &finder, skins->triangle[i], place);
+        skin_tables_find_corners(source, &finder, skins->triangle[i], place);
         for (size_t k = 0; k < 3; k++) {
             const uint32_t a = place[k], b = place[(k + 1) % 3];
             skins->stands[i] |= (unsigned char)(seen[a] ? 0 : 1 << k);
@@ -135,7 +136,7 @@ static uint32_t find_points(const struct flow_source *source, uint32_t block, ui
     struct finder finder = {0};
     uint32_t n = 0, kept = 0;
     for (uint32_t i = skins->start[block]; i < skins->start[block + 1]; i++, n += 3)
-        find_corners(source, &finder, skins->triangle[i], place + n);
+        skin_tables_find_corners(source, &finder, skins->triangle[i], place + n);
     qsort(place, n, sizeof *place, cloth_compare_items_u32);
     for (uint32_t i = 0; i < n; i++)
         if (!kept || place[i] != place[kept - 1])
@@ -144,8 +145,8 @@ static uint32_t find_points(const struct flow_source *source, uint32_t block, ui
 }
 
 /* The cloths that points are of, from the first to the last. */
-static void find_cloths(const struct flow_source *source, uint32_t n, const uint32_t *place,
-                        uint32_t cloth[2])
+static void skin_tables_find_cloths(const struct flow_source *source, uint32_t n,
+                                    const uint32_t *place, uint32_t cloth[2])
 {
     struct flow_cloths at = {0};
     for (uint32_t i = 0; i < n; i++) {
@@ -170,7 +171,7 @@ static int count_skins(struct flow_source *source, struct cloth_error *error)
         struct flow_skin_size *size = &source->shape[b].skin;
         size->n_triangles = skins->start[b + 1] - skins->start[b];
         size->n_points = find_points(source, b, place);
-        find_cloths(source, size->n_points, place, size->cloth);
+        skin_tables_find_cloths(source, size->n_points, place, size->cloth);
         for (uint32_t i = skins->start[b]; i < skins->start[b + 1]; i++) {
             size->n_vertices += (uint32_t)__builtin_popcount(skins->stands[i] & 7u);
             size->n_edges += (uint32_t)__builtin_popcount(skins->stands[i] >> 3);
@@ -181,7 +182,7 @@ static int count_skins(struct flow_source *source, struct cloth_error *error)
 }
 
 /* Finds for each place one of those that pulled seams join it with: the same for all of them. */
-static int find_joined(struct flow_source *source, struct cloth_error *error)
+static int skin_tables_find_joined(struct flow_source *source, struct cloth_error *error)
 {
     const uint32_t *place = source->blocks.place, n = source->particles.n;
     const uint32_t *vertex = source->model->contact.apart.joined;
@@ -210,9 +211,9 @@ int flow_skins_make(struct flow_source *source, struct cloth_error *error)
     skins->shared = cloth_alloc(n, 1, error);
     if (!skins->start || !skins->triangle || !skins->stands || !skins->shared)
         return CLOTH_E_MEMORY;
-    int code = find_joined(source, error);
+    int code = skin_tables_find_joined(source, error);
     if (!code)
-        code = list_triangles(source, n, error);
+        code = skin_tables_list_triangles(source, n, error);
     if (!code)
         code = mark_features(source, n, error);
     return code ? code : count_skins(source, error);
@@ -239,7 +240,8 @@ struct making {
     phys_vec *x;
 };
 
-static size_t lay(const struct flow_skin_size *size, void *memory, struct making *making)
+static size_t skin_tables_lay(const struct flow_skin_size *size, void *memory,
+                              struct making *making)
 {
     const size_t n = size->n_points, triangles = size->n_triangles;
     struct flow_room room = {.base = memory};
@@ -254,7 +256,7 @@ static size_t lay(const struct flow_skin_size *size, void *memory, struct making
     return room.used;
 }
 
-static uint32_t point_of(const struct making *making, uint32_t place)
+static uint32_t skin_tables_point_of(const struct making *making, uint32_t place)
 {
     uint32_t low = 0, high = making->table->skin.n_points;
     while (high - low > 1) {
@@ -267,15 +269,16 @@ static uint32_t point_of(const struct making *making, uint32_t place)
     return low;
 }
 
-static void fill_corners(const struct making *making, uint32_t block)
+static void skin_tables_fill_corners(const struct making *making, uint32_t block)
 {
     const struct flow_skins *skins = &making->source->skins;
     struct finder finder = {0};
     for (uint32_t i = 0; i < making->table->skin.n_triangles; i++) {
         uint32_t place[3];
-        find_corners(making->source, &finder, skins->triangle[skins->start[block] + i], place);
+        skin_tables_find_corners(making->source, &finder, skins->triangle[skins->start[block] + i],
+                                 place);
         for (int k = 0; k < 3; k++)
-            making->corner[i][k] = point_of(making, place[k]);
+            making->corner[i][k] = skin_tables_point_of(making, place[k]);
     }
 }
 
@@ -318,15 +321,15 @@ int flow_source_skin(const struct flow_source *source, uint32_t block, void *mem
 {
     const struct flow_table *t = source->shape + block;
     struct making making = {.source = source, .table = t};
-    const size_t bytes = lay(&t->skin, NULL, &making);
+    const size_t bytes = skin_tables_lay(&t->skin, NULL, &making);
     void *room = aligned_alloc(FLOW_LINE, bytes ? bytes : FLOW_LINE);
     if (!room)
         return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for the skin of a block");
-    lay(&t->skin, room, &making);
+    skin_tables_lay(&t->skin, room, &making);
     memset(memory, 0, flow_skin_bytes(t));
     const struct flow_skin_arrays arrays = flow_skin_places(t, memory);
     find_points(source, block, making.place);
-    fill_corners(&making, block);
+    skin_tables_fill_corners(&making, block);
     fill_points(&making, &arrays);
     const struct contact_skin_source from = {
         .n_points = t->skin.n_points,

@@ -121,8 +121,8 @@ static const phys_vec *ends_of(const struct touching *t, uint32_t side)
 
 /* Finds the point of a contact (contact_row.h) at the step's end. Returns false if the two blocks
  * have parted: they have no meeting any more. */
-static bool find_point(const struct touching *t, const struct flow_contact *contact,
-                       phys_vec *point)
+static bool touch_find_point(const struct touching *t, const struct flow_contact *contact,
+                             phys_vec *point)
 {
     const phys_vec *y[2] = {own_ends(t), NULL};
     *point = (phys_vec){0};
@@ -149,7 +149,7 @@ static void press_again(const struct touching *t, struct flow_contact *contact)
     struct contact_row row;
     phys_vec point;
     find_solved_row(t, contact, &row);
-    if (!find_point(t, contact, &point))
+    if (!touch_find_point(t, contact, &point))
         return;
     contact_row_press(&row, &point);
     contact->row.load = row.load;
@@ -196,12 +196,12 @@ static void take_near(struct touching *t, const struct flow_near *near)
 }
 
 /* Carries load and slip to the successor. */
-static void hand_over(struct touching *t, size_t from, size_t to)
+static void touch_hand_over(struct touching *t, size_t from, size_t to)
 {
     const struct flow_contact *before = t->before + from;
     struct contact_row row, *after = &t->after[to].row;
     phys_vec point;
-    if (!find_point(t, before, &point))
+    if (!touch_find_point(t, before, &point))
         return;
     find_solved_row(t, before, &row);
     contact_row_end(&row, &point, after);
@@ -214,7 +214,7 @@ static void end_contact(struct touching *t, const struct flow_contact *before)
 {
     struct contact_row row;
     phys_vec point;
-    if (!find_point(t, before, &point))
+    if (!touch_find_point(t, before, &point))
         return;
     find_solved_row(t, before, &row);
     t->lent += contact_row_lent(&row, &point, before->row.energy, 0);
@@ -230,7 +230,7 @@ static void stay_at_place(const struct touching *t, const struct flow_contact *b
     struct contact_row there = after->row;
     if (before->kind != FLOW_CONTACT_SHAPE || before->feature[1] != FLOW_ON_TRIANGLE)
         return;
-    find_point(t, before, &there.origin);
+    touch_find_point(t, before, &there.origin);
     flow_contact_end(flow_of(t->call), t->args->from, t->args->to, before, &there);
     if (!(there.gap < after->row.gap + hardly))
         return;
@@ -280,7 +280,7 @@ static void end_accept(struct touching *t)
         const size_t at = find_before(t, t->after + i);
         if (at < t->n_before) {
             stay_at_place(t, t->before + at, t->after + i);
-            hand_over(t, at, i);
+            touch_hand_over(t, at, i);
         }
     }
     for (size_t i = 0; i < t->n_before; i++) {
@@ -288,7 +288,7 @@ static void end_accept(struct touching *t)
             continue;
         const size_t next = find_successor(t, t->before + i);
         if (next < t->n)
-            hand_over(t, i, next);
+            touch_hand_over(t, i, next);
         else
             end_contact(t, t->before + i);
     }
@@ -356,7 +356,7 @@ static int touch_body(const duite_call *call, const struct touch_fields *on)
 /* ---- Forks ---- */
 
 /* A list for so many contacts of a block. */
-static void make_list(struct flow_state *state, uint32_t block, unsigned which, uint32_t room)
+static void touch_make_list(struct flow_state *state, uint32_t block, unsigned which, uint32_t room)
 {
     struct flow_kept_contacts *kept = state->contact.kept + block;
     if (kept->list[which].generation && kept->room[which] >= room)
@@ -373,7 +373,7 @@ static void make_list(struct flow_state *state, uint32_t block, unsigned which, 
 
 void flow_contact_keep_again(struct flow_state *state, uint32_t block, uint32_t n)
 {
-    make_list(state, block, state->contact.begin, n ? n : 1);
+    touch_make_list(state, block, state->contact.begin, n ? n : 1);
     state->contact.kept[block].n[state->contact.begin] = n;
 }
 
@@ -382,7 +382,7 @@ int flow_contact_none(struct flow_state *state)
     const struct flow_list none = {0};
     int code = DUITE_OK;
     for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code; b++) {
-        make_list(state, b, state->contact.now, 1);
+        touch_make_list(state, b, state->contact.now, 1);
         code = duite_set_sized(state->rt, state->contact.kept[b].list[state->contact.now], &none,
                                sizeof none);
     }
@@ -411,7 +411,7 @@ static int fork_touch(struct flow_state *state, struct touch_args *args, unsigne
     struct flow_kept_contacts *kept = contact->kept + args->block;
     const uint32_t found = contact->found[args->block];
     kept->n[to] = args->accept ? found : kept->n[contact->now] + found;
-    make_list(state, args->block, to, kept->n[to]);
+    touch_make_list(state, args->block, to, kept->n[to]);
     args->room = kept->room[to];
     duite_object *rest = flow_contact_rest(state);
     const duite_object one[] = {kept->list[contact->now], kept->list[to]};

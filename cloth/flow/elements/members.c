@@ -73,7 +73,7 @@ static void collect_member(void *to, const struct element *element)
 }
 
 /* Roots of the ends of a hinge's edge, the lower one above. */
-static uint64_t edge_of(const struct flow_welds *welds, const struct element *element)
+static uint64_t members_edge_of(const struct flow_welds *welds, const struct element *element)
 {
     const uint64_t a = flow_root(welds, element->first + element->corner[0]);
     const uint64_t b = flow_root(welds, element->first + element->corner[1]);
@@ -103,7 +103,7 @@ static int order_hinges(const struct flow_source *source, size_t n, struct eleme
         return CLOTH_E_MEMORY;
     for (size_t i = 0; i < n; i++)
         ordered[i] =
-            (struct ordered){edge_of(&source->particles.welds, element + i), i, element[i]};
+            (struct ordered){members_edge_of(&source->particles.welds, element + i), i, element[i]};
     qsort(ordered, n, sizeof *ordered, compare_ordered);
     for (size_t i = 0; i < n; i++)
         element[i] = ordered[i].element;
@@ -165,8 +165,8 @@ static uint32_t local_of(const struct flow_source *source, const struct flow_tab
 }
 
 /* The entry of two rows, at least one of them here, as solve_assemble_pairs wants it. */
-static uint32_t entry_of(const struct flow_table *t, const struct flow_layout *layout, uint32_t a,
-                         uint32_t b)
+static uint32_t members_entry_of(const struct flow_table *t, const struct flow_layout *layout,
+                                 uint32_t a, uint32_t b)
 {
     const uint32_t transposed = b < a, low = transposed ? b : a, high = transposed ? a : b;
     if (low >= t->n)
@@ -186,16 +186,16 @@ static uint32_t entry_of(const struct flow_table *t, const struct flow_layout *l
     return 2 * (layout->row[t->n] + i) + transposed;
 }
 
-static void fill_corners(const struct flow_source *source, const struct flow_table *t,
-                         const struct flow_layout *layout, const struct element *element,
-                         uint32_t corner[4], uint32_t *at)
+static void members_fill_corners(const struct flow_source *source, const struct flow_table *t,
+                                 const struct flow_layout *layout, const struct element *element,
+                                 uint32_t corner[4], uint32_t *at)
 {
     for (uint32_t i = 0; i < ELEMENT_CORNERS; i++)
         corner[i] = i < element->corners ? local_of(source, t, element->first + element->corner[i])
                                          : PHYS_NO_CORNER;
     for (uint32_t j = 1; element_kinds[element->kind]->pairs && j < element->corners; j++)
         for (uint32_t i = 0; i < j; i++)
-            *at++ = entry_of(t, layout, corner[i], corner[j]);
+            *at++ = members_entry_of(t, layout, corner[i], corner[j]);
 }
 
 void flow_source_members(const struct flow_source *source, uint32_t block,
@@ -209,8 +209,8 @@ void flow_source_members(const struct flow_source *source, uint32_t block,
         if (list->n)
             element_materials(kind, source->model, list->material);
         for (uint32_t e = 0; e < list->n; e++, element++) {
-            fill_corners(source, t, layout, element, list->corner[e],
-                         list->at + (size_t)kind->pairs * e);
+            members_fill_corners(source, t, layout, element, list->corner[e],
+                                 list->at + (size_t)kind->pairs * e);
             if (kind->pack)
                 kind->pack(&source->elements, element, list, e);
         }

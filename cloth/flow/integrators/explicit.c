@@ -51,9 +51,9 @@ static void fetch_halos(const struct flow_table *t, const struct flow_view *view
 }
 
 /* The forces on the block's rows where they are, in room of the worker's. */
-static phys_vec *find_forces(const duite_call *call, const struct flow_table *t,
-                             const struct flow_step_args *step, const struct flow_view *view,
-                             const struct flow_move *m)
+static phys_vec *explicit_find_forces(const duite_call *call, const struct flow_table *t,
+                                      const struct flow_step_args *step,
+                                      const struct flow_view *view, const struct flow_move *m)
 {
     phys_vec *f = flow_force_room(call);
     fetch_own(t, m->halo_x);
@@ -77,7 +77,7 @@ static int euler_move(const duite_call *call, const struct flow_table *t,
                       const struct flow_move *m)
 {
     const bool ahead = model_scheme(flow_of(call)->model)->staggered;
-    phys_vec *f = find_forces(call, t, step, view, m);
+    phys_vec *f = explicit_find_forces(call, t, step, view, m);
     flow_sliders_filter(call, t, step->time, f);
     flow_part_ends(call, FLOW_FORCE);
     const int well = phys_euler(t->n, step->h, ahead, FLOW_BOUND, t->mass, t->free, f, m->from_x,
@@ -224,7 +224,7 @@ static int runge_body(const duite_call *call, const struct runge_fields *on)
     const struct phys_runge runge = {
         .x0 = on->x0, .v0 = on->v0, .sum_x = on->sum_x, .sum_v = on->sum_v};
     const struct flow_move move = FLOW_MOVE(on, x, v, spare_halo_x, spare_halo_v);
-    phys_vec *a = find_forces(call, t, step, &view, &move);
+    phys_vec *a = explicit_find_forces(call, t, step, &view, &move);
     flow_part_ends(call, FLOW_FORCE);
     phys_accelerate(t->n, t->mass, t->free, a);
     flow_sliders_filter(call, t, step->time, a);

@@ -76,8 +76,8 @@ static void visit_spring(void *to, const struct flow_spring *s)
 
 /* Adds `times` a pair to the block of one of its corners: N, or as good N', since their sum is
  * symmetric. one, two: the pair in steps of 1 and 2 s, h^2 K + h C each. */
-static void add_pair(struct block *block, double times, const struct phys_pair *one,
-                     const struct phys_pair *two)
+static void integrators_limit_add_pair(struct block *block, double times,
+                                       const struct phys_pair *one, const struct phys_pair *two)
 {
     phys_vec n[3]; /* of K: n00 n11 n22; n01 n12 n20; n02 n10 n21 */
     for (int k = 0; k < 3; k++)
@@ -123,9 +123,9 @@ static void visit_element(void *to, const struct element *element)
     for (uint32_t j = 1, k = 0; j < element->corners; j++)
         for (uint32_t i = 0; i < j; i++, k++) {
             if (particle[i].free > 0)
-                add_pair(visitor->block + at[i], times, pair[0] + k, pair[1] + k);
+                integrators_limit_add_pair(visitor->block + at[i], times, pair[0] + k, pair[1] + k);
             if (particle[j].free > 0)
-                add_pair(visitor->block + at[j], times, pair[0] + k, pair[1] + k);
+                integrators_limit_add_pair(visitor->block + at[j], times, pair[0] + k, pair[1] + k);
         }
 }
 

@@ -109,8 +109,8 @@ static uint32_t number_among_others(const struct flow_tied_blocks *blocks, uint3
 }
 
 /* A block shows the rows of its links one after the other. */
-static void find_places(const struct flow_tie_records *said, uint32_t n_blocks,
-                        struct flow_tied_blocks *to)
+static void adopted_find_places(const struct flow_tie_records *said, uint32_t n_blocks,
+                                struct flow_tied_blocks *to)
 {
     memset(to->place, 0, to->first[n_blocks] * sizeof *to->place);
     for (uint32_t b = 0; b < n_blocks; b++)
@@ -228,7 +228,7 @@ int flow_ties_adopt(struct flow_state *state)
     find_others(tied, n_blocks, true, &tied->next);
     if (tied->next.first[n_blocks] > 2 * tied->said.first[n_blocks])
         find_others(tied, n_blocks, false, &tied->next);
-    find_places(&tied->said, n_blocks, &tied->next);
+    adopted_find_places(&tied->said, n_blocks, &tied->next);
     find_rooms(tied, n_blocks, &tied->next);
     const bool recorded = is_recorded(tied, n_blocks);
     if (!recorded && state->solve.generation) {

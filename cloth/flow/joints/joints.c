@@ -32,7 +32,7 @@ int flow_joints_use(const struct model *model, unsigned char *used, struct cloth
 
 /* Finds the vertices of a pair and their weights; the lower one of two comes first. In this order
  * the weights sum to 0 without rounding. Returns how many. */
-static uint32_t weigh(const struct flow_pair *pair, uint32_t vertex[3], double weight[3])
+static uint32_t joints_weigh(const struct flow_pair *pair, uint32_t vertex[3], double weight[3])
 {
     const uint32_t a = pair->vertex[0], b = pair->vertex[1];
     const bool edge = pair->second != UINT32_MAX, swap = !edge && b < a;
@@ -52,7 +52,7 @@ static double distance_of(const struct flow_particles *particles, const struct m
     uint32_t vertex[3];
     double weight[3];
     phys_vec d = {0};
-    const uint32_t n = weigh(pair, vertex, weight);
+    const uint32_t n = joints_weigh(pair, vertex, weight);
     for (uint32_t i = 0; i < n; i++) {
         struct flow_cloths cloth = {0};
         struct flow_particle at;
@@ -99,14 +99,14 @@ static int make_timed(struct flow_springs *springs, const struct flow_particles 
     struct flow_timed *timed = springs->timed + springs->n_timed++;
     timed->begin = tick_of(springs->model, joint->begin);
     timed->end = joint->end > 0 ? tick_of(springs->model, joint->end) : UINT64_MAX;
-    timed->n = weigh(pair, timed->vertex, timed->weight);
+    timed->n = joints_weigh(pair, timed->vertex, timed->weight);
     return make_joint(&timed->spring, particles, springs->model, joint, pair, error);
 }
 
 /* seam: as of the spring. */
-static int make_one(struct flow_springs *springs, const struct flow_particles *particles,
-                    const struct model_joint *joint, uint32_t seam, const struct flow_pair *pair,
-                    struct cloth_error *error)
+static int joints_make_one(struct flow_springs *springs, const struct flow_particles *particles,
+                           const struct model_joint *joint, uint32_t seam,
+                           const struct flow_pair *pair, struct cloth_error *error)
 {
     if (model_is_tied(joint))
         return make_timed(springs, particles, joint, pair, error);
@@ -133,7 +133,7 @@ static int make_all(struct flow_springs *springs, const struct flow_particles *p
     for (uint32_t j = 0, k = 0, seam = 0; j < model->n_joints; j++) {
         seam += model->joints[j].pairs.seam != 0;
         for (uint32_t i = 0; i < model->joints[j].pairs.end[0].n && !code; i++, k++) {
-            code = make_one(springs, particles, model->joints + j, seam, pair + k, error);
+            code = joints_make_one(springs, particles, model->joints + j, seam, pair + k, error);
             if (!model_is_tied(model->joints + j)) /* of tied ones two may have several */
                 pair[springs->n_joints - 1] = pair[k];
         }

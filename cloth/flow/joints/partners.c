@@ -40,8 +40,8 @@ static int take_vertex(uint32_t *of_all, uint32_t vertex, const struct model *mo
 }
 
 /* Takes a point on an edge. At an end of the edge it is that vertex. */
-static int take_edge(struct flow_pair *pair, const struct model *model, const char *what,
-                     struct cloth_error *error)
+static int partners_take_edge(struct flow_pair *pair, const struct model *model, const char *what,
+                              struct cloth_error *error)
 {
     const struct model_pairs *pairs = pair->of;
     const uint32_t *edge = pairs->end[1].edges[pair->i];
@@ -67,7 +67,7 @@ int flow_pairs_list(struct cloth_list *list, const struct model *model,
         int code =
             take_vertex(&pair->vertex[0], pairs->end[0].vertices[i], model, pairs, 0, what, error);
         if (!code && pairs->end[1].edges)
-            code = take_edge(pair, model, what, error);
+            code = partners_take_edge(pair, model, what, error);
         else if (!code)
             code = take_vertex(&pair->vertex[1], pairs->end[1].vertices[i], model, pairs, 1, what,
                                error);
@@ -92,7 +92,7 @@ static uint32_t high(const struct flow_pair *pair)
     return pair->vertex[pair->vertex[1] > pair->vertex[0]];
 }
 
-static int compare_pairs(const void *va, const void *vb)
+static int partners_compare_pairs(const void *va, const void *vb)
 {
     const struct flow_pair *a = va, *b = vb;
     int order = cloth_compare_u32(low(a), low(b));
@@ -106,7 +106,7 @@ int flow_pairs_once(struct cloth_list *list, const struct model *model, const ch
 {
     const struct flow_pair *pair = list->items;
     if (list->n)
-        qsort(list->items, list->n, sizeof *pair, compare_pairs);
+        qsort(list->items, list->n, sizeof *pair, partners_compare_pairs);
     for (size_t i = 1; i < list->n; i++)
         if (low(pair + i - 1) == low(pair + i) && high(pair + i - 1) == high(pair + i))
             return flow_pair_fail(model, pair + i, what, "where there is one already", error);

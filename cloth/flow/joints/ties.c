@@ -278,7 +278,7 @@ static void put_order(const struct own *own, struct arrays *to)
 enum { ROW_AT = 24, OTHER_AT = 48, MOST = 1 << 24, MOST_OTHERS = 1 << 16 };
 
 /* Writes the corners; those elsewhere are keys until put_ghosts. Returns how many these are. */
-static size_t put_corners(const struct own *own, struct arrays *to)
+static size_t joints_ties_put_corners(const struct own *own, struct arrays *to)
 {
     size_t n = 0;
     for (uint32_t i = 0; i < own->n; i++) {
@@ -370,7 +370,7 @@ static bool fill_table(const struct flow_ties_of *of, struct arrays *to)
     if (!own.n)
         return true;
     put_order(&own, to);
-    if (!put_ghosts(&own, put_corners(&own, to), to) || !put_shown(&own, to))
+    if (!put_ghosts(&own, joints_ties_put_corners(&own, to), to) || !put_shown(&own, to))
         return false;
     put_halo(of, to);
     return true;

@@ -79,8 +79,9 @@ struct welded {
 };
 
 /* The welds of all roots, by root. The caller frees it; NULL: no memory. */
-static struct welded *find_welded(const struct model *model, const struct flow_welds *welds,
-                                  struct cloth_error *error)
+static struct welded *weld_hinges_find_welded(const struct model *model,
+                                              const struct flow_welds *welds,
+                                              struct cloth_error *error)
 {
     const uint32_t n = model_first(model, model->n_cloths);
     struct welded *all = cloth_alloc(n, sizeof *all, error);
@@ -147,9 +148,9 @@ static double bending_of(const struct cloth_list *stitches, const uint32_t root[
 /* ---- Hinges ---- */
 
 /* welded: by root. */
-static void add_seam(struct element_cloths *elements, const struct flow_welds *welds,
-                     const struct welded *welded, const struct cloth_list *stitches,
-                     const struct border *border)
+static void weld_hinges_add_seam(struct element_cloths *elements, const struct flow_welds *welds,
+                                 const struct welded *welded, const struct cloth_list *stitches,
+                                 const struct border *border)
 {
     const struct welded *ends[2] = {welded + border->root[0], welded + border->root[1]};
     struct element_seam *seam = elements->seam + elements->n_seams;
@@ -177,13 +178,14 @@ static int make_seams(struct element_cloths *elements, const struct flow_welds *
         return CLOTH_OK;
     qsort(list->items, list->n, sizeof *border, compare_borders);
     elements->seam = cloth_alloc(list->n, sizeof *elements->seam, error);
-    struct welded *welded = elements->seam ? find_welded(elements->model, welds, error) : NULL;
+    struct welded *welded =
+        elements->seam ? weld_hinges_find_welded(elements->model, welds, error) : NULL;
     int code = welded ? list_stitches(&stitches, elements->model, welds, error) : CLOTH_E_MEMORY;
     for (size_t i = 0, end; i < list->n && !code; i = end) {
         for (end = i + 1; end < list->n && is_shared(border + i, border + end);)
             end++;
         if (end == i + 2)
-            add_seam(elements, welds, welded, &stitches, border + i);
+            weld_hinges_add_seam(elements, welds, welded, &stitches, border + i);
     }
     free(welded);
     free(stitches.items);

@@ -27,7 +27,7 @@ static int list_pairs(struct cloth_list *list, const struct model *model, const 
     return code ? code : flow_pairs_once(list, model, "a weld", error);
 }
 
-static int compare_names(const void *va, const void *vb)
+static int welds_compare_names(const void *va, const void *vb)
 {
     const uint32_t *a = va, *b = vb;
     const int order = cloth_compare_u32(a[0], b[0]);
@@ -56,7 +56,7 @@ static int name_all(struct flow_welds *welds, uint32_t n, const struct cloth_lis
         welds->name[k][0] = root[v];
         welds->name[k++][1] = v;
     }
-    qsort(welds->name, welds->n, sizeof *welds->name, compare_names);
+    qsort(welds->name, welds->n, sizeof *welds->name, welds_compare_names);
     return CLOTH_OK;
 }
 
@@ -75,9 +75,9 @@ static const char *place_of_vertex(const struct model *model, uint32_t cloth, ui
 
 /* Checks that welds keep n vertices of a cloth, which one thing joins, apart. root: by vertex of
  * the cloth. */
-static int check_apart(const struct model *model, uint32_t cloth, const uint32_t *root,
-                       const uint32_t *vertex, uint32_t n, const char *what,
-                       struct cloth_error *error)
+static int welds_check_apart(const struct model *model, uint32_t cloth, const uint32_t *root,
+                             const uint32_t *vertex, uint32_t n, const char *what,
+                             struct cloth_error *error)
 {
     for (uint32_t j = 1; j < n; j++)
         for (uint32_t i = 0; i < j; i++)
@@ -99,11 +99,11 @@ static int check_shapes(const struct flow_welds *welds, const struct model *mode
         uint32_t corner[3];
         for (uint32_t t = 0; t < mesh->n_triangles && !code; t++) {
             mesh_corners(mesh, t, corner);
-            code = check_apart(model, c, root, corner, 3, "a triangle", error);
+            code = welds_check_apart(model, c, root, corner, 3, "a triangle", error);
         }
         for (uint32_t e = 0; e < mesh->n_lone_edges && !code; e++)
-            code =
-                check_apart(model, c, root, mesh->lone_edge + 2 * (size_t)e, 2, "an edge", error);
+            code = welds_check_apart(model, c, root, mesh->lone_edge + 2 * (size_t)e, 2, "an edge",
+                                     error);
         root += mesh->n_vertices;
     }
     return code;
@@ -136,7 +136,8 @@ int flow_welds_check(const struct flow_welds *welds, const struct element_cloths
         const bool bends = element_parts(model, model->cloths + c) & 1u << ELEMENT_HINGES;
         for (uint32_t e = 0; e < edges->n && bends && !code; e++)
             if (element_is_hinge(edges->edge + e))
-                code = check_apart(model, c, root, edges->edge[e].opposite, 2, "a hinge", error);
+                code =
+                    welds_check_apart(model, c, root, edges->edge[e].opposite, 2, "a hinge", error);
         root += model->cloths[c].mesh.n_vertices;
     }
     return code;
@@ -182,8 +183,8 @@ static int check_distances(const struct flow_particles *p, const struct model *m
 }
 
 /* at: where the cloth is looked for from; zeroed at first. */
-static const struct model_material *material_of(const struct model *model, uint32_t vertex,
-                                                struct flow_cloths *at)
+static const struct model_material *welds_material_of(const struct model *model, uint32_t vertex,
+                                                      struct flow_cloths *at)
 {
     flow_source_cloth(at, model, vertex);
     const uint32_t own = vertex - at->first;
@@ -197,11 +198,11 @@ static double drag_of(const struct flow_particles *p, const struct model *model,
                       const uint32_t (*name)[2], uint32_t n)
 {
     struct flow_cloths at = {0};
-    const struct model_material *first = material_of(model, root, &at);
+    const struct model_material *first = welds_material_of(model, root, &at);
     double viscous = first->damping_viscous, sum = first->damping_mass * p->own[root];
     bool alike = true;
     for (uint32_t i = 0; i < n; i++) {
-        const struct model_material *material = material_of(model, name[i][1], &at);
+        const struct model_material *material = welds_material_of(model, name[i][1], &at);
         viscous = fmax(viscous, material->damping_viscous);
         sum += material->damping_mass * p->own[name[i][1]];
         alike = alike && !(material->damping_mass < first->damping_mass) &&
@@ -254,7 +255,7 @@ int flow_welds_settle(struct flow_particles *p, const struct model *model,
     code = code ? code : keep_unwelded(p, model, error);
     struct flow_cloths at = {0};
     for (uint32_t v = 0; v < p->n && !code; v++) {
-        const struct model_material *material = material_of(model, v, &at);
+        const struct model_material *material = welds_material_of(model, v, &at);
         p->drag[v] = material->damping_viscous + material->damping_mass * p->mass[v];
     }
     for (uint32_t i = 0, n; i < welds->n && !code; i += n) {
@@ -284,7 +285,7 @@ int flow_names_make(struct flow_names *names, const struct flow_welds *welds,
         names->name[i][0] = place;
         names->name[i][1] = welds->name[i][1];
     }
-    qsort(names->name, names->n, sizeof *names->name, compare_names);
+    qsort(names->name, names->n, sizeof *names->name, welds_compare_names);
     return CLOTH_OK;
 }
 
@@ -320,7 +321,7 @@ struct finder {
     int code;
 };
 
-static void find_joined(void *to, const struct flow_spring *s)
+static void welds_find_joined(void *to, const struct flow_spring *s)
 {
     struct finder *finder = to;
     const uint64_t number = finder->number++;
@@ -396,7 +397,7 @@ int flow_springs_merge(struct flow_springs *springs, uint32_t n_vertices, struct
         finder.welded[welds->name[i][0]] = 1;
     int code = finder.welded ? CLOTH_OK : CLOTH_E_MEMORY;
     if (!code) {
-        flow_springs_each(springs, find_joined, &finder);
+        flow_springs_each(springs, welds_find_joined, &finder);
         code = finder.code;
     }
     if (!code && finder.found.n) {

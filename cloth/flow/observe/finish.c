@@ -252,7 +252,7 @@ int flow_last_frame(struct flow_state *state)
 }
 
 /* The counters of the run itself, without its preparations. */
-static int count(struct flow_state *state)
+static int observe_finish_count(struct flow_state *state)
 {
     duite_counters *now = &state->report->counters;
     const duite_counters *before = &state->before;
@@ -278,7 +278,7 @@ int flow_finish(struct flow_state *state)
 {
     if (state->complete) { /* its report was whole */
         const int hashed = hash_all(state);
-        return hashed ? hashed : count(state);
+        return hashed ? hashed : observe_finish_count(state);
     }
     int code = largest_stretch(state);
     if (!code)
@@ -290,6 +290,6 @@ int flow_finish(struct flow_state *state)
     if (!code)
         code = flow_last_frame(state);
     if (!code)
-        code = count(state);
+        code = observe_finish_count(state);
     return code;
 }

@@ -16,27 +16,28 @@ static double frame_tick(const struct flow_state *state, uint64_t frame)
     return fabs(tick - nearbyint(tick)) < ROUNDED ? nearbyint(tick) : tick;
 }
 
-static void put_vector(struct flow *flow, uint32_t vertex, const phys_vec *x)
+static void observe_frames_put_vector(struct flow *flow, uint32_t vertex, const phys_vec *x)
 {
     for (int c = 0; c < 3; c++)
         flow->room[3 * (size_t)vertex + (size_t)c] = (*x)[c];
 }
 
 /* A vector of the vertices of all blocks, by all their names. */
-static void put_all(struct flow *flow, const duite_param *vector)
+static void observe_frames_put_all(struct flow *flow, const duite_param *vector)
 {
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
         const phys_vec *x = flow_rows_of(vector, b);
         const struct flow_table *t = flow->tables.block + b;
         const uint32_t end = flow_names_from(&flow->names, t->first + t->n);
         for (uint32_t i = 0; i < t->n; i++)
-            put_vector(flow, flow->vertex[t->first + i], x + i);
+            observe_frames_put_vector(flow, flow->vertex[t->first + i], x + i);
         for (uint32_t i = flow_names_from(&flow->names, t->first); i < end; i++)
-            put_vector(flow, flow->names.name[i][1], x + flow->names.name[i][0] - t->first);
+            observe_frames_put_vector(flow, flow->names.name[i][1],
+                                      x + flow->names.name[i][0] - t->first);
     }
 }
 
-static void put_numbers(const struct flow *flow, uint32_t vertex, uint32_t block)
+static void observe_frames_put_numbers(const struct flow *flow, uint32_t vertex, uint32_t block)
 {
     flow->block_of[vertex] = (int32_t)block;
     flow->rank_of[vertex] = flow->home[block];
@@ -49,9 +50,9 @@ static void put_places(const struct flow *flow)
         const struct flow_table *t = flow->tables.block + b;
         const uint32_t end = flow_names_from(&flow->names, t->first + t->n);
         for (uint32_t i = 0; i < t->n; i++)
-            put_numbers(flow, flow->vertex[t->first + i], b);
+            observe_frames_put_numbers(flow, flow->vertex[t->first + i], b);
         for (uint32_t i = flow_names_from(&flow->names, t->first); i < end; i++)
-            put_numbers(flow, flow->names.name[i][1], b);
+            observe_frames_put_numbers(flow, flow->names.name[i][1], b);
     }
     for (uint32_t i = 0; i < flow->unused.n; i++)
         flow->block_of[flow->unused.vertex[i]] = flow->rank_of[flow->unused.vertex[i]] = -1;
@@ -84,7 +85,7 @@ FLOW_KERNEL_WITH(frame, FLOW_OUTPUT, struct frame_args, (RW(token), ALL(x)), .si
 static int frame_body(const duite_call *call, const struct frame_fields *on)
 {
     struct flow *flow = flow_of(call);
-    put_all(flow, on->x);
+    observe_frames_put_all(flow, on->x);
     if (show_places(flow, on->args->frame))
         return not_written(call, flow);
     if (flow->output->frame(flow->output->context, on->args->frame, on->args->time, flow->room,
@@ -111,7 +112,7 @@ static int frame_beside_body(const duite_call *call, const struct frame_beside_f
     struct flow *flow = flow_of(call);
     const struct flow_beside beside = {flow->room, flow->block_of, flow->rank_of};
     put_unused(flow, true);
-    put_all(flow, on->v);
+    observe_frames_put_all(flow, on->v);
     put_places(flow);
     const int failed = flow->output->beside(flow->output->context, &beside, &flow->trouble);
     put_unused(flow, false);
@@ -143,7 +144,7 @@ static int frame_force_body(const duite_call *call, const struct frame_force_fie
 {
     struct flow *flow = flow_of(call);
     put_unused(flow, true);
-    put_all(flow, on->contact_force);
+    observe_frames_put_all(flow, on->contact_force);
     const int failed =
         flow->output->force(flow->output->context, on->args->frame, flow->room, &flow->trouble);
     put_unused(flow, false);

@@ -50,7 +50,7 @@ static size_t room_of(const struct flow_table *t, size_t numbers)
     return numbers > least ? (numbers - least) / TIE : 0;
 }
 
-static double *put_vector(double *to, const phys_vec *from)
+static double *observe_system_put_vector(double *to, const phys_vec *from)
 {
     for (int c = 0; c < 3; c++)
         *to++ = (*from)[c];
@@ -68,12 +68,13 @@ static void put_rows(const struct flow_table *t, const struct system_part_fields
             *to++ = row[k];
         const phys_vec *const vectors[] = {on->f, on->dv, on->x, on->v};
         for (size_t k = 0; k < 4; k++)
-            to = put_vector(to, vectors[k] + i);
+            to = observe_system_put_vector(to, vectors[k] + i);
     }
 }
 
 /* Value i of the entries. */
-static double *put_value(const struct flow_table *t, const void *entry, size_t i, double *to)
+static double *observe_system_put_value(const struct flow_table *t, const void *entry, size_t i,
+                                        double *to)
 {
     struct solve_symmetric symmetric = {{0}, {0}};
     struct solve_columns n;
@@ -90,7 +91,7 @@ static double *put_value(const struct flow_table *t, const void *entry, size_t i
     return to;
 }
 
-static double *put_place(const uint32_t place[3], double *to)
+static double *observe_system_put_place(const uint32_t place[3], double *to)
 {
     for (int k = 0; k < 3; k++)
         *to++ = place[k];
@@ -100,7 +101,7 @@ static double *put_place(const uint32_t place[3], double *to)
 static double *put_entry(const struct flow_table *t, const struct solve_values *values, size_t i,
                          const uint32_t place[3], double *to)
 {
-    return put_value(t, values->entry, i, put_place(place, to));
+    return observe_system_put_value(t, values->entry, i, observe_system_put_place(place, to));
 }
 
 static void put_corner(uint32_t block, const struct flow_ties *ties, uint32_t corner, double weight,
@@ -113,8 +114,8 @@ static void put_corner(uint32_t block, const struct flow_ties *ties, uint32_t co
     to[CORNER_WEIGHT] = weight;
 }
 
-static void put_ties(uint32_t block, const struct flow_ties *ties, const phys_vec *value,
-                     double *to)
+static void observe_system_put_ties(uint32_t block, const struct flow_ties *ties,
+                                    const phys_vec *value, double *to)
 {
     memset(to, 0, TIE * (size_t)ties->room.ties * sizeof *to);
     for (uint32_t i = 0; i < ties->n; i++, to += TIE) {
@@ -154,7 +155,7 @@ static int system_part_body(const duite_call *call, const struct system_part_fie
         memset(to, 0, entry_doubles(t) * sizeof *to);
         to[BLOCK] = -1;
     }
-    put_ties(on->args->block, &ties, flow_tie_values(t, value), to);
+    observe_system_put_ties(on->args->block, &ties, flow_tie_values(t, value), to);
     to = part + halo_at(t, ties.room.ties);
     for (uint32_t i = 0; i < t->n_halo; i++)
         *to++ = t->halo[i];
@@ -170,7 +171,7 @@ struct save_args {
 FLOW_KERNEL_WITH(system_save, FLOW_NO_PART, struct save_args, (RW(token), ALL(saved)),
                  .side_effects = 1)
 
-static uint32_t vertex_of(const double *part, double row)
+static uint32_t observe_system_vertex_of(const double *part, double row)
 {
     return (uint32_t)part[(size_t)ROW * (size_t)row + VERTEX];
 }
@@ -221,8 +222,8 @@ static void take_entries(struct solve_system *system, const duite_call *call,
         const double row =
             other == b ? entry[THERE] : row_there(tables + other, parts + other, entry[THERE]);
         const size_t at = system->n_pairs++;
-        system->end[at][0] = vertex_of(own, entry[HERE]);
-        system->end[at][1] = vertex_of(there, row);
+        system->end[at][0] = observe_system_vertex_of(own, entry[HERE]);
+        system->end[at][1] = observe_system_vertex_of(there, row);
         if (!system->block)
             memcpy(system->value[at], entry + VALUE, sizeof *system->value);
         else if (t->format == SOLVE_SPRINGS)
@@ -282,8 +283,8 @@ static void count_tie(const double *tie, struct tied_pairs *pairs)
     pairs->ground = pairs->ground || ground;
 }
 
-static void add_pair(struct solve_system *system, uint32_t a, uint32_t b, double scale,
-                     const double *tie)
+static void observe_system_add_pair(struct solve_system *system, uint32_t a, uint32_t b,
+                                    double scale, const double *tie)
 {
     const size_t at = system->n_pairs++;
     system->end[at][0] = a;
@@ -303,14 +304,14 @@ static void add_tie(struct solve_system *system, uint32_t ground, const duite_pa
         const double *corner = tie + CORNER * k, weight = corner[CORNER_WEIGHT];
         if (weight == 0)
             continue;
-        vertex[k] =
-            vertex_of(flow_numbers_of(parts, (size_t)corner[CORNER_BLOCK]), corner[CORNER_ROW]);
+        vertex[k] = observe_system_vertex_of(flow_numbers_of(parts, (size_t)corner[CORNER_BLOCK]),
+                                             corner[CORNER_ROW]);
         if (sum != 0)
-            add_pair(system, vertex[k], ground, weight * sum, tie);
+            observe_system_add_pair(system, vertex[k], ground, weight * sum, tie);
         for (int l = 0; l < k; l++)
             if (tie[CORNER * l + CORNER_WEIGHT] != 0)
-                add_pair(system, vertex[l], vertex[k], -weight * tie[CORNER * l + CORNER_WEIGHT],
-                         tie);
+                observe_system_add_pair(system, vertex[l], vertex[k],
+                                        -weight * tie[CORNER * l + CORNER_WEIGHT], tie);
     }
 }
 

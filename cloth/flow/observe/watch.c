@@ -14,8 +14,8 @@ static bool may_rest(const struct flow_state *state)
 }
 
 /* Widens a range to the stretches of the block's edges that count. */
-static void find_range(const struct flow_table *t, const phys_vec *x, const duite_param *halo_x,
-                       double range[2])
+static void watch_find_range(const struct flow_table *t, const phys_vec *x,
+                             const duite_param *halo_x, double range[2])
 {
     struct phys_springs springs = flow_table_inner(t);
     phys_springs_range(&springs, t->stretch, x, x, range);
@@ -34,7 +34,7 @@ static int stretch_body(const duite_call *call, const struct stretch_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     double range[2] = {0};
-    find_range(&table, on->x, on->halo_x, range);
+    watch_find_range(&table, on->x, on->halo_x, range);
     *on->stretch = range[1];
     return 0;
 }
@@ -62,7 +62,7 @@ static int watch_body(const duite_call *call, const struct watch_fields *on)
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     double range[2] = {INFINITY, -INFINITY}, max = 0;
     phys_kinetic(t->n, t->mass, on->v, &max);
-    find_range(t, on->x, on->halo_x, range);
+    watch_find_range(t, on->x, on->halo_x, range);
     on->peaks[FLOW_PEAK_SPEED] = max;
     on->peaks[FLOW_PEAK_LONGEST] = range[1];
     on->peaks[FLOW_PEAK_SHORTEST] = -range[0];

@@ -65,7 +65,7 @@ static int find_all(struct flow_watched *watched, const struct flow_source *sour
     return CLOTH_OK;
 }
 
-static int compare_places(const void *va, const void *vb)
+static int watched_compare_places(const void *va, const void *vb)
 {
     const uint32_t a = *(const uint32_t *)va, b = *(const uint32_t *)vb;
     return (a > b) - (a < b);
@@ -83,14 +83,14 @@ static int sort_places(struct flow_watched *watched, const struct flow_source *s
         return CLOTH_E_MEMORY;
     for (size_t i = 0; i < n; i++)
         watched->place[i] = source->blocks.place[vertex[i]];
-    qsort(watched->place, n, sizeof *watched->place, compare_places);
+    qsort(watched->place, n, sizeof *watched->place, watched_compare_places);
     for (size_t i = 0; i < n; i++)
         if (i == 0 || watched->place[i] != watched->place[watched->n - 1])
             watched->place[watched->n++] = watched->place[i];
     for (size_t i = 0; i < n; i++) {
         const uint32_t place = source->blocks.place[vertex[i]];
-        const uint32_t *at =
-            bsearch(&place, watched->place, watched->n, sizeof *watched->place, compare_places);
+        const uint32_t *at = bsearch(&place, watched->place, watched->n, sizeof *watched->place,
+                                     watched_compare_places);
         watched->entry[i] = (uint32_t)(at - watched->place);
         watched->vertex[i] = vertex[i];
     }

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const struct contact_body *body_of(const struct model *model, uint32_t obstacle)
+static const struct contact_body *pins_follow_body_of(const struct model *model, uint32_t obstacle)
 {
     return contact_bodies_at(&model->bodies, model->obstacles[obstacle].body);
 }
@@ -20,7 +20,7 @@ static void place_vertex(const struct model *model, uint32_t obstacle, uint32_t 
                          phys_vec *to)
 {
     const struct contact_shape *shape = model->obstacles + obstacle;
-    contact_body_vertex_place(body_of(model, obstacle), time, vertex, to);
+    contact_body_vertex_place(pins_follow_body_of(model, obstacle), time, vertex, to);
     if (shape->n) {
         struct phys_pose pose;
         phys_pose_at(shape->n, model->keys + shape->first, shape->about, time, &pose);
@@ -30,7 +30,7 @@ static void place_vertex(const struct model *model, uint32_t obstacle, uint32_t 
 
 static void place_all(const struct model *model, uint32_t obstacle, phys_vec *place)
 {
-    for (uint32_t v = 0; v < body_of(model, obstacle)->n_vertices; v++)
+    for (uint32_t v = 0; v < pins_follow_body_of(model, obstacle)->n_vertices; v++)
         place_vertex(model, obstacle, v, 0, place + v);
 }
 
@@ -64,7 +64,7 @@ static void find_axes(const phys_vec x[3], phys_vec axis[3])
 static void find_anchor(const struct model *model, uint32_t obstacle, const phys_vec *place,
                         const phys_vec *x, struct flow_anchor *anchor)
 {
-    const struct contact_body *body = body_of(model, obstacle);
+    const struct contact_body *body = pins_follow_body_of(model, obstacle);
     const struct contact_facet *facet = contact_body_facets(body);
     double least = INFINITY;
     phys_vec axis[3], way = *x;
@@ -110,11 +110,11 @@ static uint32_t followed_by(const struct flow_particles *p, const struct model *
 
 static bool has_frames(const struct model *model, uint32_t obstacle)
 {
-    return body_of(model, obstacle) && body_of(model, obstacle)->n_frames;
+    return pins_follow_body_of(model, obstacle) && pins_follow_body_of(model, obstacle)->n_frames;
 }
 
-static void start_of(const struct flow_particles *p, const struct model *model, uint32_t cloth,
-                     uint32_t first, uint32_t v, phys_vec *x)
+static void pins_follow_start_of(const struct flow_particles *p, const struct model *model,
+                                 uint32_t cloth, uint32_t first, uint32_t v, phys_vec *x)
 {
     const double *at =
         p->start ? p->start[v] : model->cloths[cloth].mesh.position + 3 * (size_t)(v - first);
@@ -143,7 +143,7 @@ static void add_anchors(struct flow_particles *p, const struct model *model, uin
             phys_vec x;
             if (p->attached[v] != obstacle + 1 || flow_root(&p->welds, v) != v)
                 continue;
-            start_of(p, model, c, first, v, &x);
+            pins_follow_start_of(p, model, c, first, v, &x);
             find_anchor(model, obstacle, place, &x, p->anchor + p->n_anchors);
             p->motion[v] = model->n_motions + ++p->n_anchors;
         }
@@ -152,7 +152,7 @@ static void add_anchors(struct flow_particles *p, const struct model *model, uin
 static int anchor_all(struct flow_particles *p, const struct model *model, uint32_t obstacle,
                       struct cloth_error *error)
 {
-    const struct contact_body *body = body_of(model, obstacle);
+    const struct contact_body *body = pins_follow_body_of(model, obstacle);
     uint32_t n = 0;
     for (uint32_t v = 0; v < p->n; v++)
         n += p->attached[v] == obstacle + 1;

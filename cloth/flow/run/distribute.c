@@ -83,7 +83,7 @@ static int broadcast_head_body(const duite_call *call, const struct broadcast_he
     return 0;
 }
 
-static char *put_bytes(char *to, const void *from, size_t bytes)
+static char *distribute_put_bytes(char *to, const void *from, size_t bytes)
 {
     if (bytes)
         memcpy(to, from, bytes);
@@ -96,16 +96,16 @@ static char *put_frictions(char *to, const struct model *model)
         for (uint32_t i = 0; i < model->n_cloths + model->n_obstacles; i++) {
             const double friction =
                 model_meets(model, c, i) ? model_friction(model, c, i) : FLOW_APART;
-            to = put_bytes(to, &friction, sizeof friction);
+            to = distribute_put_bytes(to, &friction, sizeof friction);
         }
     return to;
 }
 
-static char *put_ties(char *to, const struct flow_source *source)
+static char *distribute_put_ties(char *to, const struct flow_source *source)
 {
     for (uint32_t i = 0; i < source->springs.n_timed; i++) {
         const struct flow_tie tie = flow_joints_tie(source, source->springs.timed + i);
-        to = put_bytes(to, &tie, sizeof tie);
+        to = distribute_put_bytes(to, &tie, sizeof tie);
     }
     return to;
 }
@@ -115,17 +115,19 @@ static char *put_model(char *to, const struct flow *flow)
 {
     const struct model *model = flow->model;
     const struct flow_source *source = &flow->source;
-    to = put_bytes(to, model->bodies.memory, model->bodies.bytes); /* first, as it is aligned */
-    to = put_bytes(to, model->obstacles, model->n_obstacles * sizeof *model->obstacles);
-    to = put_bytes(to, model->keys, model->n_keys * sizeof *model->keys);
-    to = put_bytes(to, model->sliders, model->n_sliders * sizeof *model->sliders);
-    to = put_bytes(to, model->curve_keys, model->n_curve_keys * sizeof *model->curve_keys);
-    to = put_bytes(to, model->curves, model->n_curves * sizeof *model->curves);
-    to = put_bytes(to, model->motions, model->n_motions * sizeof *model->motions);
+    to = distribute_put_bytes(to, model->bodies.memory,
+                              model->bodies.bytes); /* first, as it is aligned */
+    to = distribute_put_bytes(to, model->obstacles, model->n_obstacles * sizeof *model->obstacles);
+    to = distribute_put_bytes(to, model->keys, model->n_keys * sizeof *model->keys);
+    to = distribute_put_bytes(to, model->sliders, model->n_sliders * sizeof *model->sliders);
+    to = distribute_put_bytes(to, model->curve_keys,
+                              model->n_curve_keys * sizeof *model->curve_keys);
+    to = distribute_put_bytes(to, model->curves, model->n_curves * sizeof *model->curves);
+    to = distribute_put_bytes(to, model->motions, model->n_motions * sizeof *model->motions);
     to = put_frictions(to, model);
-    to = put_bytes(to, source->particles.anchor,
-                   source->particles.n_anchors * sizeof *source->particles.anchor);
-    return put_ties(to, source);
+    to = distribute_put_bytes(to, source->particles.anchor,
+                              source->particles.n_anchors * sizeof *source->particles.anchor);
+    return distribute_put_ties(to, source);
 }
 
 static char *put_blocks(char *to, const struct flow_source *source)
@@ -133,12 +135,12 @@ static char *put_blocks(char *to, const struct flow_source *source)
     const uint32_t n_blocks = source->blocks.n_blocks;
     const struct flow_neighbours *all = &source->neighbours;
     for (uint32_t b = 0; b < n_blocks; b++)
-        to = put_bytes(to, source->shape + b, SHAPE);
-    to = put_bytes(to, all->neighbour, all->n_neighbours * sizeof *all->neighbour);
-    to = put_bytes(to, all->ghost_start,
-                   ((size_t)all->n_neighbours + n_blocks) * sizeof *all->ghost_start);
-    to = put_bytes(to, all->ghost, all->n_ghosts * sizeof *all->ghost);
-    return put_bytes(to, all->joins, all->n_neighbours * sizeof *all->joins);
+        to = distribute_put_bytes(to, source->shape + b, SHAPE);
+    to = distribute_put_bytes(to, all->neighbour, all->n_neighbours * sizeof *all->neighbour);
+    to = distribute_put_bytes(to, all->ghost_start,
+                              ((size_t)all->n_neighbours + n_blocks) * sizeof *all->ghost_start);
+    to = distribute_put_bytes(to, all->ghost, all->n_ghosts * sizeof *all->ghost);
+    return distribute_put_bytes(to, all->joins, all->n_neighbours * sizeof *all->joins);
 }
 
 FLOW_KERNEL(broadcast_shared, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(shared)))
@@ -149,8 +151,8 @@ static int broadcast_shared_body(const duite_call *call, const struct broadcast_
     char *to = put_model(on->shared, flow);
     to = put_blocks(to, &flow->source);
     if (apart->apart) {
-        to = put_bytes(to, apart->end, flow->model->n_cloths * sizeof *apart->end);
-        put_bytes(to, apart->apart, n_frictions(flow->model));
+        to = distribute_put_bytes(to, apart->end, flow->model->n_cloths * sizeof *apart->end);
+        distribute_put_bytes(to, apart->apart, n_frictions(flow->model));
     }
     return 0;
 }

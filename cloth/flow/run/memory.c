@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* Takes room on rank 0 to gather a frame, and a part of the state to be hashed. */
-static void take_room(struct flow_state *state)
+static void run_memory_take_room(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     if (flow_shows(state))
@@ -100,7 +100,7 @@ static void take_all(struct flow_state *state)
     flow_ties_take(state);
     flow_contact_take(state);
     if (duite_rank(state->rt) == 0)
-        take_room(state);
+        run_memory_take_room(state);
 }
 
 FLOW_KERNEL(ready, FLOW_NO_PART, struct flow_block_args, (GIVEN_SUM(lacks)))

@@ -88,7 +88,7 @@ struct weigher {
 };
 
 /* Adds a mass to a vertex of all cloths: a name's mass goes to its root. */
-static void weigh(struct flow_particles *p, uint32_t vertex, double mass)
+static void particles_weigh(struct flow_particles *p, uint32_t vertex, double mass)
 {
     p->mass[flow_root(&p->welds, vertex)] += mass;
     if (p->own)
@@ -98,7 +98,7 @@ static void weigh(struct flow_particles *p, uint32_t vertex, double mass)
 static void add_mass(void *to, uint32_t vertex)
 {
     const struct weigher *weigher = to;
-    weigh(weigher->particles, weigher->first + vertex, weigher->mass);
+    particles_weigh(weigher->particles, weigher->first + vertex, weigher->mass);
 }
 
 static int more_masses(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
@@ -151,10 +151,10 @@ static int masses(struct flow_particles *p, uint32_t first, const struct model *
                       model->materials[model_material_of(cloth, 3, corner)].density,
                       model_has_cells(model, cloth), &share);
         for (uint32_t i = 0; i < share.n; i++)
-            weigh(p, first + share.vertex[i], share.mass);
+            particles_weigh(p, first + share.vertex[i], share.mass);
     }
     for (uint32_t i = 0; i < cloth->mesh.n_vertices && cloth->mass_per_vertex > 0; i++)
-        weigh(p, first + i, cloth->mass_per_vertex);
+        particles_weigh(p, first + i, cloth->mass_per_vertex);
     return more_masses(p, first, cloth, error);
 }
 
@@ -246,8 +246,8 @@ static int each_cloth(struct flow_particles *p, const struct model *model,
     return code;
 }
 
-static int allocate(struct flow_particles *p, uint32_t n, bool loaded, const struct model *model,
-                    struct cloth_error *error)
+static int particles_allocate(struct flow_particles *p, uint32_t n, bool loaded,
+                              const struct model *model, struct cloth_error *error)
 {
     const bool moved = model->n_motions, sliding = model->n_sliders;
     p->n = n;
@@ -292,7 +292,7 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
     if (n >= UINT32_MAX)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%zu vertices are too many; at most 4294967294 are possible", n);
-    int code = allocate(particles, (uint32_t)n, loaded, model, error);
+    int code = particles_allocate(particles, (uint32_t)n, loaded, model, error);
     if (!code && starts) {
         particles->start = cloth_alloc(n, sizeof *particles->start, error);
         code = particles->start ? CLOTH_OK : CLOTH_E_MEMORY;

@@ -55,7 +55,7 @@ bool flow_step_is_driven(const struct model *model)
 
 /* ---- Stages ---- */
 
-static int fork_begin(struct flow_state *state)
+static int step_fork_begin(struct flow_state *state)
 {
     const struct flow_integrator *is = flow_integrators + state->flow->model->integrator;
     return is->begin ? is->begin(state) : DUITE_OK;
@@ -83,7 +83,7 @@ static const struct stage stages[] = {
     {"begin contact", TIE, always, flow_contact_begin},
     {"keep", PREDICT, keeps_first, flow_keep},
     {"prescribe velocities", PREDICT, is_driven, flow_pins_prescribe_velocity},
-    {"begin", SOLVE, always, fork_begin},
+    {"begin", SOLVE, always, step_fork_begin},
     {"keep", CORRECT, keeps_late, flow_keep},
     {"integrate", CORRECT, always, fork_end},
     {"prescribe positions", CORRECT, is_driven, flow_pins_prescribe_position},

@@ -20,7 +20,7 @@ static void describe_unusual(char *text, size_t size, const char *what,
                  unusual->vertex + 1, unusual->cloth->name, effect);
 }
 
-static void warn(struct flow *flow, const struct flow_particles *particles)
+static void warn_warn(struct flow *flow, const struct flow_particles *particles)
 {
     const size_t size = sizeof flow->warning[FLOW_WARN_UNUSED];
     describe_unusual(flow->warning[FLOW_WARN_UNUSED], size, "vertices", &particles->unused,
@@ -209,7 +209,7 @@ static void warn_of_follow(struct flow *flow, const struct model_cloth *cloth, u
 }
 
 /* Grids are wound in one direction. Cloths without elements have no edges of their own. */
-static void warn_of_edges(struct flow *flow)
+static void run_warn_of_edges(struct flow *flow)
 {
     const struct model *model = flow->model;
     const bool attached = flow->source.particles.attached != NULL;
@@ -232,8 +232,8 @@ static void warn_of_edges(struct flow *flow)
 
 int flow_warn(struct flow *flow, struct cloth_error *error)
 {
-    warn_of_edges(flow);
-    warn(flow, &flow->source.particles);
+    run_warn_of_edges(flow);
+    warn_warn(flow, &flow->source.particles);
     warn_of_extent(flow);
     warn_of_inside(flow);
     return flow_warn_of_steps(flow, error);

@@ -35,7 +35,7 @@ struct begin_args {
 };
 
 /* Forks the scalars before the first pass, and the coarse part of s that it begins with. */
-static int fork_begin(struct flow_state *state, bool guess)
+static int solver_cg_fork_begin(struct flow_state *state, bool guess)
 {
     const struct begin_args args = {.step = flow_attempt_args(state),
                                     .phase = guess ? SOLVE_OPEN : SOLVE_ON};
@@ -64,7 +64,7 @@ int flow_cg_start(struct flow_state *state)
         if (!code)
             code = flow_pass_start(state, first, end, guess);
     }
-    return code ? code : fork_begin(state, guess != 0);
+    return code ? code : solver_cg_fork_begin(state, guess != 0);
 }
 
 int flow_cg_iterate(struct flow_state *state)
@@ -204,7 +204,8 @@ FLOW_KERNEL_IF(cg_scalars, motion_next, FLOW_CG, struct flow_block_args,
                .replicated = 1)
 
 /* The dots of all blocks, which groups have summed if there are levels. */
-static void add_parts(const struct flow *flow, const duite_param *part, double dots[SOLVE_DOTS])
+static void solver_cg_add_parts(const struct flow *flow, const duite_param *part,
+                                double dots[SOLVE_DOTS])
 {
     for (uint32_t b = 0; b < flow_parts(flow); b++)
         for (int i = 0; i < SOLVE_DOTS; i++)
@@ -229,7 +230,7 @@ static int cg_scalars_body(const duite_call *call, const struct cg_scalars_field
         memcpy(dots, on->sums, flow_dots(flow) * sizeof *dots);
         dots[SOLVE_RZ] = dots[SOLVE_RR];
     } else {
-        add_parts(flow, on->part, dots);
+        solver_cg_add_parts(flow, on->part, dots);
     }
     if (on->motion_next)
         dots[SOLVE_QQ] += move_patches(flow, on);

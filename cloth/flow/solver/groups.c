@@ -24,8 +24,8 @@ struct group {
     uint32_t depth, number, among_all; /* which level; among the groups of the level; of all */
 };
 
-static struct group group_of(const duite_call *call, const struct group_args *args,
-                             const double *lift)
+static struct group solver_groups_group_of(const duite_call *call, const struct group_args *args,
+                                           const double *lift)
 {
     const struct flow *flow = flow_of(call);
     const struct solve_level *level = flow->level + args->level;
@@ -106,7 +106,7 @@ FLOW_KERNEL(group_factor, FLOW_CG, struct group_args,
             (GIVEN_W(group_factor), GIVEN_W(group_coupling), R(lift), REST_R(covered)))
 static int group_factor_body(const duite_call *call, const struct group_factor_fields *on)
 {
-    const struct group group = group_of(call, on->args, on->lift);
+    const struct group group = solver_groups_group_of(call, on->args, on->lift);
     const struct solve_cover *cover = group.cover;
     double *factor = on->group_factor, *to = on->group_coupling;
     memset(to, 0, duite_count(call, FLOW_INDEX_OF(group_factor, group_coupling)) * sizeof *to);
@@ -181,7 +181,7 @@ FLOW_KERNEL(group_solve, FLOW_CG, struct group_args,
 /* Both kernels begin with the same parameters. moves: there is a motion to solve for. */
 static void solve_or_sum(const duite_call *call, bool moves, const struct group_start_fields *on)
 {
-    const struct group group = group_of(call, on->args, on->lift);
+    const struct group group = solver_groups_group_of(call, on->args, on->lift);
     double *motion = on->group_motion, *part = on->group_part;
     memset(part, 0, duite_count(call, FLOW_INDEX_OF(group_start, group_part)) * sizeof *part);
     memset(motion, 0, duite_count(call, FLOW_INDEX_OF(group_start, group_motion)) * sizeof *motion);

@@ -122,7 +122,7 @@ static void read_halos(struct flow_state *state, uint32_t b, uint32_t neighbour)
 }
 
 /* True if neighbour s of a block is the first one with its home. */
-static bool is_first(const struct flow_packed *packed, const struct flow_table *t, uint32_t s)
+static bool halo_is_first(const struct flow_packed *packed, const struct flow_table *t, uint32_t s)
 {
     for (uint32_t i = 0; i < s; i++)
         if (packed->home[t->neighbour[i]] == packed->home[t->neighbour[s]])
@@ -143,7 +143,7 @@ void flow_halo_make(struct flow_state *state)
             const int home = packed->home[t->neighbour[s]];
             if (home == packed->home[b])
                 read_halos(state, b, t->neighbour[s]);
-            else if (is_first(packed, t, s))
+            else if (halo_is_first(packed, t, s))
                 make_halo(state, b, home);
         }
     }

@@ -87,8 +87,8 @@ static int patch_frame_body(const duite_call *call, const struct patch_frame_fie
 }
 
 /* The frame of a node of a level, from the frames of all patches. */
-static struct solve_frame frame_of(const struct flow *flow, const duite_param *patch,
-                                   uint32_t level, uint32_t node)
+static struct solve_frame solver_levels_frame_of(const struct flow *flow, const duite_param *patch,
+                                                 uint32_t level, uint32_t node)
 {
     struct solve_frame part[FLOW_MAX_NODES];
     uint32_t n = 0;
@@ -96,7 +96,7 @@ static struct solve_frame frame_of(const struct flow *flow, const duite_param *p
         return ((const struct solve_frame *)patch[node / flow->patches].data)[node % flow->patches];
     const struct solve_level *below = flow->level + level - 1;
     for (uint32_t p = below->start[node]; p < below->start[node + 1]; p++)
-        part[n++] = frame_of(flow, patch, level - 1, p);
+        part[n++] = solver_levels_frame_of(flow, patch, level - 1, p);
     return solve_frame_of_group(n, part);
 }
 
@@ -108,10 +108,12 @@ static int lift_body(const duite_call *call, const struct lift_fields *on)
     double *to = on->lift;
     for (uint32_t level = 0; level < flow->n_levels; level++)
         for (uint32_t g = 0; g < flow->level[level].n_groups; g++) {
-            const struct solve_frame group = frame_of(flow, on->patch_frame, level + 1, g);
+            const struct solve_frame group =
+                solver_levels_frame_of(flow, on->patch_frame, level + 1, g);
             const uint32_t *start = flow->level[level].start + g;
             for (uint32_t p = start[0]; p < start[1]; p++, to += FLOW_LIFT) {
-                const struct solve_frame part = frame_of(flow, on->patch_frame, level, p);
+                const struct solve_frame part =
+                    solver_levels_frame_of(flow, on->patch_frame, level, p);
                 solve_lift(&part, &group, to);
             }
         }

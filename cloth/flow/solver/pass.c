@@ -213,7 +213,7 @@ static void add_norms(const struct pass *pass, double dots[SOLVE_DOTS])
 }
 
 /* SOLVE_ON: ends an iteration and begins the next one. */
-static void iterate(struct pass *pass, double dots[SOLVE_DOTS])
+static void pass_iterate(struct pass *pass, double dots[SOLVE_DOTS])
 {
     const struct flow_table *t = &pass->table;
     const struct solve_cut cut = cut_of(pass);
@@ -236,7 +236,7 @@ static double finish_solve(const struct pass *pass)
 
 /* SOLVE_OPEN and SOLVE_CHECK: the product with the guess, or with dv, which neighbours were shown
  * in place of s. */
-static void multiply(struct pass *pass, double dots[SOLVE_DOTS])
+static void pass_multiply(struct pass *pass, double dots[SOLVE_DOTS])
 {
     const struct flow_table *t = &pass->table;
     const struct flow_ties *ties = &pass->ties;
@@ -274,13 +274,13 @@ static void run_phase(struct pass *pass)
     const double phase = pass->scalars->phase;
     double dots[SOLVE_DOTS] = {0};
     if (phase == SOLVE_ON)
-        iterate(pass, dots);
+        pass_iterate(pass, dots);
     else if (phase == SOLVE_LAST)
         dots[SOLVE_RR] = finish_solve(pass);
     else if (phase == SOLVE_SHOW)
         flow_pack_halo(&pass->table, pass->rows.dv, pass->halo);
     else if (phase == SOLVE_CHECK || phase == SOLVE_OPEN)
-        multiply(pass, dots);
+        pass_multiply(pass, dots);
     else if (phase == SOLVE_AGAIN)
         begin_again(pass, dots);
     memcpy(pass->part, dots, flow_dots(flow_of(pass->call)) * sizeof *dots);

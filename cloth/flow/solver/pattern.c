@@ -21,7 +21,8 @@ static uint32_t *add_joined(const struct flow *flow, uint32_t joins, uint32_t k,
 }
 
 /* Appends the neighbours of patch k of block b, ascending. Returns the end. */
-static uint32_t *add_neighbours(const struct flow *flow, uint32_t b, uint32_t k, uint32_t *to)
+static uint32_t *solver_pattern_add_neighbours(const struct flow *flow, uint32_t b, uint32_t k,
+                                               uint32_t *to)
 {
     const struct flow_table *t = flow->tables.block + b;
     const uint32_t itself = solve_patch_bit(k, k);
@@ -98,7 +99,7 @@ static bool join_patches(struct flow *flow)
         for (uint32_t k = 0; k < flow->patches; k++) {
             const uint32_t p = flow->patches * b + k;
             uint32_t *from = flow->patch_neighbour + flow->patch_first[p];
-            uint32_t *end = add_neighbours(flow, b, k, from);
+            uint32_t *end = solver_pattern_add_neighbours(flow, b, k, from);
             end = insert_tied(flow, b, p, from, end);
             flow->patch_first[p + 1] = (uint32_t)(end - flow->patch_neighbour);
         }
@@ -120,7 +121,7 @@ static uint32_t *split_runs(uint32_t from, uint32_t to, uint64_t most, uint32_t 
 }
 
 /* The node of a level that the first patch of a block is in. */
-static uint32_t node_of(const struct flow *flow, uint32_t level, uint32_t block)
+static uint32_t solver_pattern_node_of(const struct flow *flow, uint32_t level, uint32_t block)
 {
     uint32_t node = flow->patches * block;
     for (uint32_t l = 0; l < level; l++)
@@ -138,7 +139,7 @@ static int add_level(struct flow *flow, uint64_t most)
         return CLOTH_E_MEMORY;
     const uint32_t n_groups = (uint32_t)(split_runs(0, n_blocks, most, start) - start);
     for (uint32_t g = 0; g < n_groups; g++)
-        start[g] = node_of(flow, l, start[g]);
+        start[g] = solver_pattern_node_of(flow, l, start[g]);
     start[n_groups] = nodes.n;
     flow->n_levels++;
     flow->first_group[l + 1] = flow->first_group[l] + n_groups;

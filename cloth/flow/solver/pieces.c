@@ -10,7 +10,7 @@
  * a slider holds. */
 enum { LOST, TURN = 3, MASS = 6, HELD };
 
-static bool is_held(const struct flow_table *t, uint32_t row)
+static bool solver_pieces_is_held(const struct flow_table *t, uint32_t row)
 {
     if (!t->matrix.filter)
         return false;
@@ -23,7 +23,7 @@ FLOW_KERNEL(piece_sums, FLOW_CG, struct flow_block_args,
 
 /* The number of a piece's sums, from 1; pieces joined by ties share them. 0: none, as a pin holds
  * the piece. */
-static uint64_t group_of(const uint64_t *groups, uint32_t piece)
+static uint64_t solver_pieces_group_of(const uint64_t *groups, uint32_t piece)
 {
     return groups ? groups[piece - 1] : piece;
 }
@@ -36,7 +36,7 @@ static int piece_sums_body(const duite_call *call, const struct piece_sums_field
     const struct solve_values values = solve_values_of(t->format, t->n, value);
     for (uint32_t i = 0; i < t->n_loose; i++) {
         const uint32_t row = t->loose[i][0];
-        const uint64_t group = group_of(on->groups, t->loose[i][1]);
+        const uint64_t group = solver_pieces_group_of(on->groups, t->loose[i][1]);
         phys_vec turned = {0};
         if (!group)
             continue;
@@ -49,7 +49,7 @@ static int piece_sums_body(const duite_call *call, const struct piece_sums_field
             sums[TURN + c] += values.turn ? values.turn[row][c] : 0;
         }
         sums[MASS] += t->matrix.diagonal[row];
-        sums[HELD] += is_held(t, row);
+        sums[HELD] += solver_pieces_is_held(t, row);
     }
     return 0;
 }
@@ -79,7 +79,7 @@ static int piece_shift_body(const duite_call *call, const struct piece_shift_fie
     uint64_t last = 0;
     for (uint32_t i = 0; i < t->n_loose; i++) {
         const uint32_t row = t->loose[i][0];
-        const uint64_t group = group_of(on->groups, t->loose[i][1]);
+        const uint64_t group = solver_pieces_group_of(on->groups, t->loose[i][1]);
         if (!group)
             continue;
         if (group != last)

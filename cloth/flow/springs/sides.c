@@ -38,8 +38,8 @@ struct gatherer {
     uint32_t block; /* of the last spring's lower end: the next one's is often the same */
 };
 
-static void put_side(struct gatherer *gatherer, uint32_t block, uint32_t other, uint32_t here,
-                     uint32_t there, const struct flow_spring *s)
+static void springs_sides_put_side(struct gatherer *gatherer, uint32_t block, uint32_t other,
+                                   uint32_t here, uint32_t there, const struct flow_spring *s)
 {
     struct flow_source *source = gatherer->source;
     source->side[source->start[block - source->from]++] =
@@ -61,13 +61,13 @@ static void gather_spring(void *to, const struct flow_spring *s)
     const uint32_t bq = flow_source_block(blocks, q, bp);
     gatherer->block = bp;
     if (bp == bq) {
-        put_side(gatherer, bp, 0, p < q ? p : q, p < q ? q : p, s);
+        springs_sides_put_side(gatherer, bp, 0, p < q ? p : q, p < q ? q : p, s);
         return;
     }
     if (own_p)
-        put_side(gatherer, bp, bq + 1, p, q, s);
+        springs_sides_put_side(gatherer, bp, bq + 1, p, q, s);
     if (own_q)
-        put_side(gatherer, bq, bp + 1, q, p, s);
+        springs_sides_put_side(gatherer, bq, bp + 1, q, p, s);
 }
 
 void flow_source_forget(struct flow_source *source)

@@ -24,7 +24,8 @@ static int find_regions(struct flow_springs *springs, uint32_t c, struct mesh_re
 }
 
 /* Edges beside triangles are in no lattice, which would refuse those without a length. */
-static int check_edges(const struct flow_springs *springs, uint32_t c, struct cloth_error *error)
+static int springs_check_edges(const struct flow_springs *springs, uint32_t c,
+                               struct cloth_error *error)
 {
     const struct model_cloth *cloth = springs->model->cloths + c;
     const struct mesh_edges *edges = springs->elements->edges + c;
@@ -42,13 +43,13 @@ static int check_edges(const struct flow_springs *springs, uint32_t c, struct cl
     return CLOTH_OK;
 }
 
-static int make_cloth(struct flow_springs *springs, uint32_t c, struct cloth_error *error)
+static int springs_make_cloth(struct flow_springs *springs, uint32_t c, struct cloth_error *error)
 {
     const struct model_cloth *cloth = springs->model->cloths + c;
     struct mesh_moduli moduli = model_moduli(model_material(springs->model, cloth, 0));
     struct cloth_error inner = {0};
     if (model_has_triangles(springs->model, cloth))
-        return check_edges(springs, c, error);
+        return springs_check_edges(springs, c, error);
     const bool parts = cloth->mask || cloth->grain_mask;
     int code = parts ? find_regions(springs, c, springs->regions + c, error) : CLOTH_OK;
     if (code)
@@ -71,7 +72,7 @@ int flow_springs_make(struct flow_springs *springs, const struct model *model,
     springs->regions = cloth_alloc(model->n_cloths, sizeof *springs->regions, error);
     int code = springs->lattice && springs->regions ? CLOTH_OK : CLOTH_E_MEMORY;
     for (uint32_t c = 0; c < model->n_cloths && !code; c++)
-        code = make_cloth(springs, c, error);
+        code = springs_make_cloth(springs, c, error);
     if (code)
         flow_springs_free(springs);
     return code;
@@ -86,8 +87,8 @@ struct visitor {
 };
 
 /* The material of a link between two vertices of the cloth's mesh. */
-static const struct model_material *material_of(const struct visitor *visitor, uint32_t a,
-                                                uint32_t b)
+static const struct model_material *springs_material_of(const struct visitor *visitor, uint32_t a,
+                                                        uint32_t b)
 {
     return visitor->model->materials +
            model_material_of(visitor->cloth, 2, (const uint32_t[]){a, b});
@@ -97,14 +98,14 @@ static const struct model_material *material_of(const struct visitor *visitor, u
 static const struct model_correction *correction_of(const struct visitor *visitor, uint32_t a,
                                                     uint32_t b)
 {
-    const struct model_correction *correction = &material_of(visitor, a, b)->correction;
+    const struct model_correction *correction = &springs_material_of(visitor, a, b)->correction;
     return visitor->model->correction_rounds && correction->rounds ? correction : NULL;
 }
 
-static void pass_on(void *context, const struct mesh_spring *s)
+static void springs_pass_on(void *context, const struct mesh_spring *s)
 {
     const struct visitor *visitor = context;
-    const struct model_material *material = material_of(visitor, s->a, s->b);
+    const struct model_material *material = springs_material_of(visitor, s->a, s->b);
     const double damping =
         s->kind == MESH_BEND ? model_damping_bending(material) : material->damping_stiffness;
     const struct flow_spring spring = {
@@ -128,7 +129,8 @@ static void link_pair(const struct visitor *visitor, const struct mesh *mesh,
 {
     const double length = mesh_length(mesh, triangle, a, b);
     const double stiffness = length > 0 ? ea / length : 0;
-    const double damping = stiffness > 0 ? material_of(visitor, a, b)->damping_stiffness : 0;
+    const double damping =
+        stiffness > 0 ? springs_material_of(visitor, a, b)->damping_stiffness : 0;
     const struct flow_spring spring = {
         .a = visitor->first + (a < b ? a : b),
         .b = visitor->first + (a < b ? b : a),
@@ -194,7 +196,7 @@ static void each_link(const struct flow_springs *springs, uint32_t c, const stru
         const bool lone = edge->opposite[0] == UINT32_MAX;
         if (triangles || !lone)
             link_pair(visitor, mesh, edge->triangle, edge->a, edge->b,
-                      lone ? material_of(visitor, edge->a, edge->b)->ea : 0, triangles);
+                      lone ? springs_material_of(visitor, edge->a, edge->b)->ea : 0, triangles);
         if (parts & 1u << ELEMENT_HINGES && element_is_hinge(edge))
             link_pair(visitor, mesh, NO_TRIANGLES, edge->opposite[0], edge->opposite[1], 0, 0);
     }
@@ -211,7 +213,7 @@ static void each_of_cloths(const struct flow_springs *springs,
     struct visitor visitor = {.visit = visit, .to = to, .model = model};
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         visitor.cloth = model->cloths + c;
-        mesh_lattice_each(springs->lattice + c, pass_on, &visitor);
+        mesh_lattice_each(springs->lattice + c, springs_pass_on, &visitor);
         each_link(springs, c, &visitor);
         visitor.first += visitor.cloth->mesh.n_vertices;
     }

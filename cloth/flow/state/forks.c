@@ -30,8 +30,8 @@ static bool is_there(const struct flow_state *state, enum flow_whose whose,
            flow_fields[field].exists(state, 0);
 }
 
-static void find_places(const struct flow_state *state, const struct flow_kernel *kernel,
-                        const struct flow_as *as, struct places *places)
+static void forks_find_places(const struct flow_state *state, const struct flow_kernel *kernel,
+                              const struct flow_as *as, struct places *places)
 {
     places->n = 0;
     for (const struct flow_parameter *p = kernel->parameter; p->whose != FLOW_NOBODY; p++) {
@@ -57,9 +57,9 @@ static duite_object object_at(const struct flow_state *state, size_t at, uint32_
 }
 
 /* Appends a field's objects in blocks other than the task's to `refs`. Returns the end. */
-static duite_object *add_others(const struct flow_state *state, uint32_t block,
-                                enum flow_whose whose, enum flow_field_id field, size_t at,
-                                duite_object *refs)
+static duite_object *forks_add_others(const struct flow_state *state, uint32_t block,
+                                      enum flow_whose whose, enum flow_field_id field, size_t at,
+                                      duite_object *refs)
 {
     const struct flow_table *t = state->flow->tables.block + block;
     const struct flow_tied_blocks *tied = &state->tied.now;
@@ -89,7 +89,7 @@ static size_t list_objects(const struct flow_state *state, const struct places *
         else if (whose == FLOW_OF_FORK)
             *end++ = *one++;
         else
-            end = add_others(state, block, whose, places->of[i].field, at, end);
+            end = forks_add_others(state, block, whose, places->of[i].field, at, end);
     }
     return (size_t)(end - refs);
 }
@@ -103,7 +103,7 @@ size_t flow_kernel_objects(struct flow_state *state, const struct flow_kernel *k
                            uint32_t block, const struct flow_as *as)
 {
     struct places places;
-    find_places(state, kernel, as, &places);
+    forks_find_places(state, kernel, as, &places);
     return list_objects(state, &places, block, NULL, state->refs);
 }
 
@@ -148,7 +148,7 @@ int flow_fork_range_as(struct flow_state *state, const struct flow_kernel *kerne
     size_t n[FLOW_FORKS_AHEAD];
     struct places places;
     int code = DUITE_OK;
-    find_places(state, kernel, as, &places);
+    forks_find_places(state, kernel, as, &places);
     for (uint32_t b = first; b < end + FLOW_FORKS_AHEAD && !code; b++) {
         const uint32_t turn = (b - first) % FLOW_FORKS_AHEAD;
         duite_object *refs = state->refs + turn * state->max_refs;
@@ -194,7 +194,7 @@ static duite_object *gather_given(const struct flow_state *state, const struct f
 {
     const uint32_t *block = args;
     struct places places;
-    find_places(state, kernel, NULL, &places);
+    forks_find_places(state, kernel, NULL, &places);
     duite_object *first = given->rest ? given->rest - places.n : room;
     *n = given->n + list_objects(state, &places, block ? *block : 0, given->one, first);
     return first;

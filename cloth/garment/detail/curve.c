@@ -68,7 +68,7 @@ static double speed(const struct curve *curve, double t)
 }
 
 /* The length from t to u, which are near to each other. */
-static double length_of(const struct curve *curve, double t, double u)
+static double detail_curve_length_of(const struct curve *curve, double t, double u)
 {
     static const double at[2] = {0.5384693101056831, 0.9061798459386640};
     static const double weight[3] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
@@ -99,8 +99,9 @@ void curve_make(struct curve *curve, const struct garment_panel *panel, uint32_t
         return;
     }
     for (int k = 0; k < CURVE_PARTS; k++)
-        curve->before[k + 1] = curve->before[k] + length_of(curve, (double)k / CURVE_PARTS,
-                                                            (double)(k + 1) / CURVE_PARTS);
+        curve->before[k + 1] =
+            curve->before[k] +
+            detail_curve_length_of(curve, (double)k / CURVE_PARTS, (double)(k + 1) / CURVE_PARTS);
     curve->length = curve->before[CURVE_PARTS];
 }
 
@@ -134,7 +135,7 @@ static double parameter_at(const struct curve *curve, double length)
     const double begin = (double)part / CURVE_PARTS;
     double low = begin, high = (double)(part + 1) / CURVE_PARTS, t = 0.5 * (low + high);
     for (int i = 0; i < 40; i++) {
-        const double off = curve->before[part] + length_of(curve, begin, t) - length;
+        const double off = curve->before[part] + detail_curve_length_of(curve, begin, t) - length;
         low = off <= 0 ? t : low;
         high = off <= 0 ? high : t;
         const double next = t - off / speed(curve, t);

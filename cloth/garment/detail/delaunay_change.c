@@ -62,7 +62,8 @@ void delaunay_legalise(struct delaunay *plane)
 
 /* Twice the area of an edge and a place: below 0 if the place is on the right. Exactly the opposite
  * seen from the other side, or a walk could go to and fro over an edge that points at the place. */
-static double side_of(const struct delaunay *plane, uint32_t a, uint32_t b, const double place[2])
+static double delaunay_change_side_of(const struct delaunay *plane, uint32_t a, uint32_t b,
+                                      const double place[2])
 {
     return a < b ? delaunay_area(plane->place[a], plane->place[b], place)
                  : -delaunay_area(plane->place[b], plane->place[a], place);
@@ -77,9 +78,9 @@ static uint32_t search(const struct delaunay *plane, const double place[2])
         const uint32_t *v = plane->triangle[t].vertex;
         if (v[0] == DELAUNAY_NONE)
             continue;
-        const double least =
-            fmin(side_of(plane, v[0], v[1], place),
-                 fmin(side_of(plane, v[1], v[2], place), side_of(plane, v[2], v[0], place)));
+        const double least = fmin(delaunay_change_side_of(plane, v[0], v[1], place),
+                                  fmin(delaunay_change_side_of(plane, v[1], v[2], place),
+                                       delaunay_change_side_of(plane, v[2], v[0], place)));
         if (least > most) {
             most = least;
             best = t;
@@ -91,7 +92,8 @@ static uint32_t search(const struct delaunay *plane, const double place[2])
 }
 
 /* Walks towards a place over edges that have it on their far side; DELAUNAY_NONE: it is outside. */
-static uint32_t find(const struct delaunay *plane, const double place[2], uint32_t from)
+static uint32_t delaunay_change_find(const struct delaunay *plane, const double place[2],
+                                     uint32_t from)
 {
     uint32_t t = from;
     for (uint32_t steps = 0; steps <= plane->n_triangles; steps++) {
@@ -99,7 +101,8 @@ static uint32_t find(const struct delaunay *plane, const double place[2], uint32
         uint32_t next = t;
         for (uint32_t k = 0; k < 3 && next == t; k++) {
             const uint32_t i = (k + steps) % 3; /* by turns, or it could go in circles */
-            if (side_of(plane, of->vertex[(i + 1) % 3], of->vertex[(i + 2) % 3], place) < 0)
+            if (delaunay_change_side_of(plane, of->vertex[(i + 1) % 3], of->vertex[(i + 2) % 3],
+                                        place) < 0)
                 next = of->beside[i];
         }
         if (next == t || next == DELAUNAY_NONE)
@@ -110,8 +113,8 @@ static uint32_t find(const struct delaunay *plane, const double place[2], uint32
 }
 
 /* Where a place is in its triangle: on the edge opposite corner 0 .. 2, 3 inside, 4 on a corner. */
-static int part_of(const struct delaunay *plane, const struct delaunay_triangle *of,
-                   const double place[2])
+static int delaunay_change_part_of(const struct delaunay *plane, const struct delaunay_triangle *of,
+                                   const double place[2])
 {
     int part = 3;
     for (int i = 0; i < 3; i++) {
@@ -143,7 +146,7 @@ static void split_triangle(struct delaunay *plane, uint32_t t, uint32_t vertex)
 }
 
 /* The two triangles at an edge become four. */
-static void split_edge(struct delaunay *plane, uint32_t t, int i, uint32_t vertex)
+static void delaunay_change_split_edge(struct delaunay *plane, uint32_t t, int i, uint32_t vertex)
 {
     const struct delaunay_quad quad = delaunay_quad_at(plane, t, i);
     const uint32_t u = quad.other, t2 = delaunay_new_triangle(plane),
@@ -167,18 +170,18 @@ uint32_t delaunay_insert(struct delaunay *plane, const double place[2], uint32_t
 {
     if (plane->n == plane->room || plane->n_triangles + 2 > plane->triangle_room)
         return DELAUNAY_NONE;
-    const uint32_t t = find(plane, place, near);
+    const uint32_t t = delaunay_change_find(plane, place, near);
     if (t == DELAUNAY_NONE)
         return DELAUNAY_NONE;
     const struct delaunay_triangle *of = &plane->triangle[t];
-    const int part = part_of(plane, of, place);
+    const int part = delaunay_change_part_of(plane, of, place);
     if (part == 4 || (part < 3 && ((of->fixed >> part & 1) || of->beside[part] == DELAUNAY_NONE)))
         return DELAUNAY_NONE;
     const uint32_t vertex = delaunay_new_vertex(plane, place);
     if (part == 3)
         split_triangle(plane, t, vertex);
     else
-        split_edge(plane, t, part, vertex);
+        delaunay_change_split_edge(plane, t, part, vertex);
     delaunay_legalise(plane);
     plane->last = plane->at[vertex];
     return vertex;

@@ -59,7 +59,8 @@ struct pass {
     bool convex, fewer;         /* whether the edge can turn, and is then out of the way */
 };
 
-static bool look(const struct delaunay *plane, uint32_t a, uint32_t b, struct pass *pass)
+static bool delaunay_fix_look(const struct delaunay *plane, uint32_t a, uint32_t b,
+                              struct pass *pass)
 {
     const struct delaunay_triangle *one = &plane->triangle[pass->t];
     const uint32_t u = one->beside[pass->i];
@@ -86,7 +87,7 @@ static bool turn_one(struct delaunay *plane, uint32_t a, uint32_t b, struct way 
     struct pass pass = {.t = way.triangle, .i = way.corner}, other = {.t = DELAUNAY_NONE};
     size_t n_convex = 0;
     for (uint32_t steps = 0; steps < plane->n_triangles; steps++) {
-        if (!look(plane, a, b, &pass))
+        if (!delaunay_fix_look(plane, a, b, &pass))
             return false;
         if (pass.convex && pass.fewer) {
             delaunay_flip(plane, pass.t, pass.i);

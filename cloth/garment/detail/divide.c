@@ -16,7 +16,7 @@ static const double GROWTH = 0.3;       /* of divisions, a length along their ed
 static const double LEAST = 0.25;       /* of the shortest division: none becomes shorter */
 enum { SWEEPS = 8 };                    /* over all corners: sizes spread that far */
 
-static void add_edge(struct meshing *meshing, uint32_t panel, uint32_t e)
+static void divide_add_edge(struct meshing *meshing, uint32_t panel, uint32_t e)
 {
     struct meshing_edge *edge = &meshing->edge[meshing->first[panel] + e];
     curve_make(&edge->curve, &meshing->pattern->panel[panel], e);
@@ -41,7 +41,7 @@ int meshing_make(struct meshing *meshing, const struct garment_pattern *pattern,
         return CLOTH_E_MEMORY;
     for (uint32_t p = 0; p < pattern->n_panels; p++)
         for (uint32_t e = 0; e < pattern->panel[p].n_edges; e++)
-            add_edge(meshing, p, e);
+            divide_add_edge(meshing, p, e);
     for (uint32_t s = 0; s < pattern->n_stitches; s++) {
         const struct garment_side *side = pattern->stitch[s].side;
         const uint32_t one = meshing->first[side[0].panel] + side[0].edge;
@@ -68,7 +68,7 @@ void meshing_free(struct meshing *meshing)
 }
 
 /* As a number, since it may be beyond all integers. */
-static double wanted(const struct meshing *meshing, const struct meshing_edge *edge)
+static double divide_wanted(const struct meshing *meshing, const struct meshing_edge *edge)
 {
     const struct meshing_edge *other =
         edge->partner == UINT32_MAX ? edge : &meshing->edge[edge->partner];
@@ -133,7 +133,7 @@ static double size_at(const struct meshing_edge *edge, double t)
 
 /* Goes along an edge by its divisions, and writes them, if wanted. Returns how many fit best;
  * *reached: where the last of them ends. */
-static uint32_t walk(const struct meshing_edge *edge, double *part, double *reached)
+static uint32_t divide_walk(const struct meshing_edge *edge, double *part, double *reached)
 {
     uint32_t n = 0;
     double t = 0;
@@ -154,13 +154,13 @@ static uint32_t walk(const struct meshing_edge *edge, double *part, double *reac
 static int grade(struct meshing_edge *edge, struct cloth_error *error)
 {
     double reached;
-    const uint32_t n = walk(edge, NULL, &reached);
+    const uint32_t n = divide_walk(edge, NULL, &reached);
     if (n < edge->least)
         return CLOTH_OK;
     double *part = cloth_alloc((size_t)n + 1, sizeof *part, error);
     if (!part)
         return CLOTH_E_MEMORY;
-    walk(edge, part, &reached);
+    divide_walk(edge, part, &reached);
     for (uint32_t k = 0; k <= n; k++)
         part[k] /= reached;
     for (uint32_t k = 0; edge->partner != UINT32_MAX && k <= n / 2; k++) {
@@ -183,7 +183,7 @@ static int divide_edge(struct meshing_edge *edge, double n, struct cloth_error *
 }
 
 /* Whether an edge has other divisions than before. */
-static bool differs(const struct meshing_edge *edge, const struct meshing_edge *before)
+static bool divide_differs(const struct meshing_edge *edge, const struct meshing_edge *before)
 {
     return edge->n != before->n || edge->end[0] != before->end[0] || edge->end[1] != before->end[1];
 }
@@ -196,7 +196,8 @@ static int divide_panel(struct meshing *meshing, uint32_t panel, const struct me
         int code = divide_edge(edge, 1 / edge->middle + 0.5, error);
         if (code)
             return code;
-        meshing->panel[panel].meshed = meshing->panel[panel].meshed && !differs(edge, &before[e]);
+        meshing->panel[panel].meshed =
+            meshing->panel[panel].meshed && !divide_differs(edge, &before[e]);
     }
     return CLOTH_OK;
 }
@@ -208,7 +209,7 @@ int meshing_divide(struct meshing *meshing, struct cloth_error *error)
     struct meshing_edge *before = cloth_alloc(n, sizeof *before, error);
     int code = before ? CLOTH_OK : CLOTH_E_MEMORY;
     for (uint32_t e = 0; e < n && !code; e++) {
-        const double parts = wanted(meshing, &meshing->edge[e]);
+        const double parts = divide_wanted(meshing, &meshing->edge[e]);
         before[e] = meshing->edge[e];
         sum += parts;
         if (!(sum <= MOST))

@@ -22,8 +22,8 @@ static int make_box(struct delaunay *plane, const struct flat_loop *loop, uint32
     return delaunay_make(plane, low, high, (uint32_t)room, error);
 }
 
-static int put_loop(struct delaunay *plane, const struct flat_loop *loop, uint32_t *crossing,
-                    struct cloth_error *error)
+static int flat_put_loop(struct delaunay *plane, const struct flat_loop *loop, uint32_t *crossing,
+                         struct cloth_error *error)
 {
     for (uint32_t i = 0; i < loop->n; i++) {
         if (delaunay_insert(plane, loop->place[i], plane->last) == DELAUNAY_NONE) {
@@ -52,7 +52,7 @@ int flat_make(struct delaunay *plane, const struct flat_loop *loop, double edge,
     *crossing = DELAUNAY_NONE;
     int code = garment_lattice(loop->n, loop->place, edge, &n_inner, &inner, error);
     code = code ? code : make_box(plane, loop, n_inner, error);
-    code = code ? code : put_loop(plane, loop, crossing, error);
+    code = code ? code : flat_put_loop(plane, loop, crossing, error);
     for (uint32_t i = 0; i < n_inner && !code; i++)
         delaunay_insert(plane, inner[i], plane->last);
     free(inner);

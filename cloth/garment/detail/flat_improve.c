@@ -47,7 +47,7 @@ static double worst_around(const struct improve *of, uint32_t n, const uint32_t 
 }
 
 /* Searches a better place for a vertex: in eight directions, by shorter and shorter steps. */
-static void settle(struct improve *of, uint32_t vertex)
+static void flat_improve_settle(struct improve *of, uint32_t vertex)
 {
     static const double way[8][2] = {{1, 0},  {0.7071, 0.7071},   {0, 1},  {-0.7071, 0.7071},
                                      {-1, 0}, {-0.7071, -0.7071}, {0, -1}, {0.7071, -0.7071}};
@@ -112,7 +112,7 @@ static void relax(struct improve *of)
         add_around(of, of->near[i]);
     for (int pass = 0; pass < 3; pass++)
         for (uint32_t i = 0; i < of->n_near; i++) {
-            settle(of, of->near[i]);
+            flat_improve_settle(of, of->near[i]);
             delaunay_legalise(of->plane);
         }
 }
@@ -145,7 +145,7 @@ static double worst_touched(const struct improve *of)
 }
 
 /* Ends a try that left `near` to be relaxed. */
-static bool finish(struct improve *of, bool done, double before)
+static bool flat_improve_finish(struct improve *of, bool done, double before)
 {
     if (done) {
         delaunay_legalise(of->plane);
@@ -160,7 +160,7 @@ static bool finish(struct improve *of, bool done, double before)
     return better;
 }
 
-static void begin(struct improve *of)
+static void flat_improve_begin(struct improve *of)
 {
     of->n_near = 0;
     delaunay_log(of->plane);
@@ -168,30 +168,30 @@ static void begin(struct improve *of)
 
 static bool try_relax(struct improve *of, uint32_t triangle, double before)
 {
-    begin(of);
+    flat_improve_begin(of);
     for (int i = 0; i < 3; i++)
         add_around(of, of->plane->triangle[triangle].vertex[i]);
-    return finish(of, of->n_near > 0, before);
+    return flat_improve_finish(of, of->n_near > 0, before);
 }
 
 static bool try_insert(struct improve *of, uint32_t triangle, const double place[2], double before)
 {
-    begin(of);
+    flat_improve_begin(of);
     const uint32_t vertex = delaunay_insert(of->plane, place, triangle);
     if (vertex != DELAUNAY_NONE)
         add_around(of, vertex);
-    return finish(of, vertex != DELAUNAY_NONE, before);
+    return flat_improve_finish(of, vertex != DELAUNAY_NONE, before);
 }
 
 static bool try_merge(struct improve *of, uint32_t vertex, uint32_t to, double before)
 {
-    begin(of);
+    flat_improve_begin(of);
     const bool done = vertex >= of->plane->n_fixed && delaunay_merge(of->plane, vertex, to);
     if (done) {
         delaunay_legalise(of->plane);
         add_around(of, to);
     }
-    return finish(of, done, before);
+    return flat_improve_finish(of, done, before);
 }
 
 static bool try_all(struct improve *of, uint32_t t)

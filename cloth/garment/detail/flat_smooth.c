@@ -35,7 +35,7 @@ static double worst_of(const struct delaunay *plane, uint32_t n, const uint32_t 
     return worst;
 }
 
-static void move(struct delaunay *plane, uint32_t vertex)
+static void flat_smooth_move(struct delaunay *plane, uint32_t vertex)
 {
     uint32_t around[MOST];
     const uint32_t n = delaunay_around(plane, vertex, MOST, around);
@@ -68,7 +68,7 @@ void flat_smooth(struct delaunay *plane, struct cloth_error *error)
     for (int pass = 0; pass < PASSES; pass++) {
         for (uint32_t v = plane->n_fixed; v < plane->n; v++)
             if (row[v] <= ROWS)
-                move(plane, v);
+                flat_smooth_move(plane, v);
         delaunay_legalise(plane);
     }
     free(row);

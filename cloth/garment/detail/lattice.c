@@ -31,8 +31,8 @@ static double row_x(const struct lattice *of, int64_t row)
     return row % 2 ? of->origin[0] + 0.5 * of->edge : of->origin[0];
 }
 
-static int make(struct lattice *lattice, uint32_t n, const double (*loop)[2], double edge,
-                struct cloth_error *error)
+static int detail_lattice_make(struct lattice *lattice, uint32_t n, const double (*loop)[2],
+                               double edge, struct cloth_error *error)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (uint32_t i = 0; i < n; i++)
@@ -56,7 +56,7 @@ static int make(struct lattice *lattice, uint32_t n, const double (*loop)[2], do
     return lattice->taken ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
-static int compare(const void *a, const void *b)
+static int detail_lattice_compare(const void *a, const void *b)
 {
     const struct crossing *one = a, *two = b;
     if (one->row != two->row)
@@ -65,8 +65,8 @@ static int compare(const void *a, const void *b)
 }
 
 /* The rows that a segment crosses, its lower end included. */
-static int cross(const struct lattice *of, const double a[2], const double b[2],
-                 struct cloth_list *list, struct cloth_error *error)
+static int detail_lattice_cross(const struct lattice *of, const double a[2], const double b[2],
+                                struct cloth_list *list, struct cloth_error *error)
 {
     const double *low = a[1] < b[1] ? a : b, *high = a[1] < b[1] ? b : a;
     const double height = ROW * of->edge;
@@ -90,10 +90,10 @@ static int take_inside(struct lattice *of, uint32_t n, const double (*loop)[2],
     struct cloth_list list = {0};
     int code = CLOTH_OK;
     for (uint32_t i = 0; i < n && !code; i++)
-        code = cross(of, loop[i], loop[(i + 1) % n], &list, error);
+        code = detail_lattice_cross(of, loop[i], loop[(i + 1) % n], &list, error);
     const struct crossing *crossing = list.items;
     if (!code && list.n)
-        qsort(list.items, list.n, sizeof *crossing, compare);
+        qsort(list.items, list.n, sizeof *crossing, detail_lattice_compare);
     for (size_t i = 0; !code && i + 1 < list.n; i += 2) { /* each row has an even number */
         const int64_t row = crossing[i].row;
         const double x = row_x(of, row);
@@ -107,7 +107,7 @@ static int take_inside(struct lattice *of, uint32_t n, const double (*loop)[2],
 }
 
 /* Square of the distance from a place to a segment. */
-static double distance(double x, double y, const double a[2], const double b[2])
+static double detail_lattice_distance(double x, double y, const double a[2], const double b[2])
 {
     const double along[2] = {b[0] - a[0], b[1] - a[1]};
     const double length = along[0] * along[0] + along[1] * along[1];
@@ -132,7 +132,7 @@ static void leave_near(struct lattice *of, const double a[2], const double b[2])
         const int64_t left = clamp((fmin(a[0], b[0]) - near - x) / of->edge, of->columns);
         const int64_t right = clamp((fmax(a[0], b[0]) + near - x) / of->edge, of->columns);
         for (int64_t c = left; c <= right; c++)
-            if (distance(x + (double)c * of->edge, y, a, b) < near * near)
+            if (detail_lattice_distance(x + (double)c * of->edge, y, a, b) < near * near)
                 of->taken[row * of->columns + c] = 0;
     }
 }
@@ -165,7 +165,7 @@ int garment_lattice(uint32_t n, const double (*loop)[2], double edge, uint32_t *
     struct lattice lattice = {0};
     *count = 0;
     *places = NULL;
-    int code = make(&lattice, n, loop, edge, error);
+    int code = detail_lattice_make(&lattice, n, loop, edge, error);
     code = code ? code : take_inside(&lattice, n, loop, error);
     for (uint32_t i = 0; i < n && !code; i++)
         leave_near(&lattice, loop[i], loop[(i + 1) % n]);

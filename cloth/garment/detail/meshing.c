@@ -27,7 +27,7 @@ static void refine(struct meshing *meshing, uint32_t panel, uint32_t edge, doubl
     *again = true;
 }
 
-static uint32_t edge_of(const struct meshing_panel *of, uint32_t n_edges, uint32_t vertex)
+static uint32_t meshing_edge_of(const struct meshing_panel *of, uint32_t n_edges, uint32_t vertex)
 {
     uint32_t e = 0;
     while (e + 1 < n_edges && of->start[e + 1] <= vertex)
@@ -37,7 +37,7 @@ static uint32_t edge_of(const struct meshing_panel *of, uint32_t n_edges, uint32
 
 /* Whether a triangle fills a corner, so that two of its edges are the boundary's: shorter divisions
  * leave its shape as it is. */
-static bool is_ear(const struct delaunay *plane, uint32_t triangle)
+static bool meshing_is_ear(const struct delaunay *plane, uint32_t triangle)
 {
     const uint32_t *beside = plane->triangle[triangle].beside;
     int n = 0;
@@ -52,7 +52,7 @@ static bool is_worth(const struct meshing_panel *of, uint32_t n_edges, struct wo
 {
     return delaunay_sharpness_of(&of->plane, triangle) > worth.cosine &&
            !flat_excused(&of->plane, of->start[n_edges], of->sharp, triangle) &&
-           !(worth.cosine == POOR.cosine && is_ear(&of->plane, triangle));
+           !(worth.cosine == POOR.cosine && meshing_is_ear(&of->plane, triangle));
 }
 
 /* Edges of bad triangles; each is refined once. */
@@ -70,7 +70,7 @@ static int refine_poor(struct meshing *meshing, uint32_t panel, struct worth wor
         for (int i = 0; i < 3; i++) {
             const uint32_t v = of->plane.triangle[t].vertex[i];
             if (v < of->start[n_edges])
-                poor[edge_of(of, n_edges, v)] = 1;
+                poor[meshing_edge_of(of, n_edges, v)] = 1;
         }
     }
     for (uint32_t e = 0; e < n_edges; e++)
@@ -105,7 +105,7 @@ static int mesh_outline(struct meshing *meshing, uint32_t panel, const double (*
     if (!code && !meets && loop.n >= 3) {
         code = flat_make(&of->plane, &loop, meshing->spacing, &crossing, &why);
         meets = crossing != DELAUNAY_NONE;
-        edge[0] = edge[1] = meets ? edge_of(of, n_edges, crossing) : 0;
+        edge[0] = edge[1] = meets ? meshing_edge_of(of, n_edges, crossing) : 0;
         if (code && !meets)
             cloth_fail(error, code, "panel '%s': %s", meshing->pattern->panel[panel].name,
                        why.text);

@@ -15,15 +15,16 @@
 static const double CLEAR = 0.05;
 
 /* Vertex k along an edge, from its begin. */
-static uint32_t vertex_of(const struct garment *garment, const struct garment_pattern *pattern,
-                          struct garment_side side, uint32_t k)
+static uint32_t detail_seams_vertex_of(const struct garment *garment,
+                                       const struct garment_pattern *pattern,
+                                       struct garment_side side, uint32_t k)
 {
     const struct garment_piece *piece = &garment->piece[side.panel];
     const uint32_t n = piece->start[pattern->panel[side.panel].n_edges];
     return piece->first + (piece->start[side.edge] + k) % n;
 }
 
-static double distance(const struct garment *garment, uint32_t a, uint32_t b)
+static double detail_seams_distance(const struct garment *garment, uint32_t a, uint32_t b)
 {
     double sum = 0;
     for (int k = 0; k < 3; k++) {
@@ -33,17 +34,22 @@ static double distance(const struct garment *garment, uint32_t a, uint32_t b)
     return sqrt(sum);
 }
 
-static void measure(struct garment *garment, const struct garment_pattern *pattern, uint32_t s)
+static void detail_seams_measure(struct garment *garment, const struct garment_pattern *pattern,
+                                 uint32_t s)
 {
     const struct garment_side *side = pattern->stitch[s].side;
     struct garment_seam *seam = &garment->seam[s];
     const uint32_t *start = garment->piece[side[0].panel].start;
     const uint32_t n = seam->n_pairs = start[side[0].edge + 1] - start[side[0].edge] + 1;
     for (uint32_t k = 0; k < n; k++) {
-        const uint32_t a = vertex_of(garment, pattern, side[0], k);
-        seam->distance[0] += distance(garment, a, vertex_of(garment, pattern, side[1], k)) / n;
+        const uint32_t a = detail_seams_vertex_of(garment, pattern, side[0], k);
+        seam->distance[0] += detail_seams_distance(
+                                 garment, a, detail_seams_vertex_of(garment, pattern, side[1], k)) /
+                             n;
         seam->distance[1] +=
-            distance(garment, a, vertex_of(garment, pattern, side[1], n - 1 - k)) / n;
+            detail_seams_distance(garment, a,
+                                  detail_seams_vertex_of(garment, pattern, side[1], n - 1 - k)) /
+            n;
     }
 }
 
@@ -98,8 +104,8 @@ static int compare_votes(const void *va, const void *vb)
 }
 
 /* The votes of panels, one for each two that have clear seams. */
-static uint32_t count_votes(struct vote *vote, const struct garment *garment,
-                            const struct garment_pattern *pattern)
+static uint32_t detail_seams_count_votes(struct vote *vote, const struct garment *garment,
+                                         const struct garment_pattern *pattern)
 {
     uint32_t n = 0, kept = 0;
     for (uint32_t s = 0; s < garment->n_seams; s++) {
@@ -126,7 +132,7 @@ static int find_fronts(struct fronts *fronts, const struct garment *garment,
     fronts->n_panels = pattern->n_panels;
     fronts->set = cloth_alloc(2 * (size_t)fronts->n_panels, sizeof *fronts->set, error);
     if (vote && fronts->set) {
-        const uint32_t n = count_votes(vote, garment, pattern);
+        const uint32_t n = detail_seams_count_votes(vote, garment, pattern);
         cloth_sets_start(fronts->set, 2 * fronts->n_panels);
         for (uint32_t i = 0; i < n && fabs(vote[i].sum) > 0; i++) {
             const struct garment_side side[2] = {{.panel = vote[i].panel[0]},
@@ -171,8 +177,9 @@ static int pair_vertices(struct garment *garment, const struct garment_pattern *
     const uint32_t n = seam->n_pairs;
     seam->pair = cloth_alloc(n, sizeof *seam->pair, error);
     for (uint32_t k = 0; k < n && seam->pair; k++) {
-        seam->pair[k][0] = vertex_of(garment, pattern, side[0], k);
-        seam->pair[k][1] = vertex_of(garment, pattern, side[1], seam->reversed ? n - 1 - k : k);
+        seam->pair[k][0] = detail_seams_vertex_of(garment, pattern, side[0], k);
+        seam->pair[k][1] =
+            detail_seams_vertex_of(garment, pattern, side[1], seam->reversed ? n - 1 - k : k);
     }
     return seam->pair ? CLOTH_OK : CLOTH_E_MEMORY;
 }
@@ -186,7 +193,7 @@ int seams_make(struct garment *garment, const struct garment_pattern *pattern,
         return CLOTH_E_MEMORY;
     garment->n_seams = pattern->n_stitches;
     for (uint32_t s = 0; s < garment->n_seams; s++)
-        measure(garment, pattern, s);
+        detail_seams_measure(garment, pattern, s);
     int code = find_fronts(&fronts, garment, pattern, error);
     if (!code)
         turn_seams(garment, pattern, &fronts);

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-static struct draw_line *add(struct draw_outline *outline, double x, double y)
+static struct draw_line *draw_add(struct draw_outline *outline, double x, double y)
 {
     const uint32_t i = outline->n++;
     outline->corner[i][0] = x;
@@ -16,18 +16,18 @@ static struct draw_line *add(struct draw_outline *outline, double x, double y)
 
 void draw_straight(struct draw_outline *outline, double x, double y)
 {
-    add(outline, x, y);
+    draw_add(outline, x, y);
 }
 
 void draw_quadratic(struct draw_outline *outline, double x, double y, double cx, double cy)
 {
-    *add(outline, x, y) = (struct draw_line){GARMENT_QUADRATIC, {{cx, cy}}, 0};
+    *draw_add(outline, x, y) = (struct draw_line){GARMENT_QUADRATIC, {{cx, cy}}, 0};
 }
 
 void draw_cubic(struct draw_outline *outline, double x, double y, double cx, double cy, double dx,
                 double dy)
 {
-    *add(outline, x, y) = (struct draw_line){GARMENT_CUBIC, {{cx, cy}, {dx, dy}}, 0};
+    *draw_add(outline, x, y) = (struct draw_line){GARMENT_CUBIC, {{cx, cy}, {dx, dy}}, 0};
 }
 
 /* The mirror image of a line, which runs the other way. An arc on the right of its chord stays
@@ -69,7 +69,7 @@ void draw_unfold(struct draw_outline *outline, const struct draw_line *bottom,
 }
 
 /* Line i of an outline as an edge of a panel, whose corners are there. */
-static struct garment_edge edge_of(const struct draw_line *line, uint32_t from, uint32_t to)
+static struct garment_edge draw_edge_of(const struct draw_line *line, uint32_t from, uint32_t to)
 {
     struct garment_edge edge = {.end = {from, to},
                                 .curve = line->curve,
@@ -85,7 +85,7 @@ double draw_length(const struct draw_outline *outline, uint32_t line)
     double corner[2][2];
     memcpy(corner[0], outline->corner[line], sizeof corner[0]);
     memcpy(corner[1], outline->corner[next], sizeof corner[1]);
-    struct garment_edge edge = edge_of(&outline->line[line], 0, 1);
+    struct garment_edge edge = draw_edge_of(&outline->line[line], 0, 1);
     const struct garment_panel panel = {
         .n_corners = 2, .n_edges = 1, .corner = corner, .edge = &edge};
     return garment_edge_length(&panel, 0);
@@ -111,7 +111,7 @@ static int make_panel(struct garment_panel *panel, const char *name,
     panel->n_corners = panel->n_edges = outline->n;
     for (uint32_t i = 0; i < outline->n; i++) {
         memcpy(panel->corner[i], outline->corner[i], sizeof panel->corner[i]);
-        panel->edge[i] = edge_of(&outline->line[i], i, (i + 1) % outline->n);
+        panel->edge[i] = draw_edge_of(&outline->line[i], i, (i + 1) % outline->n);
     }
     return CLOTH_OK;
 }
@@ -133,7 +133,7 @@ uint32_t draw_panel(struct draw *draw, const char *name, const struct draw_outli
     return p;
 }
 
-static struct garment_side side_of(const struct draw *draw, uint32_t panel, uint32_t line)
+static struct garment_side draw_side_of(const struct draw *draw, uint32_t panel, uint32_t line)
 {
     const uint32_t n = draw->pattern->panel[panel].n_edges;
     return (struct garment_side){panel, draw->mirrored[panel] ? n - 1 - line : line};
@@ -144,6 +144,6 @@ void draw_sew(struct draw *draw, uint32_t panel, uint32_t line, uint32_t other, 
     if (draw->code)
         return;
     struct garment_stitch *stitch = &draw->pattern->stitch[draw->pattern->n_stitches++];
-    stitch->side[0] = side_of(draw, panel, line);
-    stitch->side[1] = side_of(draw, other, other_line);
+    stitch->side[0] = draw_side_of(draw, panel, line);
+    stitch->side[1] = draw_side_of(draw, other, other_line);
 }

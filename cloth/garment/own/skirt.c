@@ -28,7 +28,7 @@ struct panel {
     double waist, top, hip, hem, depth, length;
 };
 
-static int check(struct draw *draw, const struct panel *panel, const double *value)
+static int skirt_check(struct draw *draw, const struct panel *panel, const double *value)
 {
     const double out = panel->length - panel->depth;
     if (value[WAIST] < 0.6 * value[HIP] || value[WAIST] > value[HIP] + 0.3)
@@ -97,7 +97,7 @@ void draw_skirt(struct draw *draw, const double *value)
                                 length};
     const double y = 1.1 * scale - value[BAND];
     uint32_t panel[2], band[2];
-    draw->code = check(draw, &shape, value);
+    draw->code = skirt_check(draw, &shape, value);
     if (draw->code)
         return;
     for (int back = 0; back < 2; back++) {

@@ -86,7 +86,7 @@ static int check_width(struct draw *draw, const double *value, int measure, doub
                       value[INSEAM], draw_trousers_measures[measure].name, fmax(least, 0), most);
 }
 
-static int check(struct draw *draw, const double *value)
+static int trousers_check(struct draw *draw, const double *value)
 {
     const double least = 0.6 * value[HIP], most = value[HIP] + 0.3;
     const int code = check_width(draw, value, KNEE, KNEE_AT * value[INSEAM]);
@@ -142,7 +142,7 @@ void draw_trousers(struct draw *draw, const double *value)
 {
     static const uint32_t seams[SEAMS] = {CALF, THIGH, HIP_SIDE, INNER_THIGH, INNER_CALF};
     uint32_t front[3], back[3];
-    draw->code = check(draw, value);
+    draw->code = trousers_check(draw, value);
     if (draw->code)
         return;
     put_half(draw, value, false, front);

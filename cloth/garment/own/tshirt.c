@@ -34,7 +34,7 @@ struct shirt {
     double scale;                       /* of the body, to the one for which places are given */
 };
 
-static int check(struct draw *draw, const struct shirt *shirt, const double *value)
+static int tshirt_check(struct draw *draw, const struct shirt *shirt, const double *value)
 {
     const double length = shirt->drop + value[ARMHOLE] + 0.05;
     if (shirt->shoulder < shirt->neck + 0.03)
@@ -171,7 +171,7 @@ void draw_tshirt(struct draw *draw, const double *value)
                           .scale = value[HEIGHT] / 1.75};
     shirt.drop = 0.35 * (shirt.shoulder - shirt.neck);
     shirt.bottom = -shirt.drop - value[ARMHOLE];
-    draw->code = check(draw, &shirt, value);
+    draw->code = tshirt_check(draw, &shirt, value);
     if (!draw->code)
         draw_all(draw, &shirt, value);
 }

@@ -89,8 +89,8 @@ static double pair_distance(const struct figure_part *part, const double x[3], d
 }
 
 /* *least: half the least width of the part that is nearest, *part. */
-static double distance(const struct figure *figure, const double x[3], double *least,
-                       uint32_t *part)
+static double detail_figure_distance(const struct figure *figure, const double x[3], double *least,
+                                     uint32_t *part)
 {
     double sum = 1, nearest = 1;
     *least = 1;
@@ -112,7 +112,7 @@ double figure_distance(const struct figure *figure, const double x[3])
 {
     double least;
     uint32_t part;
-    return distance(figure, x, &least, &part);
+    return detail_figure_distance(figure, x, &least, &part);
 }
 
 double figure_gradient(const struct figure *figure, const double x[3], double gradient[3])
@@ -130,7 +130,7 @@ double figure_edge(const struct figure *figure, const double x[3], double edge)
 {
     double least;
     uint32_t part;
-    distance(figure, x, &least, &part);
+    detail_figure_distance(figure, x, &least, &part);
     return limit(THIN * least, SHORT * edge, edge);
 }
 
@@ -138,6 +138,6 @@ uint32_t figure_nearest(const struct figure *figure, const double x[3])
 {
     double least;
     uint32_t part;
-    distance(figure, x, &least, &part);
+    detail_figure_distance(figure, x, &least, &part);
     return part;
 }

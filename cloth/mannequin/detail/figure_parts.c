@@ -152,7 +152,7 @@ static void find_slopes(struct figure_part *part)
 }
 
 /* A box around the boxes of all stations; its margin is more than curves overshoot. */
-static void find_box(struct figure_part *part)
+static void figure_parts_find_box(struct figure_part *part)
 {
     static const double margin = 0.015;
     const double *const direction[2] = {part->side, part->front};
@@ -213,7 +213,7 @@ void figure_make(struct figure *figure, const double factor[MANNEQUIN_GIRTHS])
     place_thumb(&figure->part[THUMB], &figure->part[ARM]);
     for (uint32_t i = 0; i < PARTS; i++) {
         find_slopes(&figure->part[i]);
-        find_box(&figure->part[i]);
+        figure_parts_find_box(&figure->part[i]);
     }
 }
 

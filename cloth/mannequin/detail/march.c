@@ -23,7 +23,7 @@ static uint32_t node_at(const struct lattice *lattice, uint32_t node, uint32_t c
            lattice->n[0] * ((corner >> 1 & 1) + lattice->n[1] * (corner >> 2));
 }
 
-static void place_of(const struct lattice *lattice, uint32_t node, double x[3])
+static void march_place_of(const struct lattice *lattice, uint32_t node, double x[3])
 {
     const uint32_t row = node / lattice->n[0];
     x[0] = lattice->low[0] + lattice->cell * (node % lattice->n[0]);
@@ -44,15 +44,15 @@ static uint32_t vertex_on(struct lattice *lattice, uint32_t node, uint32_t a, ui
         return v;
     double x[3], y[3], *at = lattice->surface->x[v];
     const double p = lattice->value[from], q = lattice->value[to], part = p / (p - q);
-    place_of(lattice, from, x);
-    place_of(lattice, to, y);
+    march_place_of(lattice, from, x);
+    march_place_of(lattice, to, y);
     for (int c = 0; c < 3; c++)
         at[c] = x[c] + part * (y[c] - x[c]);
     lattice->surface->middle[v] = !(x[0] > 0) && !(y[0] > 0);
     return *vertex = v;
 }
 
-static int add(struct lattice *lattice, const uint32_t v[3])
+static int march_add(struct lattice *lattice, const uint32_t v[3])
 {
     const uint32_t t = surface_add_triangle(lattice->surface, lattice->error);
     if (t != UINT32_MAX)
@@ -61,7 +61,7 @@ static int add(struct lattice *lattice, const uint32_t v[3])
 }
 
 /* The part of a tetrahedron, whose corners are those of the cube at a node and turn right. */
-static int cut(struct lattice *lattice, uint32_t node, const uint32_t corner[4])
+static int march_cut(struct lattice *lattice, uint32_t node, const uint32_t corner[4])
 {
     /* Corners that are inside, and even orders in which they come first. */
     static const unsigned char order[16][4] = {
@@ -82,11 +82,11 @@ static int cut(struct lattice *lattice, uint32_t node, const uint32_t corner[4])
         for (int i = 0; i < 4; i++)
             v[i] = vertex_on(lattice, node, c[end[i][0]], c[end[i][1]]);
         const uint32_t second[3] = {v[0], v[2], v[3]};
-        return add(lattice, v) ? lattice->error->code : add(lattice, second);
+        return march_add(lattice, v) ? lattice->error->code : march_add(lattice, second);
     }
     for (uint32_t i = 0; i < 3; i++)
         v[count == 1 ? i : 2 - i] = vertex_on(lattice, node, c[0], c[i + 1]);
-    return add(lattice, v);
+    return march_add(lattice, v);
 }
 
 static int cut_cube(struct lattice *lattice, uint32_t node)
@@ -98,12 +98,12 @@ static int cut_cube(struct lattice *lattice, uint32_t node)
         inside += lattice->value[node_at(lattice, node, k)] < 0;
     int code = CLOTH_OK;
     for (int i = 0; i < 6 && !code && inside % 8; i++)
-        code = cut(lattice, node, kuhn[i]);
+        code = march_cut(lattice, node, kuhn[i]);
     return code;
 }
 
 /* The box of all parts, from x = 0 on, and a cell more. */
-static void find_box(struct lattice *lattice, const struct figure *figure)
+static void march_find_box(struct lattice *lattice, const struct figure *figure)
 {
     double low[3] = {0, INFINITY, INFINITY}, high[3] = {0};
     for (uint32_t i = 0; i < figure->n; i++)
@@ -121,7 +121,7 @@ int surface_march(struct surface *surface, const struct figure *figure, double c
                   struct cloth_error *error)
 {
     struct lattice lattice = {.surface = surface, .cell = cell, .error = error};
-    find_box(&lattice, figure);
+    march_find_box(&lattice, figure);
     const uint32_t *n = lattice.n, nodes = n[0] * n[1] * n[2];
     lattice.value = cloth_alloc(nodes, sizeof *lattice.value, error);
     lattice.vertex = cloth_alloc(7 * (size_t)nodes, sizeof *lattice.vertex, error);
@@ -130,7 +130,7 @@ int surface_march(struct surface *surface, const struct figure *figure, double c
         memset(lattice.vertex, 0xff, 7 * (size_t)nodes * sizeof *lattice.vertex);
     for (uint32_t i = 0; i < nodes && !code; i++) {
         double x[3];
-        place_of(&lattice, i, x);
+        march_place_of(&lattice, i, x);
         lattice.value[i] = figure_distance(figure, x);
     }
     for (uint32_t k = 0; k + 1 < n[2]; k++)

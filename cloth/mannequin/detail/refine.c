@@ -18,7 +18,7 @@ struct pass {
     unsigned char *touched; /* by triangle (split), by vertex (others) */
 };
 
-static int begin(struct pass *pass, struct surface *surface, struct cloth_error *error)
+static int refine_begin(struct pass *pass, struct surface *surface, struct cloth_error *error)
 {
     *pass = (struct pass){.surface = surface};
     int code = surface_edges_find(&pass->edges, surface, error);
@@ -62,7 +62,8 @@ static int halve(struct surface *surface, uint32_t t, uint32_t a, uint32_t b, ui
     return CLOTH_OK;
 }
 
-static int split_edge(struct pass *pass, const struct surface_edge *edge, struct cloth_error *error)
+static int refine_split_edge(struct pass *pass, const struct surface_edge *edge,
+                             struct cloth_error *error)
 {
     struct surface *surface = pass->surface;
     const uint32_t a = edge->end[0], b = edge->end[1], v = surface_add_vertex(surface, error);
@@ -84,14 +85,14 @@ int surface_split(struct surface *surface, const struct figure *figure, double e
                   struct cloth_error *error)
 {
     struct pass pass;
-    int code = begin(&pass, surface, error);
+    int code = refine_begin(&pass, surface, error);
     for (uint32_t e = 0; e < pass.edges.n && !code; e++) {
         const struct surface_edge *here = &pass.edges.edge[e];
         const uint32_t *t = here->triangle;
         if (pass.touched[t[0]] || (t[1] != UINT32_MAX && pass.touched[t[1]]))
             continue;
         if (relative_length(surface, figure, edge, here) > LONG)
-            code = split_edge(&pass, here, error);
+            code = refine_split_edge(&pass, here, error);
     }
     end(&pass);
     return code;
@@ -158,7 +159,7 @@ static bool may_move(const struct pass *pass, uint32_t a, uint32_t b, const doub
 }
 
 /* Makes one vertex, a, of both; b's triangles at the edge lose their corners. */
-static void join(struct pass *pass, uint32_t a, uint32_t b, const double to[3])
+static void refine_join(struct pass *pass, uint32_t a, uint32_t b, const double to[3])
 {
     struct surface *surface = pass->surface;
     const uint32_t both[2] = {a, b};
@@ -190,7 +191,7 @@ static void collapse_edge(struct pass *pass, const struct surface_edge *edge, do
     if (shared(pass, a, b) != (boundary ? 1 : 2))
         return;
     if (may_move(pass, a, b, to, most) && may_move(pass, b, a, to, most))
-        join(pass, a, b, to);
+        refine_join(pass, a, b, to);
 }
 
 /* Leaves out triangles without corners, and vertices without triangles. */
@@ -224,7 +225,7 @@ int surface_collapse(struct surface *surface, const struct figure *figure, doubl
                      struct cloth_error *error)
 {
     struct pass pass;
-    int code = begin(&pass, surface, error);
+    int code = refine_begin(&pass, surface, error);
     for (uint32_t e = 0; e < pass.edges.n && !code; e++) {
         const struct surface_edge *here = &pass.edges.edge[e];
         const uint32_t a = here->end[0], b = here->end[1];
@@ -307,7 +308,7 @@ static void turn_edge(struct pass *pass, const struct surface_edge *edge)
 int surface_turn(struct surface *surface, struct cloth_error *error)
 {
     struct pass pass;
-    int code = begin(&pass, surface, error);
+    int code = refine_begin(&pass, surface, error);
     for (uint32_t e = 0; e < pass.edges.n && !code; e++)
         if (!pass.touched[pass.edges.edge[e].end[0]] && !pass.touched[pass.edges.edge[e].end[1]] &&
             pass.edges.edge[e].triangle[1] != UINT32_MAX)

@@ -9,8 +9,8 @@
 static const double WIDTH = 0.055; /* m */
 
 /* Neighbours of vertices as pairs, in the order of triangles: each edge has both its directions. */
-static void add_neighbours(const struct mesh *mesh, const double (*from)[MANNEQUIN_BONES],
-                           double (*to)[MANNEQUIN_BONES], double *count)
+static void rig_add_neighbours(const struct mesh *mesh, const double (*from)[MANNEQUIN_BONES],
+                               double (*to)[MANNEQUIN_BONES], double *count)
 {
     for (size_t i = 0; i < 3 * (size_t)mesh->n_triangles; i++) {
         const uint32_t a = mesh->triangle[i], b = mesh->triangle[i - i % 3 + (i + 1) % 3];
@@ -20,15 +20,15 @@ static void add_neighbours(const struct mesh *mesh, const double (*from)[MANNEQU
     }
 }
 
-static int smooth(const struct mesh *mesh, double (*weight)[MANNEQUIN_BONES], uint32_t rounds,
-                  struct cloth_error *error)
+static int rig_smooth(const struct mesh *mesh, double (*weight)[MANNEQUIN_BONES], uint32_t rounds,
+                      struct cloth_error *error)
 {
     double(*sum)[MANNEQUIN_BONES] = cloth_alloc(mesh->n_vertices, sizeof *sum, error);
     double *count = cloth_alloc(mesh->n_vertices, sizeof *count, error);
     for (uint32_t round = 0; sum && count && round < rounds; round++) {
         memset(sum, 0, mesh->n_vertices * sizeof *sum);
         memset(count, 0, mesh->n_vertices * sizeof *count);
-        add_neighbours(mesh, (const double(*)[MANNEQUIN_BONES])weight, sum, count);
+        rig_add_neighbours(mesh, (const double(*)[MANNEQUIN_BONES])weight, sum, count);
         for (uint32_t v = 0; v < mesh->n_vertices; v++)
             for (uint32_t k = 0; k < MANNEQUIN_BONES; k++)
                 weight[v][k] = sum[v][k] / count[v];
@@ -62,5 +62,5 @@ int rig_make(struct mannequin_rig *rig, const struct mesh *mesh, const struct su
         if (!half->middle[v])
             rig->weight[image++][rig_bones[1][bone]] = 1;
     }
-    return smooth(mesh, rig->weight, (uint32_t)(WIDTH * WIDTH / (edge * edge)) + 1, error);
+    return rig_smooth(mesh, rig->weight, (uint32_t)(WIDTH * WIDTH / (edge * edge)) + 1, error);
 }

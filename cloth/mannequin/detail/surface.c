@@ -52,7 +52,7 @@ void surface_free(struct surface *surface)
 }
 
 /* Counts become places: first[v] is where v's begin. */
-static void sum_up(uint32_t *first, uint32_t n)
+static void detail_surface_sum_up(uint32_t *first, uint32_t n)
 {
     uint32_t sum = 0;
     for (uint32_t v = 0; v <= n; v++) {
@@ -76,7 +76,7 @@ int surface_edges_find(struct surface_edges *edges, const struct surface *surfac
         edges->first[a < b ? a : b]++;
     }
     if (fine)
-        sum_up(edges->first, surface->n);
+        detail_surface_sum_up(edges->first, surface->n);
     for (uint32_t s = 0; fine && s < 3 * surface->m; s++) {
         const uint32_t a = surface->triangle[s / 3][s % 3];
         const uint32_t b = surface->triangle[s / 3][(s + 1) % 3];
@@ -119,7 +119,7 @@ int surface_fans_find(struct surface_fans *fans, const struct surface *surface,
         return error->code;
     for (uint32_t s = 0; s < 3 * surface->m; s++)
         fans->first[surface->triangle[s / 3][s % 3] + 1]++;
-    sum_up(fans->first + 1, surface->n);
+    detail_surface_sum_up(fans->first + 1, surface->n);
     for (uint32_t s = 0; s < 3 * surface->m; s++)
         fans->fan[fans->first[surface->triangle[s / 3][s % 3] + 1]++] = s / 3;
     return CLOTH_OK;

@@ -20,8 +20,8 @@ const char *mesh_path_shown(const char *path)
     return length > max ? path + (length - max) : path;
 }
 
-static struct place place_of(const struct mesh_source *source, const char *array,
-                             const size_t *lines, size_t index)
+static struct place detail_finish_place_of(const struct mesh_source *source, const char *array,
+                                           const size_t *lines, size_t index)
 {
     struct place place;
     if (source->path)
@@ -34,7 +34,7 @@ static struct place place_of(const struct mesh_source *source, const char *array
 
 static struct place face_place(const struct mesh_source *source, size_t face)
 {
-    return place_of(source, "triangles", source->face_line, face);
+    return detail_finish_place_of(source, "triangles", source->face_line, face);
 }
 
 /* Files count vertices from 1. */
@@ -71,15 +71,15 @@ static int check_faces(const struct mesh *mesh, const struct mesh_source *source
     return CLOTH_OK;
 }
 
-static int check_edges(const struct mesh *mesh, const struct mesh_source *source,
-                       struct cloth_error *error)
+static int detail_finish_check_edges(const struct mesh *mesh, const struct mesh_source *source,
+                                     struct cloth_error *error)
 {
     for (size_t i = 0; i < 2 * (size_t)mesh->n_lone_edges; i++) {
         uint32_t vertex = mesh->lone_edge[i];
         struct place place;
         if (vertex < mesh->n_vertices && (i % 2 == 0 || vertex != mesh->lone_edge[i - 1]))
             continue;
-        place = place_of(source, "edges", source->edge_line, i / 2);
+        place = detail_finish_place_of(source, "edges", source->edge_line, i / 2);
         if (vertex >= mesh->n_vertices)
             return no_such_vertex(mesh, source, place, vertex, error);
         return cloth_fail(error, CLOTH_E_INPUT,
@@ -172,8 +172,8 @@ static int check_twice(const struct mesh *mesh, const struct mesh_source *source
     return cloth_fail(
         error, CLOTH_E_INPUT,
         "%s: the edge between vertices %u and %u stands here again, after %s %zu; give it once",
-        place_of(source, "edges", source->edge_line, twice - first).text, shown(source, pair[0]),
-        shown(source, pair[1]), source->path ? "line" : "entry",
+        detail_finish_place_of(source, "edges", source->edge_line, twice - first).text,
+        shown(source, pair[0]), shown(source, pair[1]), source->path ? "line" : "entry",
         source->path ? source->edge_line[at] : at);
 }
 
@@ -231,7 +231,7 @@ int mesh_finish(struct mesh *mesh, const struct mesh_source *source, struct clot
     int code = last_face ? check_faces(mesh, source, last_face, error) : CLOTH_E_MEMORY;
     free(last_face);
     if (!code)
-        code = check_edges(mesh, source, error);
+        code = detail_finish_check_edges(mesh, source, error);
     if (!code)
         code = cut_faces(mesh, source, error);
     return code ? code : check_manifold(mesh, source, error);

@@ -18,15 +18,15 @@ struct builder {
     bool failed;
 };
 
-static uint32_t node_of(const struct builder *builder, uint32_t vertex)
+static uint32_t graph_node_of(const struct builder *builder, uint32_t vertex)
 {
     return vertex < builder->n_vertices ? builder->node[vertex] : MESH_NO_PLACE;
 }
 
-static void count(void *to, uint32_t a, uint32_t b)
+static void graph_count(void *to, uint32_t a, uint32_t b)
 {
     struct builder *builder = to;
-    const uint32_t p = node_of(builder, a), q = node_of(builder, b);
+    const uint32_t p = graph_node_of(builder, a), q = graph_node_of(builder, b);
     if ((p == MESH_NO_PLACE || q == MESH_NO_PLACE) && !builder->failed) {
         builder->failed = true;
         builder->bad = builder->n;
@@ -41,7 +41,7 @@ static void count(void *to, uint32_t a, uint32_t b)
 }
 
 /* While rows are filled, start[i] is where the next neighbour of node i goes. */
-static void put(void *to, uint32_t a, uint32_t b)
+static void graph_put(void *to, uint32_t a, uint32_t b)
 {
     const struct builder *builder = to;
     const struct mesh_graph *graph = builder->graph;
@@ -52,7 +52,7 @@ static void put(void *to, uint32_t a, uint32_t b)
     graph->neighbour[graph->start[q]++] = p;
 }
 
-static int by_number(const void *left, const void *right)
+static int graph_by_number(const void *left, const void *right)
 {
     uint32_t a, b;
     memcpy(&a, left, sizeof a);
@@ -70,7 +70,7 @@ static void tidy(struct mesh_graph *graph)
         for (uint32_t i = from + 1; i < to && ascending; i++)
             ascending = neighbour[i - 1] <= neighbour[i];
         if (!ascending)
-            qsort(neighbour + from, to - from, sizeof *neighbour, by_number);
+            qsort(neighbour + from, to - from, sizeof *neighbour, graph_by_number);
         for (uint32_t i = from; i < to; i++)
             if (kept == first || neighbour[kept - 1] != neighbour[i])
                 neighbour[kept++] = neighbour[i];
@@ -80,7 +80,8 @@ static void tidy(struct mesh_graph *graph)
     graph->start[graph->n_nodes] = kept;
 }
 
-static int fill(struct builder *builder, const struct mesh_pairs *pairs, struct cloth_error *error)
+static int graph_fill(struct builder *builder, const struct mesh_pairs *pairs,
+                      struct cloth_error *error)
 {
     struct mesh_graph *graph = builder->graph;
     graph->neighbour = cloth_alloc(builder->ends, sizeof *graph->neighbour, error);
@@ -88,7 +89,7 @@ static int fill(struct builder *builder, const struct mesh_pairs *pairs, struct 
         return CLOTH_E_MEMORY;
     for (uint32_t v = 0; v < graph->n_nodes; v++)
         graph->start[v + 1] += graph->start[v];
-    pairs->each(pairs->context, put, builder);
+    pairs->each(pairs->context, graph_put, builder);
     for (uint32_t v = graph->n_nodes; v > 0; v--) /* each was moved on to the next one's */
         graph->start[v] = graph->start[v - 1];
     graph->start[0] = 0;
@@ -105,7 +106,7 @@ int mesh_graph_build(struct mesh_graph *graph, uint32_t n_nodes, uint32_t n_vert
     graph->start = cloth_alloc((size_t)n_nodes + 1, sizeof *graph->start, error);
     if (!graph->start)
         return CLOTH_E_MEMORY;
-    pairs->each(pairs->context, count, &builder);
+    pairs->each(pairs->context, graph_count, &builder);
     int code = CLOTH_OK;
     if (builder.failed)
         code = cloth_fail(error, CLOTH_E_INPUT,
@@ -116,7 +117,7 @@ int mesh_graph_build(struct mesh_graph *graph, uint32_t n_nodes, uint32_t n_vert
                           "%llu pairs of vertices are too many; at most %u are possible",
                           (unsigned long long)builder.n, UINT32_MAX / 2);
     else
-        code = fill(&builder, pairs, error);
+        code = graph_fill(&builder, pairs, error);
     if (code)
         mesh_graph_free(graph);
     return code;

@@ -84,7 +84,8 @@ static int number_triangles(struct mesh *mesh, struct cloth_error *error)
     return made ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
-static int add_others(struct mesh *mesh, struct other *other, size_t n, struct cloth_error *error)
+static int islands_add_others(struct mesh *mesh, struct other *other, size_t n,
+                              struct cloth_error *error)
 {
     const size_t n_vertices = mesh->n_vertices, n_corners = mesh->face_start[mesh->n_faces];
     double(*to)[2] = realloc(mesh->uv, (n_vertices + n) * sizeof *to);
@@ -113,7 +114,7 @@ int mesh_islands_make(struct mesh *mesh, const double (*uv)[2], const uint32_t (
     }
     int code = take_first(mesh, uv, corner, &others, error);
     if (!code && others.n)
-        code = add_others(mesh, others.items, others.n, error);
+        code = islands_add_others(mesh, others.items, others.n, error);
     free(others.items);
     return code;
 }

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* The absolute path of a name of `length` bytes beside `path`; NULL: there is no such file. */
-static char *find_beside(const char *path, const char *name, size_t length)
+static char *library_find_beside(const char *path, const char *name, size_t length)
 {
     const char *slash = strrchr(path, '/');
     const size_t folder = slash && *name != '/' ? (size_t)(slash - path) + 1 : 0;
@@ -23,8 +23,8 @@ static char *find_beside(const char *path, const char *name, size_t length)
 }
 
 /* Takes over a path; NULL: the name. A library that comes again at once is the same. */
-static int add(struct cloth_list *library, char *found, const char *name, size_t length,
-               struct cloth_error *error)
+static int library_add(struct cloth_list *library, char *found, const char *name, size_t length,
+                       struct cloth_error *error)
 {
     char *text = found ? found : strndup(name, length);
     char **all = library->items;
@@ -49,13 +49,13 @@ int mesh_library_line(struct cloth_list *library, const char *path, const char *
         return CLOTH_OK;
     for (const char *word = first; word; word = mesh_word(end))
         end = mesh_word_end(word);
-    char *whole = find_beside(path, first, (size_t)(end - first));
+    char *whole = library_find_beside(path, first, (size_t)(end - first));
     if (whole)
-        return add(library, whole, NULL, 0, error);
+        return library_add(library, whole, NULL, 0, error);
     for (const char *word = first; !code && word; word = mesh_word(end)) {
         end = mesh_word_end(word);
         const size_t length = (size_t)(end - word);
-        code = add(library, find_beside(path, word, length), word, length, error);
+        code = library_add(library, library_find_beside(path, word, length), word, length, error);
     }
     return code;
 }

@@ -35,7 +35,8 @@ static int refill(struct mesh_lines *lines, struct cloth_error *error)
     return CLOTH_OK;
 }
 
-static int append(struct mesh_lines *lines, const char *piece, size_t n, struct cloth_error *error)
+static int lines_append(struct mesh_lines *lines, const char *piece, size_t n,
+                        struct cloth_error *error)
 {
     if (memchr(piece, 0, n))
         return cloth_fail(error, CLOTH_E_INPUT,
@@ -49,7 +50,7 @@ static int append(struct mesh_lines *lines, const char *piece, size_t n, struct 
 }
 
 /* Appends one line of the file to the text, without its end; *more: there was one. */
-static int take(struct mesh_lines *lines, bool *more, struct cloth_error *error)
+static int lines_take(struct mesh_lines *lines, bool *more, struct cloth_error *error)
 {
     bool whole = false;
     *more = false;
@@ -63,7 +64,7 @@ static int take(struct mesh_lines *lines, bool *more, struct cloth_error *error)
         const char *from = lines->chunk + lines->at;
         const char *stop = memchr(from, '\n', lines->end - lines->at);
         size_t n = stop ? (size_t)(stop - from) : lines->end - lines->at;
-        code = append(lines, from, n, error);
+        code = lines_append(lines, from, n, error);
         if (code)
             return code;
         whole = stop;
@@ -72,7 +73,7 @@ static int take(struct mesh_lines *lines, bool *more, struct cloth_error *error)
     return CLOTH_OK;
 }
 
-static bool blank(char c)
+static bool lines_blank(char c)
 {
     return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
@@ -82,7 +83,7 @@ static bool blank(char c)
 static bool trim(struct cloth_list *text, size_t first)
 {
     const char *at = text->items;
-    while (text->n > first && blank(at[text->n - 1]))
+    while (text->n > first && lines_blank(at[text->n - 1]))
         text->n--;
     if (text->n == first || at[text->n - 1] != '\\')
         return false;
@@ -94,7 +95,7 @@ static bool comment(const struct cloth_list *text)
 {
     const char *at = text->items;
     size_t i = 0;
-    while (i < text->n && blank(at[i]))
+    while (i < text->n && lines_blank(at[i]))
         i++;
     return i < text->n && at[i] == '#';
 }
@@ -106,13 +107,13 @@ int mesh_lines_next(struct mesh_lines *lines, char **text, struct cloth_error *e
     lines->text.n = 0;
     lines->line = lines->next + 1;
     for (size_t first = 0; goes_on; first = lines->text.n) {
-        int code = take(lines, &more, error);
+        int code = lines_take(lines, &more, error);
         if (code)
             return code;
         if (!more && first == 0)
             return CLOTH_OK;
         goes_on = more && trim(&lines->text, first) && !(first == 0 && comment(&lines->text));
-        code = goes_on ? append(lines, " ", 1, error) : CLOTH_OK;
+        code = goes_on ? lines_append(lines, " ", 1, error) : CLOTH_OK;
         if (code)
             return code;
     }

@@ -73,7 +73,7 @@ static int by_name(const void *va, const void *vb)
     return order ? order : cloth_compare_u32(a->number, b->number);
 }
 
-static int by_number(const void *va, const void *vb)
+static int naming_by_number(const void *va, const void *vb)
 {
     return cloth_compare_u32(((const struct entry *)va)->number,
                              ((const struct entry *)vb)->number);
@@ -88,7 +88,7 @@ static uint32_t number_groups(struct entry *entry, size_t n)
         const bool again = i && !strcmp(entry[i - 1].name, entry[i].name);
         entry[i].group = again ? entry[i - 1].group : entry[i].number;
     }
-    qsort(entry, n, sizeof *entry, by_number);
+    qsort(entry, n, sizeof *entry, naming_by_number);
     for (size_t i = 0; i < n; i++)
         entry[i].group =
             entry[i].group == i ? groups++ : entry[entry[i].group].group; /* which came before */

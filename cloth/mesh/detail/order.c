@@ -51,7 +51,7 @@ void mesh_order_free(struct mesh_order *order)
     free(order);
 }
 
-static int by_key(const void *left, const void *right)
+static int order_by_key(const void *left, const void *right)
 {
     uint64_t a, b;
     memcpy(&a, left, sizeof a);
@@ -60,7 +60,7 @@ static int by_key(const void *left, const void *right)
 }
 
 /* Appends the neighbours of a node that this walk has not met, in order of degree and number. */
-static uint32_t visit(struct mesh_order *order, uint32_t node, uint32_t n)
+static uint32_t order_visit(struct mesh_order *order, uint32_t node, uint32_t n)
 {
     const struct mesh_graph *graph = order->graph;
     size_t fresh = 0;
@@ -71,7 +71,7 @@ static uint32_t visit(struct mesh_order *order, uint32_t node, uint32_t n)
         order->seen[other] = order->walk;
         order->sorted[fresh++] = (uint64_t)order->degree[other] << 32 | other;
     }
-    qsort(order->sorted, fresh, sizeof *order->sorted, by_key);
+    qsort(order->sorted, fresh, sizeof *order->sorted, order_by_key);
     for (size_t i = 0; i < fresh; i++)
         order->queue[n++] = (uint32_t)order->sorted[i];
     return n;
@@ -79,7 +79,7 @@ static uint32_t visit(struct mesh_order *order, uint32_t node, uint32_t n)
 
 /* Walks a component breadth first from a node into queue[0 .. *n-1]. Returns the number of levels;
  * *last: where in the queue the last one starts. */
-static uint32_t walk(struct mesh_order *order, uint32_t from, uint32_t *n, uint32_t *last)
+static uint32_t order_walk(struct mesh_order *order, uint32_t from, uint32_t *n, uint32_t *last)
 {
     uint32_t levels = 0;
     order->walk++;
@@ -89,7 +89,7 @@ static uint32_t walk(struct mesh_order *order, uint32_t from, uint32_t *n, uint3
     for (uint32_t i = 0, end = 1; i < end; end = *n, levels++) {
         *last = i;
         for (; i < end; i++)
-            *n = visit(order, order->queue[i], *n);
+            *n = order_visit(order, order->queue[i], *n);
     }
     return levels;
 }
@@ -97,7 +97,7 @@ static uint32_t walk(struct mesh_order *order, uint32_t from, uint32_t *n, uint3
 /* Leaves in the queue the walk of the component of `node` from one of its ends. */
 static uint32_t walk_from_end(struct mesh_order *order, uint32_t node)
 {
-    uint32_t n, last, levels = walk(order, node, &n, &last), before = 0;
+    uint32_t n, last, levels = order_walk(order, node, &n, &last), before = 0;
     for (int rounds = 0; levels > before && rounds < 8; rounds++) {
         uint32_t end = order->queue[last];
         for (uint32_t i = last + 1; i < n; i++) {
@@ -107,7 +107,7 @@ static uint32_t walk_from_end(struct mesh_order *order, uint32_t node)
                 end = other;
         }
         before = levels;
-        levels = walk(order, end, &n, &last);
+        levels = order_walk(order, end, &n, &last);
     }
     return n;
 }
@@ -124,7 +124,7 @@ static void find_degrees(struct mesh_order *order, uint32_t n, const uint32_t *n
     }
 }
 
-static int by_number(const void *left, const void *right)
+static int order_by_number(const void *left, const void *right)
 {
     uint32_t a, b;
     memcpy(&a, left, sizeof a);
@@ -139,7 +139,7 @@ void mesh_order_part(struct mesh_order *order, const uint32_t *part, uint32_t n,
         return;
     order->part = part;
     order->walk = 0;
-    qsort(nodes, n, sizeof *nodes, by_number);
+    qsort(nodes, n, sizeof *nodes, order_by_number);
     find_degrees(order, n, nodes);
     for (uint32_t i = 0; i < n; i++) {
         if (order->seen[nodes[i]] == DONE)

@@ -30,7 +30,7 @@ static struct point at(const struct polygon *p, uint32_t i)
     return (struct point){x[p->u], x[p->v]};
 }
 
-static double distance(struct point a, struct point b)
+static double polygon_distance(struct point a, struct point b)
 {
     return fmax(fabs(b.u - a.u), fabs(b.v - a.v));
 }
@@ -39,12 +39,12 @@ static double distance(struct point a, struct point b)
 static int turn_by(double least, struct point a, struct point b, struct point c)
 {
     const double area = (b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u);
-    const double unsure = least * distance(a, b) * distance(a, c);
+    const double unsure = least * polygon_distance(a, b) * polygon_distance(a, c);
     return area > unsure ? 1 : area < -unsure ? -1 : 0;
 }
 
 /* The same where rounding, also of a polygon that was turned in space, may hide it. */
-static int turn(struct point a, struct point b, struct point c)
+static int polygon_turn(struct point a, struct point b, struct point c)
 {
     return turn_by(FLAT, a, b, c);
 }
@@ -57,7 +57,7 @@ static uint32_t next(const struct polygon *p, uint32_t i)
 /* ---- Where to look from ---- */
 
 /* Chooses the axes by the normal; false if it has none. */
-static bool look(struct polygon *p)
+static bool polygon_look(struct polygon *p)
 {
     const double *o = p->position + 3 * (size_t)p->corner[0];
     double normal[3] = {0}, size[3] = {0};
@@ -91,7 +91,7 @@ static bool is_convex(const struct polygon *p)
         const uint32_t j = next(p, i);
         const struct point a = at(p, i), b = at(p, j);
         const int now = (b.u > a.u) - (b.u < a.u);
-        if (turn(a, b, at(p, next(p, j))) <= 0)
+        if (polygon_turn(a, b, at(p, next(p, j))) <= 0)
             return false;
         backs += now && way && now != way;
         way = now ? now : way;
@@ -103,7 +103,7 @@ static bool is_convex(const struct polygon *p)
 static bool fans(const struct polygon *p)
 {
     for (uint32_t i = 2; i < p->n; i++)
-        if (turn(at(p, 0), at(p, i - 1), at(p, i)) <= 0)
+        if (polygon_turn(at(p, 0), at(p, i - 1), at(p, i)) <= 0)
             return false;
     return true;
 }
@@ -120,28 +120,29 @@ void mesh_polygon_fan(uint32_t n, const uint32_t *corner, uint32_t *triangle)
 /* ---- Whether it is simple ---- */
 
 /* c, on the line of a and b: between them, or one of them. */
-static bool is_between(struct point a, struct point b, struct point c)
+static bool polygon_is_between(struct point a, struct point b, struct point c)
 {
     return fmin(a.u, b.u) <= c.u && c.u <= fmax(a.u, b.u) && fmin(a.v, b.v) <= c.v &&
            c.v <= fmax(a.v, b.v);
 }
 
-static bool cross(struct point a, struct point b, struct point c, struct point d)
+static bool polygon_cross(struct point a, struct point b, struct point c, struct point d)
 {
     if (fmax(a.u, b.u) < fmin(c.u, d.u) || fmax(c.u, d.u) < fmin(a.u, b.u) ||
         fmax(a.v, b.v) < fmin(c.v, d.v) || fmax(c.v, d.v) < fmin(a.v, b.v))
         return false;
-    const int abc = turn(a, b, c), abd = turn(a, b, d), cda = turn(c, d, a), cdb = turn(c, d, b);
+    const int abc = polygon_turn(a, b, c), abd = polygon_turn(a, b, d), cda = polygon_turn(c, d, a),
+              cdb = polygon_turn(c, d, b);
     if (abc * abd < 0 && cda * cdb < 0)
         return true;
-    return (!abc && is_between(a, b, c)) || (!abd && is_between(a, b, d)) ||
-           (!cda && is_between(c, d, a)) || (!cdb && is_between(c, d, b));
+    return (!abc && polygon_is_between(a, b, c)) || (!abd && polygon_is_between(a, b, d)) ||
+           (!cda && polygon_is_between(c, d, a)) || (!cdb && polygon_is_between(c, d, b));
 }
 
 /* The side from b on lies on the side from a to b, which may have no length. */
-static bool folds(struct point a, struct point b, struct point c)
+static bool polygon_folds(struct point a, struct point b, struct point c)
 {
-    return turn(a, b, c) == 0 && (b.u - a.u) * (c.u - b.u) + (b.v - a.v) * (c.v - b.v) <= 0;
+    return polygon_turn(a, b, c) == 0 && (b.u - a.u) * (c.u - b.u) + (b.v - a.v) * (c.v - b.v) <= 0;
 }
 
 static bool is_simple(const struct polygon *p, uint32_t side[2])
@@ -150,10 +151,11 @@ static bool is_simple(const struct polygon *p, uint32_t side[2])
         const struct point a = at(p, i), b = at(p, next(p, i));
         side[0] = i;
         side[1] = next(p, i);
-        if (folds(a, b, at(p, next(p, side[1]))))
+        if (polygon_folds(a, b, at(p, next(p, side[1]))))
             return false;
         for (side[1]++; side[1] < p->n && side[1] > i; side[1]++)
-            if (next(p, side[1]) != i && cross(a, b, at(p, side[1]), at(p, next(p, side[1]))))
+            if (next(p, side[1]) != i &&
+                polygon_cross(a, b, at(p, side[1]), at(p, next(p, side[1]))))
                 return false;
     }
     return true;
@@ -162,15 +164,16 @@ static bool is_simple(const struct polygon *p, uint32_t side[2])
 /* ---- Ears ---- */
 
 /* Whether c is in the triangle or on its border. */
-static bool is_inside(const struct point t[3], struct point c)
+static bool polygon_is_inside(const struct point t[3], struct point c)
 {
-    return turn(t[0], t[1], c) >= 0 && turn(t[1], t[2], c) >= 0 && turn(t[2], t[0], c) >= 0;
+    return polygon_turn(t[0], t[1], c) >= 0 && polygon_turn(t[1], t[2], c) >= 0 &&
+           polygon_turn(t[2], t[0], c) >= 0;
 }
 
 /* left: n corners that are left, in order. Corner i of them with its neighbours; no angle of theirs
  * is below `least`. */
-static bool is_ear(const struct polygon *p, double least, uint32_t n, const uint32_t *left,
-                   uint32_t i)
+static bool polygon_is_ear(const struct polygon *p, double least, uint32_t n, const uint32_t *left,
+                           uint32_t i)
 {
     const uint32_t before = (i + n - 1) % n, after = (i + 1) % n;
     const struct point t[3] = {at(p, left[before]), at(p, left[i]), at(p, left[after])};
@@ -178,7 +181,7 @@ static bool is_ear(const struct polygon *p, double least, uint32_t n, const uint
         if (turn_by(least, t[k], t[(k + 1) % 3], t[(k + 2) % 3]) <= 0)
             return false;
     for (uint32_t k = 0; k < n; k++)
-        if (k != before && k != i && k != after && is_inside(t, at(p, left[k])))
+        if (k != before && k != i && k != after && polygon_is_inside(t, at(p, left[k])))
             return false;
     return true;
 }
@@ -188,7 +191,7 @@ static bool find_ear(const struct polygon *p, double least, uint32_t n, const ui
                      uint32_t *i)
 {
     for (uint32_t tried = 0; tried < n; tried++, *i = (*i + 1) % n)
-        if (is_ear(p, least, n, left, *i))
+        if (polygon_is_ear(p, least, n, left, *i))
             return true;
     return false;
 }
@@ -221,7 +224,7 @@ int mesh_polygon_cut(const double *position, uint32_t n, const uint32_t *corner,
         mesh_polygon_fan(n, corner, triangle);
         return CLOTH_OK;
     }
-    if (!look(&p))
+    if (!polygon_look(&p))
         return CLOTH_E_INPUT;
     const bool convex = is_convex(&p);
     fault->kind = MESH_POLYGON_TOO_LARGE;

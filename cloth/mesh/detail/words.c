@@ -7,21 +7,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool blank(char c)
+static bool detail_words_blank(char c)
 {
     return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
 const char *mesh_word(const char *at)
 {
-    while (blank(*at))
+    while (detail_words_blank(*at))
         at++;
     return *at && *at != '#' ? at : NULL;
 }
 
 const char *mesh_word_end(const char *word)
 {
-    while (*word && !blank(*word))
+    while (*word && !detail_words_blank(*word))
         word++;
     return word;
 }
@@ -39,13 +39,13 @@ bool mesh_word_number(const char *word, locale_t c, double *number)
 {
     char *end;
     *number = strtod_l(word, &end, c);
-    if (end == word || (*end && !blank(*end)) || !isfinite(*number))
+    if (end == word || (*end && !detail_words_blank(*end)) || !isfinite(*number))
         return false;
     return !memchr(word, 'x', (size_t)(end - word)) && !memchr(word, 'X', (size_t)(end - word));
 }
 
 /* Reads a whole number and moves on behind it; false if there is none. */
-static bool whole_number(const char **at, long long *number)
+static bool detail_words_whole_number(const char **at, long long *number)
 {
     const long long max = (long long)MESH_MAX + 1;
     const char *p = *at;
@@ -67,19 +67,20 @@ bool mesh_word_corner(const char *word, struct mesh_corner *corner)
 {
     const char *at = word;
     *corner = (struct mesh_corner){0};
-    if (!whole_number(&at, &corner->v))
+    if (!detail_words_whole_number(&at, &corner->v))
         return false;
     if (*at == '/') {
         at++;
-        if (*at != '/' && *at && !blank(*at) && !whole_number(&at, &corner->vt))
+        if (*at != '/' && *at && !detail_words_blank(*at) &&
+            !detail_words_whole_number(&at, &corner->vt))
             return false;
         if (*at == '/') {
             at++;
-            if (*at && !blank(*at) && !whole_number(&at, &corner->vn))
+            if (*at && !detail_words_blank(*at) && !detail_words_whole_number(&at, &corner->vn))
                 return false;
         }
     }
-    return !*at || blank(*at);
+    return !*at || detail_words_blank(*at);
 }
 
 struct mesh_quote mesh_word_quote(const char *word)

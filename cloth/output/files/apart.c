@@ -56,7 +56,7 @@ void output_sewn(FILE *file, const struct contact_apart *apart)
 
 /* ---- Reading ---- */
 
-static void take_cloths(struct contact_apart *apart, struct output_json *json)
+static void apart_take_cloths(struct contact_apart *apart, struct output_json *json)
 {
     uint32_t end = 0;
     do {
@@ -98,7 +98,7 @@ void output_apart_read(struct output_cache *cache, struct output_json *json)
     if (!output_json_key(json, "cloths"))
         output_json_fail(json, "\"cloths\"");
     output_json_expect(json, '[');
-    take_cloths(apart, json);
+    apart_take_cloths(apart, json);
     output_json_expect(json, ']');
     output_json_expect(json, ',');
     if (!output_json_key(json, "pairs"))
@@ -157,7 +157,7 @@ void output_attached_read(struct output_cache *cache, struct output_json *json)
 }
 
 /* A vertex and one above it that it is sewn to. Without the mesh, they are read over. */
-static void take_sewn(struct contact_apart *apart, uint32_t n, struct output_json *json)
+static void apart_take_sewn(struct contact_apart *apart, uint32_t n, struct output_json *json)
 {
     output_json_expect(json, '[');
     const double low = output_json_double(json);
@@ -183,7 +183,7 @@ void output_sewn_read(struct output_cache *cache, struct output_json *json)
     if (output_json_take(json, ']'))
         return;
     do
-        take_sewn(&cache->apart, n, json);
+        apart_take_sewn(&cache->apart, n, json);
     while (!json->failed && output_json_take(json, ','));
     output_json_expect(json, ']');
 }

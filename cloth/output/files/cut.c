@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 /* Reads n bytes at an offset. Returns false where there are fewer. */
-static bool read_at(int file, void *bytes, size_t n, uint64_t at)
+static bool files_cut_read_at(int file, void *bytes, size_t n, uint64_t at)
 {
     for (size_t done = 0; done < n;) {
         const ssize_t got = pread(file, (char *)bytes + done, n - done, (off_t)(at + done));
@@ -38,8 +38,8 @@ int output_cut_cache(int file, const char *path, uint32_t n_points, uint64_t n_f
     uint32_t points = 0, frames = 0;
     struct stat status;
     const uint64_t size = OUTPUT_PC2_HEADER + (uint64_t)12 * n_points * n_frames;
-    if (!read_at(file, header, sizeof header, 0) || !output_pc2_parse(header, &points, &frames) ||
-        points != n_points)
+    if (!files_cut_read_at(file, header, sizeof header, 0) ||
+        !output_pc2_parse(header, &points, &frames) || points != n_points)
         return cloth_fail(error, CLOTH_E_INPUT, "%s is no point cache of %" PRIu32 " vertices: %s",
                           path, n_points, OUTPUT_CHANGED);
     if (fstat(file, &status) != 0)
@@ -80,7 +80,7 @@ int output_cut_header(int file, const char *path, const char *header, struct clo
     if (!bytes)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the header of %s", path);
     const bool same =
-        read_at(file, bytes, n + 1, 0) && !memcmp(bytes, header, n) && bytes[n] == '\n';
+        files_cut_read_at(file, bytes, n + 1, 0) && !memcmp(bytes, header, n) && bytes[n] == '\n';
     free(bytes);
     return same
                ? 0

@@ -31,7 +31,7 @@ int output_refuse(struct cloth_error *error, const char *what, const char *path)
                       strerror(reason));
 }
 
-static int make_one(const char *path)
+static int files_make_one(const char *path)
 {
     struct stat status;
     if (mkdir(path, 0777) == 0)
@@ -56,10 +56,10 @@ int output_make_folder(const char *folder, struct cloth_error *error)
         if (*end != '/' || end == path)
             continue;
         *end = '\0';
-        bad = make_one(path);
+        bad = files_make_one(path);
         *end = '/';
     }
-    bad = bad || make_one(path);
+    bad = bad || files_make_one(path);
     int reason = errno;
     free(path);
     if (!bad)

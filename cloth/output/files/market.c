@@ -22,7 +22,7 @@ static void add_own(double sum[6], double factor, double n[3][3])
             sum[k++] += factor * (0.5 * (n[i][j] + n[j][i]));
 }
 
-static void add_pair(double sum[9], double n[3][3])
+static void market_add_pair(double sum[9], double n[3][3])
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
@@ -69,7 +69,7 @@ static void add_pairs(struct sums *sums)
         }
         before[0] = a;
         before[1] = b;
-        add_pair(sums->pair[sums->n_pairs - 1], n);
+        market_add_pair(sums->pair[sums->n_pairs - 1], n);
     }
     add_diagonals(sums);
 }

@@ -13,7 +13,7 @@ struct start {
 };
 
 /* printf takes ten times as long, and a mesh has more corners than all else. */
-static void put_whole(FILE *file, char before, uint64_t number)
+static void files_obj_put_whole(FILE *file, char before, uint64_t number)
 {
     char text[24];
     size_t at = sizeof text;
@@ -25,20 +25,20 @@ static void put_whole(FILE *file, char before, uint64_t number)
 }
 
 /* Of several names in a line none has blanks. */
-static void put_name(FILE *file, const char *before, const char *name, bool blanks)
+static void files_obj_put_name(FILE *file, const char *before, const char *name, bool blanks)
 {
     fputs(before, file);
     for (; *name; name++)
         fputc(iscntrl((unsigned char)*name) || (!blanks && *name == ' ') ? '_' : *name, file);
 }
 
-static void put_line(FILE *file, const char *before, const char *name)
+static void files_obj_put_line(FILE *file, const char *before, const char *name)
 {
-    put_name(file, before, name, true);
+    files_obj_put_name(file, before, name, true);
     fputc('\n', file);
 }
 
-static void put_vertices(FILE *file, const struct mesh *mesh)
+static void files_obj_put_vertices(FILE *file, const struct mesh *mesh)
 {
     for (size_t v = 0; v < mesh->n_vertices; v++) {
         const double *x = mesh->position + 3 * v;
@@ -59,7 +59,7 @@ struct runs {
 };
 
 /* Goes on to face f; whether it is in others than the face before. */
-static bool go_on(struct runs *runs, uint32_t f)
+static bool files_obj_go_on(struct runs *runs, uint32_t f)
 {
     const bool begins = runs->next < runs->n && runs->run[runs->next].first == f;
     uint32_t kept = 0;
@@ -87,11 +87,11 @@ static const char *open_name(const struct runs *runs, uint32_t i)
 /* A line of groups ends those before it, also those of the cloth before. */
 static void put_groups(FILE *file, struct runs *runs, uint32_t f, struct start *start)
 {
-    if (!go_on(runs, f) && (f || !start->grouped))
+    if (!files_obj_go_on(runs, f) && (f || !start->grouped))
         return;
     fputc('g', file);
     for (uint32_t i = 0; i < runs->n_open; i++)
-        put_name(file, " ", open_name(runs, i), false);
+        files_obj_put_name(file, " ", open_name(runs, i), false);
     fputc('\n', file);
     start->grouped = runs->n_open > 0;
 }
@@ -100,23 +100,23 @@ static void put_groups(FILE *file, struct runs *runs, uint32_t f, struct start *
 static void put_material(FILE *file, struct runs *runs, uint32_t f, const char *cloth,
                          struct start *start)
 {
-    const bool changed = go_on(runs, f) && runs->n_open;
+    const bool changed = files_obj_go_on(runs, f) && runs->n_open;
     if (changed || (!f && start->drawn))
-        put_line(file, "usemtl ", changed ? open_name(runs, 0) : cloth);
+        files_obj_put_line(file, "usemtl ", changed ? open_name(runs, 0) : cloth);
     start->drawn = start->drawn || changed;
 }
 
-static void put_corners(FILE *file, const struct mesh *mesh, uint32_t f, const struct start *start,
-                        bool has_uv)
+static void files_obj_put_corners(FILE *file, const struct mesh *mesh, uint32_t f,
+                                  const struct start *start, bool has_uv)
 {
     uint32_t room[3];
     const uint32_t *corner, n = mesh_face(mesh, f, room, &corner);
     const uint32_t *uv = mesh->face_uv ? mesh->face_uv + mesh->face_start[f] : corner;
     fputc('f', file);
     for (uint32_t c = 0; c < n; c++) {
-        put_whole(file, ' ', start->vertex + corner[c]);
+        files_obj_put_whole(file, ' ', start->vertex + corner[c]);
         if (has_uv)
-            put_whole(file, '/', start->uv + uv[c]);
+            files_obj_put_whole(file, '/', start->uv + uv[c]);
     }
     fputc('\n', file);
 }
@@ -133,7 +133,7 @@ static int put_faces(FILE *file, const struct mesh *mesh, const char *cloth, str
     for (uint32_t f = 0; made && f < mesh->n_faces; f++) {
         put_groups(file, &groups, f, start);
         put_material(file, &materials, f, cloth, start);
-        put_corners(file, mesh, f, start, has_uv);
+        files_obj_put_corners(file, mesh, f, start, has_uv);
     }
     for (size_t e = 0; e < mesh->n_lone_edges; e++)
         fprintf(file, "l %ju %ju\n", (uintmax_t)(start->vertex + mesh->lone_edge[2 * e]),
@@ -151,9 +151,9 @@ int output_fill_obj(FILE *file, const void *what)
     for (size_t i = 0; i < setup->n_meshes && !failed && !ferror(file); i++) {
         const struct mesh *mesh = setup->meshes[i];
         for (uint32_t l = 0; l < mesh->n_libraries; l++)
-            put_line(file, "mtllib ", mesh->library[l]);
-        put_line(file, "o ", setup->names[i]);
-        put_vertices(file, mesh);
+            files_obj_put_line(file, "mtllib ", mesh->library[l]);
+        files_obj_put_line(file, "o ", setup->names[i]);
+        files_obj_put_vertices(file, mesh);
         double uv[2];
         const int has_uv = mesh_uv(mesh, 0, uv);
         failed = put_faces(file, mesh, setup->names[i], &start, has_uv);

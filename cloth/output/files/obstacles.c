@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-static void put_numbers(FILE *file, const char *name, size_t n, const double *value)
+static void files_obstacles_put_numbers(FILE *file, const char *name, size_t n, const double *value)
 {
     fprintf(file, "\"%s\": ", name);
     for (size_t i = 0; i < n; i++) {
@@ -31,7 +31,7 @@ static void put_shape(FILE *file, const struct contact_shape *shape, const bool 
     for (const struct contact_parameter *p = kind->parameter; p->name; p++) {
         const size_t n = contact_role_size(p->role);
         fputs(p == kind->parameter ? "" : ", ", file);
-        put_numbers(file, p->name, n, value);
+        files_obstacles_put_numbers(file, p->name, n, value);
         value += n;
     }
     if (shape->body) {
@@ -50,16 +50,16 @@ static void put_shape(FILE *file, const struct contact_shape *shape, const bool 
 static void put_motion(FILE *file, const struct contact_shape *shape, const struct phys_key *keys)
 {
     fputs(", ", file);
-    put_numbers(file, "about", 3, shape->about);
+    files_obstacles_put_numbers(file, "about", 3, shape->about);
     fputs(", \"keys\": [", file);
     for (uint32_t i = 0; i < shape->n; i++) {
         const struct phys_key *key = keys + shape->first + i;
         fputs(i ? ",\n      {" : "\n      {", file);
-        put_numbers(file, "time", 1, &key->time);
+        files_obstacles_put_numbers(file, "time", 1, &key->time);
         fputs(", ", file);
-        put_numbers(file, "translate", 3, key->translate);
+        files_obstacles_put_numbers(file, "translate", 3, key->translate);
         fputs(", ", file);
-        put_numbers(file, "rotate", 4, key->rotate);
+        files_obstacles_put_numbers(file, "rotate", 4, key->rotate);
         fputc('}', file);
     }
     fputc(']', file);
@@ -81,7 +81,8 @@ void output_obstacles(FILE *file, size_t n, const struct contact_shape *obstacle
 
 /* ---- Reading ---- */
 
-static void take_numbers(struct output_json *json, const char *name, size_t n, double *value)
+static void files_obstacles_take_numbers(struct output_json *json, const char *name, size_t n,
+                                         double *value)
 {
     if (!output_json_key(json, name)) {
         char what[40];
@@ -117,8 +118,8 @@ static void check_role(struct output_json *json, const struct contact_parameter 
 }
 
 /* The name of the next body's file. */
-static void take_body(struct output_cache *cache, struct output_json *json,
-                      struct contact_shape *shape)
+static void files_obstacles_take_body(struct output_cache *cache, struct output_json *json,
+                                      struct contact_shape *shape)
 {
     char name[OUTPUT_BODY_NAME];
     shape->body = ++cache->n_bodies;
@@ -159,12 +160,12 @@ static void take_shape(struct output_cache *cache, struct output_json *json,
     for (const struct contact_parameter *p = kind->parameter; p->name; p++) {
         if (p != kind->parameter)
             output_json_expect(json, ',');
-        take_numbers(json, p->name, contact_role_size(p->role), value);
+        files_obstacles_take_numbers(json, p->name, contact_role_size(p->role), value);
         check_role(json, p, value);
         value += contact_role_size(p->role);
     }
     if (kind == &contact_body_kind)
-        take_body(cache, json, shape);
+        files_obstacles_take_body(cache, json, shape);
     output_json_expect(json, '}');
 }
 
@@ -172,11 +173,11 @@ static void take_key(struct output_json *json, struct phys_key *key)
 {
     const struct contact_parameter rotation = {"rotate", CONTACT_ROTATION};
     output_json_expect(json, '{');
-    take_numbers(json, "time", 1, &key->time);
+    files_obstacles_take_numbers(json, "time", 1, &key->time);
     output_json_expect(json, ',');
-    take_numbers(json, "translate", 3, key->translate);
+    files_obstacles_take_numbers(json, "translate", 3, key->translate);
     output_json_expect(json, ',');
-    take_numbers(json, "rotate", 4, key->rotate);
+    files_obstacles_take_numbers(json, "rotate", 4, key->rotate);
     check_role(json, &rotation, key->rotate);
     output_json_expect(json, '}');
 }
@@ -184,7 +185,7 @@ static void take_key(struct output_json *json, struct phys_key *key)
 static void take_motion(struct output_cache *cache, struct output_json *json,
                         struct contact_shape *shape)
 {
-    take_numbers(json, "about", 3, shape->about);
+    files_obstacles_take_numbers(json, "about", 3, shape->about);
     output_json_expect(json, ',');
     if (!output_json_key(json, "keys"))
         output_json_fail(json, "\"keys\"");

@@ -41,7 +41,7 @@ static char *pose_path(const char *folder, uint32_t number)
 
 /* ---- Beginning ---- */
 
-static int remove_old(const char *folder, uint32_t n_before, struct cloth_error *error)
+static int poses_remove_old(const char *folder, uint32_t n_before, struct cloth_error *error)
 {
     int code = 0;
     for (uint32_t i = 1; i <= n_before && !code; i++) {
@@ -54,15 +54,15 @@ static int remove_old(const char *folder, uint32_t n_before, struct cloth_error 
     return code;
 }
 
-static int go_on(struct pose_file *of, uint64_t n_frames, struct cloth_error *error)
+static int poses_go_on(struct pose_file *of, uint64_t n_frames, struct cloth_error *error)
 {
     of->file = open(of->path, O_RDWR | O_CLOEXEC);
     return of->file < 0 ? output_refuse(error, "go on with", of->path)
                         : output_cut_cache(of->file, of->path, of->n_points, n_frames, error);
 }
 
-static int start(struct pose_file *of, const struct output_setup *setup, uint32_t number,
-                 struct cloth_error *error)
+static int poses_start(struct pose_file *of, const struct output_setup *setup, uint32_t number,
+                       struct cloth_error *error)
 {
     unsigned char header[OUTPUT_PC2_HEADER];
     of->file = -1;
@@ -72,7 +72,7 @@ static int start(struct pose_file *of, const struct output_setup *setup, uint32_
     if (!of->path)
         return fail_memory(error);
     if (setup->n_frames)
-        return go_on(of, *setup->n_frames, error);
+        return poses_go_on(of, *setup->n_frames, error);
     of->file = open(of->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (of->file < 0)
         return output_refuse(error, "write", of->path);
@@ -92,7 +92,7 @@ static int start_all(struct output_poses *poses, const struct output_setup *setu
         return fail_memory(error);
     for (uint32_t i = 0; setup->posed && i < setup->bodies->n && !code; i++)
         if (setup->posed[i]) {
-            code = start(&poses->of[poses->n++], setup, i + 1, error);
+            code = poses_start(&poses->of[poses->n++], setup, i + 1, error);
             most =
                 most > poses->of[poses->n - 1].n_points ? most : poses->of[poses->n - 1].n_points;
         }
@@ -108,7 +108,7 @@ int output_poses_open(struct output_poses **poses, const struct output_setup *se
     if (!made)
         return fail_memory(error);
     made->bodies = setup->bodies;
-    const int code = setup->n_frames ? 0 : remove_old(setup->folder, n_before, error);
+    const int code = setup->n_frames ? 0 : poses_remove_old(setup->folder, n_before, error);
     made->n_frames = setup->n_frames ? (uint32_t)*setup->n_frames : 0;
     return code ? code : start_all(made, setup, error);
 }
@@ -122,8 +122,8 @@ void output_poses_go_on(struct output_poses *poses, const struct contact_bodies 
 
 /* ---- A frame ---- */
 
-static int encode(const struct output_poses *poses, const struct pose_file *of, double time,
-                  struct cloth_error *error)
+static int poses_encode(const struct output_poses *poses, const struct pose_file *of, double time,
+                        struct cloth_error *error)
 {
     const struct contact_body *body = contact_bodies_at(poses->bodies, of->number);
     const phys_vec *x = body->n_frames ? poses->x : contact_body_vertices(body);
@@ -170,7 +170,7 @@ int output_poses_frame(struct output_poses *poses, double time, struct cloth_err
 {
     int code = 0;
     for (uint32_t i = 0; i < poses->n && !code; i++) {
-        code = encode(poses, &poses->of[i], time, error);
+        code = poses_encode(poses, &poses->of[i], time, error);
         code = code ? code : write_pose(poses, &poses->of[i], error);
     }
     poses->n_frames++;

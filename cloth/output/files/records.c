@@ -34,7 +34,7 @@ uint64_t output_rest_size(const struct output_rest *rest)
            (uint64_t)OUTPUT_REST_MATERIAL * rest->n_materials;
 }
 
-static unsigned char *put_whole(unsigned char *bytes, const uint32_t *value, size_t n)
+static unsigned char *records_put_whole(unsigned char *bytes, const uint32_t *value, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         output_put_u32(bytes + 4 * i, value[i]);
@@ -50,21 +50,21 @@ static unsigned char *put_floats(unsigned char *bytes, const double *value, size
 
 void output_rest_put(unsigned char *bytes, const struct output_rest *rest)
 {
-    bytes = put_whole(bytes, &rest->n_triangles, 1);
-    bytes = put_whole(bytes, &rest->n_edges, 1);
-    bytes = put_whole(bytes, &rest->n_materials, 1);
+    bytes = records_put_whole(bytes, &rest->n_triangles, 1);
+    bytes = records_put_whole(bytes, &rest->n_edges, 1);
+    bytes = records_put_whole(bytes, &rest->n_materials, 1);
     for (size_t t = 0; t < rest->n_triangles; t++) {
-        bytes = put_whole(bytes, rest->corner[t], 4);
+        bytes = records_put_whole(bytes, rest->corner[t], 4);
         bytes = put_floats(bytes, rest->gradient[t], 4);
         bytes = put_floats(bytes, rest->area + t, 1);
     }
     for (size_t e = 0; e < rest->n_edges; e++) {
-        bytes = put_whole(bytes, rest->edge[e], 2);
+        bytes = records_put_whole(bytes, rest->edge[e], 2);
         bytes = put_floats(bytes, rest->length + e, 1);
     }
     for (size_t m = 0; m < rest->n_materials; m++) {
         bytes = put_floats(bytes, rest->modulus[m], 4);
-        bytes = put_whole(bytes, &(uint32_t){rest->has_stress[m]}, 1);
+        bytes = records_put_whole(bytes, &(uint32_t){rest->has_stress[m]}, 1);
     }
 }
 

@@ -67,7 +67,8 @@ double output_hdf5_bytes(const struct output_hdf5_setup *setup)
 /* ---- The thread ---- */
 
 /* Makes a file of the bytes, on the disk. */
-static int fill(const struct output_hdf5 *frames, const char *path, struct cloth_error *error)
+static int hdf5_frames_fill(const struct output_hdf5 *frames, const char *path,
+                            struct cloth_error *error)
 {
     const int file = output_open_file(path, O_WRONLY | O_CREAT | O_TRUNC);
     if (file < 0)
@@ -82,7 +83,8 @@ static int fill(const struct output_hdf5 *frames, const char *path, struct cloth
 }
 
 /* Under another name until it is whole. */
-static int put_file(const struct output_hdf5 *frames, const char *name, struct cloth_error *error)
+static int hdf5_frames_put_file(const struct output_hdf5 *frames, const char *name,
+                                struct cloth_error *error)
 {
     char *path = output_path(frames->folder, name, ""),
          *part = output_path(frames->folder, name, ".part");
@@ -90,7 +92,7 @@ static int put_file(const struct output_hdf5 *frames, const char *name, struct c
                    ? CLOTH_OK
                    : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of a frame");
     if (!code)
-        code = fill(frames, part, error);
+        code = hdf5_frames_fill(frames, part, error);
     if (!code && rename(part, path) != 0)
         code = output_fail(error, "write", path);
     if (code && part)
@@ -102,8 +104,8 @@ static int put_file(const struct output_hdf5 *frames, const char *name, struct c
     return code;
 }
 
-static int write_frame(struct output_hdf5 *frames, struct output_state *state,
-                       struct cloth_error *error)
+static int hdf5_frames_write_frame(struct output_hdf5 *frames, struct output_state *state,
+                                   struct cloth_error *error)
 {
     char name[OUTPUT_HDF5_NAME];
     const struct output_hdf5_setup *setup = &frames->setup;
@@ -112,7 +114,7 @@ static int write_frame(struct output_hdf5 *frames, struct output_state *state,
         setup->derive(setup->context, state);
     int code = output_image(setup, &frames->grid, state, &frames->bytes, error);
     if (!code)
-        code = put_file(frames, name, error);
+        code = hdf5_frames_put_file(frames, name, error);
     if (!code)
         code = output_indexes_add(&frames->indexes, setup, &frames->grid, name, state->time, error);
     output_sync_folder(frames->folder);
@@ -120,7 +122,8 @@ static int write_frame(struct output_hdf5 *frames, struct output_state *state,
 }
 
 /* The first one that is missing is said at once. */
-static void miss(struct output_hdf5 *frames, uint64_t frame, const struct cloth_error *why)
+static void hdf5_frames_miss(struct output_hdf5 *frames, uint64_t frame,
+                             const struct cloth_error *why)
 {
     char text[1200];
     if (frames->missing++)
@@ -145,8 +148,8 @@ static void *work(void *context)
         struct cloth_error why = {0};
         pthread_mutex_unlock(&frames->lock);
         frames->tried++;
-        if (write_frame(frames, state, &why))
-            miss(frames, state->frame, &why);
+        if (hdf5_frames_write_frame(frames, state, &why))
+            hdf5_frames_miss(frames, state->frame, &why);
         pthread_mutex_lock(&frames->lock);
         frames->done++;
         pthread_cond_broadcast(&frames->change);
@@ -191,7 +194,7 @@ static int take_states(struct output_hdf5 *frames, struct cloth_error *error)
     return error->code;
 }
 
-static void free_frames(struct output_hdf5 *frames)
+static void hdf5_frames_free(struct output_hdf5 *frames)
 {
     for (int f = 0; f < OUTPUT_HDF5_FLIGHT; f++) {
         free(frames->flight[f].position);
@@ -300,6 +303,6 @@ int output_hdf5_close(struct output_hdf5 **frames, struct cloth_error *error)
                           "%ju of %ju HDF5 frames were not written, the first is frame %ju: %s",
                           (uintmax_t)gone->missing, (uintmax_t)gone->tried,
                           (uintmax_t)gone->first_missing, gone->trouble.text);
-    free_frames(gone);
+    hdf5_frames_free(gone);
     return code;
 }

@@ -10,7 +10,7 @@
 /* Numbers of shapes: VTK's, XDMF's. */
 enum { VTK_EDGE = 3, VTK_TRIANGLE = 5, XDMF_POLYLINE = 2, XDMF_TRIANGLE = 4 };
 
-static int take(struct output_grid *grid, struct cloth_error *error)
+static int hdf5_grid_take(struct output_grid *grid, struct cloth_error *error)
 {
     const size_t cells = output_grid_cells(grid);
     grid->n_corners = 3 * (size_t)grid->n_triangles + 2 * (size_t)grid->n_edges;
@@ -29,7 +29,7 @@ int output_grid_make(struct output_grid *grid, const struct output_hdf5_setup *s
 {
     *grid = (struct output_grid){
         .n_points = setup->n_points, .n_triangles = setup->n_triangles, .n_edges = setup->n_edges};
-    if (take(grid, error))
+    if (hdf5_grid_take(grid, error))
         return error->code;
     int64_t *corner = grid->corners, *mixed = grid->mixed;
     for (uint32_t c = 0; c < output_grid_cells(grid); c++) {

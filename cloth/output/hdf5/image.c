@@ -37,7 +37,7 @@ bool output_image_gzips(void)
     return H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0;
 }
 
-static void note(struct image *image, herr_t code)
+static void hdf5_image_note(struct image *image, herr_t code)
 {
     image->bad = image->bad || code < 0;
 }
@@ -47,18 +47,18 @@ static void note(struct image *image, herr_t code)
 static hid_t properties(struct image *image, const struct array *array, size_t size)
 {
     const hid_t is = H5Pcreate(H5P_DATASET_CREATE);
-    note(image, is < 0 ? -1 : H5Pset_obj_track_times(is, false));
+    hdf5_image_note(image, is < 0 ? -1 : H5Pset_obj_track_times(is, false));
     if (!image->level || !array->rows || image->bad)
         return is;
     const hsize_t width = array->width ? array->width : 1, most = 1048576 / (size * width);
     const hsize_t chunk[2] = {array->rows < most ? array->rows : most, width};
-    note(image, H5Pset_chunk(is, array->width ? 2 : 1, chunk));
-    note(image, H5Pset_shuffle(is));
-    note(image, H5Pset_deflate(is, image->level));
+    hdf5_image_note(image, H5Pset_chunk(is, array->width ? 2 : 1, chunk));
+    hdf5_image_note(image, H5Pset_shuffle(is));
+    hdf5_image_note(image, H5Pset_deflate(is, image->level));
     return is;
 }
 
-static void put(struct image *image, hid_t group, const struct array *array)
+static void hdf5_image_put(struct image *image, hid_t group, const struct array *array)
 {
     const hsize_t size[2] = {array->rows, array->width};
     const hid_t space = H5Screate_simple(array->width ? 2 : 1, size, NULL);
@@ -66,25 +66,26 @@ static void put(struct image *image, hid_t group, const struct array *array)
     hid_t set = -1;
     if (!image->bad && space >= 0)
         set = H5Dcreate2(group, array->name, array->to, space, H5P_DEFAULT, is, H5P_DEFAULT);
-    note(image, set < 0 ? -1 : 0);
+    hdf5_image_note(image, set < 0 ? -1 : 0);
     if (set >= 0 && array->rows)
-        note(image, H5Dwrite(set, array->from, H5S_ALL, H5S_ALL, H5P_DEFAULT, array->data));
+        hdf5_image_note(image,
+                        H5Dwrite(set, array->from, H5S_ALL, H5S_ALL, H5P_DEFAULT, array->data));
     if (set >= 0)
-        note(image, H5Dclose(set));
+        hdf5_image_note(image, H5Dclose(set));
     if (is >= 0)
         H5Pclose(is);
     if (space >= 0)
         H5Sclose(space);
 }
 
-static hid_t group(struct image *image, hid_t within, const char *name)
+static hid_t hdf5_image_group(struct image *image, hid_t within, const char *name)
 {
     const hid_t is = H5Pcreate(H5P_GROUP_CREATE);
     hid_t made = -1;
-    note(image, is < 0 ? -1 : H5Pset_obj_track_times(is, false));
+    hdf5_image_note(image, is < 0 ? -1 : H5Pset_obj_track_times(is, false));
     if (!image->bad)
         made = H5Gcreate2(within, name, H5P_DEFAULT, is, H5P_DEFAULT);
-    note(image, made < 0 ? -1 : 0);
+    hdf5_image_note(image, made < 0 ? -1 : 0);
     if (is >= 0)
         H5Pclose(is);
     return made;
@@ -93,7 +94,7 @@ static hid_t group(struct image *image, hid_t within, const char *name)
 static void leave(struct image *image, hid_t object)
 {
     if (object >= 0)
-        note(image, H5Gclose(object));
+        hdf5_image_note(image, H5Gclose(object));
 }
 
 static void attribute(struct image *image, const char *name, hid_t from, hid_t to, hid_t space,
@@ -102,7 +103,7 @@ static void attribute(struct image *image, const char *name, hid_t from, hid_t t
     hid_t made = -1;
     if (!image->bad && space >= 0 && to >= 0)
         made = H5Acreate2(image->top, name, to, space, H5P_DEFAULT, H5P_DEFAULT);
-    note(image, made < 0 ? -1 : H5Awrite(made, from, data));
+    hdf5_image_note(image, made < 0 ? -1 : H5Awrite(made, from, data));
     if (made >= 0)
         H5Aclose(made);
 }
@@ -114,8 +115,8 @@ static void put_attributes(struct image *image)
     const hsize_t two = 2;
     const hid_t pair = H5Screate_simple(1, &two, NULL), one = H5Screate(H5S_SCALAR);
     const hid_t text = H5Tcopy(H5T_C_S1);
-    note(image, H5Tset_size(text, sizeof TYPE - 1));
-    note(image, H5Tset_strpad(text, H5T_STR_NULLPAD));
+    hdf5_image_note(image, H5Tset_size(text, sizeof TYPE - 1));
+    hdf5_image_note(image, H5Tset_strpad(text, H5T_STR_NULLPAD));
     attribute(image, "Version", H5T_NATIVE_INT, H5T_STD_I64LE, pair, LAYOUT);
     attribute(image, "Type", text, text, one, TYPE);
     H5Tclose(text);
@@ -127,17 +128,17 @@ static void put_count(struct image *image, const char *name, size_t count)
 {
     const int64_t value = (int64_t)count;
     const struct array array = {name, &value, H5T_NATIVE_INT64, H5T_STD_I64LE, 1, 0};
-    put(image, image->top, &array);
+    hdf5_image_put(image, image->top, &array);
 }
 
 static void put_longs(struct image *image, hid_t where, const char *name, const int64_t *data,
                       size_t n)
 {
     const struct array array = {name, data, H5T_NATIVE_INT64, H5T_STD_I64LE, n, 0};
-    put(image, where, &array);
+    hdf5_image_put(image, where, &array);
 }
 
-static void put_grid(struct image *image, const struct output_grid *grid)
+static void hdf5_image_put_grid(struct image *image, const struct output_grid *grid)
 {
     const size_t n_cells = output_grid_cells(grid);
     const struct array kinds = {"Types", grid->kind, H5T_NATIVE_UCHAR, H5T_STD_U8LE, n_cells, 0};
@@ -146,7 +147,7 @@ static void put_grid(struct image *image, const struct output_grid *grid)
     put_count(image, "NumberOfConnectivityIds", grid->n_corners);
     put_longs(image, image->top, "Connectivity", grid->corners, grid->n_corners);
     put_longs(image, image->top, "Offsets", grid->start, n_cells + 1);
-    put(image, image->top, &kinds);
+    hdf5_image_put(image, image->top, &kinds);
     if (grid->mixed)
         put_longs(image, image->file, "XdmfCells", grid->mixed, grid->n_mixed);
 }
@@ -158,10 +159,10 @@ static void put_state(struct image *image, const struct output_hdf5_setup *setup
     const struct array points = {"Points", state->position, H5T_NATIVE_DOUBLE,
                                  real,     grid->n_points,  3};
     const struct array time = {"TimeValue", &state->time, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, 1, 0};
-    put(image, image->top, &points);
-    const hid_t of[2] = {group(image, image->top, "PointData"),
-                         group(image, image->top, "CellData")};
-    const hid_t field = group(image, image->top, "FieldData");
+    hdf5_image_put(image, image->top, &points);
+    const hid_t of[2] = {hdf5_image_group(image, image->top, "PointData"),
+                         hdf5_image_group(image, image->top, "CellData")};
+    const hid_t field = hdf5_image_group(image, image->top, "FieldData");
     for (int i = 0; i < OUTPUT_FIELDS; i++) {
         const enum output_field is = (enum output_field)i;
         const bool cells = output_field_is_of_cells(is), whole = output_field_is_whole(is);
@@ -173,9 +174,9 @@ static void put_state(struct image *image, const struct output_hdf5_setup *setup
                                     cells ? output_grid_cells(grid) : grid->n_points,
                                     width > 1 ? width : 0};
         if (setup->wants[i])
-            put(image, of[cells], &array);
+            hdf5_image_put(image, of[cells], &array);
     }
-    put(image, field, &time);
+    hdf5_image_put(image, field, &time);
     leave(image, field);
     leave(image, of[0]);
     leave(image, of[1]);
@@ -185,20 +186,21 @@ static hid_t create(struct image *image, size_t increment)
 {
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS), is = H5Pcreate(H5P_FILE_CREATE);
     hid_t file = -1;
-    note(image, H5Pset_fapl_core(access, increment, false));
-    note(image, H5Pset_obj_track_times(is, false));
+    hdf5_image_note(image, H5Pset_fapl_core(access, increment, false));
+    hdf5_image_note(image, H5Pset_obj_track_times(is, false));
     if (!image->bad)
         file = H5Fcreate("frame", H5F_ACC_TRUNC, is, access);
-    note(image, file < 0 ? -1 : 0);
+    hdf5_image_note(image, file < 0 ? -1 : 0);
     H5Pclose(access);
     H5Pclose(is);
     return file;
 }
 
 /* Takes the bytes of the file. */
-static int take(struct image *image, struct output_bytes *bytes, struct cloth_error *error)
+static int hdf5_image_take(struct image *image, struct output_bytes *bytes,
+                           struct cloth_error *error)
 {
-    note(image, image->bad ? -1 : H5Fflush(image->file, H5F_SCOPE_LOCAL));
+    hdf5_image_note(image, image->bad ? -1 : H5Fflush(image->file, H5F_SCOPE_LOCAL));
     const ssize_t size = image->bad ? -1 : H5Fget_file_image(image->file, NULL, 0);
     if (size < 0)
         return cloth_fail(error, CLOTH_E_LIBRARY, "HDF5 could not make a frame");
@@ -221,12 +223,12 @@ int output_image(const struct output_hdf5_setup *setup, const struct output_grid
 {
     struct image image = {.file = -1, .top = -1, .level = setup->level};
     image.file = create(&image, (size_t)output_hdf5_bytes(setup));
-    image.top = group(&image, image.file, "VTKHDF");
+    image.top = hdf5_image_group(&image, image.file, "VTKHDF");
     put_attributes(&image);
-    put_grid(&image, grid);
+    hdf5_image_put_grid(&image, grid);
     put_state(&image, setup, grid, state);
     leave(&image, image.top);
-    const int code = take(&image, bytes, error);
+    const int code = hdf5_image_take(&image, bytes, error);
     if (image.file >= 0)
         H5Fclose(image.file);
     return code;

@@ -28,7 +28,7 @@ bool output_index_is_ours(const char *path, const char *begin)
 
 /* ---- Two files ---- */
 
-static int append(struct output_bytes *text, const char *bytes, size_t n)
+static int hdf5_index_append(struct output_bytes *text, const char *bytes, size_t n)
 {
     if (n > text->room - text->n) {
         const size_t room = 2 * (text->n + n);
@@ -92,13 +92,13 @@ static bool starts(const char *text, const char *with)
 }
 
 /* The frame that an entry names; UINT64_MAX: none. */
-static uint64_t frame_of(const char *entry)
+static uint64_t hdf5_index_frame_of(const char *entry)
 {
     const char *name = strstr(entry, OUTPUT_HDF5_FRAME);
     return name ? strtoull(name + strlen(OUTPUT_HDF5_FRAME), NULL, 10) : UINT64_MAX;
 }
 
-static int check_frame(const char *folder, uint64_t frame, struct cloth_error *error)
+static int hdf5_index_check_frame(const char *folder, uint64_t frame, struct cloth_error *error)
 {
     char name[OUTPUT_HDF5_NAME];
     output_hdf5_name(name, frame);
@@ -111,25 +111,25 @@ static int check_frame(const char *folder, uint64_t frame, struct cloth_error *e
 }
 
 /* Appends the entries of frames below n_frames, which come first in a text, with what begins it. */
-static int keep(struct output_index *index, const char *folder, const char *text, uint64_t n_frames,
-                struct cloth_error *error)
+static int hdf5_index_keep(struct output_index *index, const char *folder, const char *text,
+                           uint64_t n_frames, struct cloth_error *error)
 {
     const struct output_index_form *form = index->form;
     const char *at = text + strlen(form->begin);
-    while (at && starts(at, form->entry) && frame_of(at) < n_frames) {
-        if (check_frame(folder, frame_of(at), error))
+    while (at && starts(at, form->entry) && hdf5_index_frame_of(at) < n_frames) {
+        if (hdf5_index_check_frame(folder, hdf5_index_frame_of(at), error))
             return error->code;
         const char *next = strstr(at + 1, form->entry);
         at = next ? next : strstr(at, form->end);
         index->n++;
     }
-    const bool more = at && starts(at, form->entry) && frame_of(at) < UINT64_MAX;
+    const bool more = at && starts(at, form->entry) && hdf5_index_frame_of(at) < UINT64_MAX;
     if (!more && (!at || strcmp(at, form->end) != 0))
         return cloth_fail(error, CLOTH_E_INPUT, "%s is not whole: %s", index->path, OUTPUT_CHANGED);
     size_t n = (size_t)(at - text), separator = strlen(SEPARATOR);
     if (index->n && memcmp(at - separator, SEPARATOR, separator) == 0)
         n -= separator;
-    return append(&index->text, text, n) == 0
+    return hdf5_index_append(&index->text, text, n) == 0
                ? CLOTH_OK
                : cloth_fail(error, CLOTH_E_MEMORY, "no memory for an index of frames");
 }
@@ -147,7 +147,7 @@ static int keep_entries(struct output_index *index, const char *folder, uint64_t
                           cloth_file_why());
     if (file)
         fclose(file);
-    code = code ? code : keep(index, folder, text, n_frames, error);
+    code = code ? code : hdf5_index_keep(index, folder, text, n_frames, error);
     free(text);
     return code;
 }
@@ -163,7 +163,7 @@ static int begin_index(struct output_index *index, const char *folder, const uin
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for an index of frames");
     if (n_frames && access(index->path, F_OK) == 0)
         code = keep_entries(index, folder, *n_frames, error);
-    else if (append(&index->text, begin, strlen(begin)) != 0)
+    else if (hdf5_index_append(&index->text, begin, strlen(begin)) != 0)
         code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for an index of frames");
     if (!code && (write_hidden(index) != 0 || swap(index) != 0))
         code = output_refuse(error, "write", index->path);
@@ -192,9 +192,9 @@ int output_index_add(struct output_index *index, const char *entry, size_t n,
     const size_t before = index->text.n;
     const char *comma = index->n && index->form->end[0] == ']' ? SEPARATOR : "";
     int code = output_check_same(index->shown.file, index->path, error);
-    if (!code &&
-        (append(&index->text, comma, strlen(comma)) != 0 || append(&index->text, entry, n) != 0 ||
-         write_hidden(index) != 0 || swap(index) != 0))
+    if (!code && (hdf5_index_append(&index->text, comma, strlen(comma)) != 0 ||
+                  hdf5_index_append(&index->text, entry, n) != 0 || write_hidden(index) != 0 ||
+                  swap(index) != 0))
         code = output_fail(error, "write", index->path);
     if (code)
         index->text.n = before;

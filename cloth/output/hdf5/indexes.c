@@ -69,8 +69,8 @@ static void put_field(FILE *text, const char *frame, const struct output_grid *g
     fputs("</Attribute>\n", text);
 }
 
-static void put_grid(FILE *text, const struct output_hdf5_setup *setup,
-                     const struct output_grid *grid, const char *frame, double time)
+static void indexes_put_grid(FILE *text, const struct output_hdf5_setup *setup,
+                             const struct output_grid *grid, const char *frame, double time)
 {
     const int bytes = setup->is_double ? 8 : 4;
     fprintf(text, "<Grid Name=\"cloth\">\n<Time Value=\"%.17g\"/>\n", time);
@@ -92,7 +92,7 @@ int output_indexes_add(struct output_indexes *indexes, const struct output_hdf5_
     size_t n = 0;
     FILE *text = open_memstream(&entry, &n);
     if (text)
-        put_grid(text, setup, grid, name, time);
+        indexes_put_grid(text, setup, grid, name, time);
     int code = text && fclose(text) == 0
                    ? output_index_add(indexes->of + OUTPUT_XMF, entry, n, error)
                    : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the index of frames");

@@ -63,8 +63,8 @@ static void add_thread(struct threads *to, const double *position, const uint32_
 }
 
 /* Without its first and its last thread, which other seams can have, too. */
-static void add_seam(struct threads *to, const double *position, const struct model_seam *seam,
-                     uint32_t number)
+static void crossed_add_seam(struct threads *to, const double *position,
+                             const struct model_seam *seam, uint32_t number)
 {
     for (uint32_t i = 1; i + 1 < seam->n_pairs; i++) {
         const uint32_t p = to->n_points;
@@ -138,7 +138,7 @@ static int warn_of_seams(struct model *model, const struct model_cloth *cloth,
     struct cloth_list pairs = {0};
     for (uint32_t s = 0; s < seams->n && !error->code; s++)
         if (seams->seam[s].sewing.state == MODEL_SEAMS_PULLED)
-            add_seam(&threads, cloth->mesh.position, seams->seam + s, s);
+            crossed_add_seam(&threads, cloth->mesh.position, seams->seam + s, s);
     const struct verify_soup soup = {.n_points = threads.n_points,
                                      .n_triangles = threads.n_triangles,
                                      .n_first = threads.n_triangles,

@@ -27,8 +27,8 @@ static int check_path(const struct model_cloth *cloth, const struct model_fold *
 }
 
 /* The vertices along one side of a seam. */
-static int take_side(struct model_fold *fold, const struct model_seam *seam, int side,
-                     struct cloth_error *error)
+static int fold_take_side(struct model_fold *fold, const struct model_seam *seam, int side,
+                          struct cloth_error *error)
 {
     fold->sewn = true;
     fold->open = seam->sewing.state == MODEL_SEAMS_OPEN;
@@ -51,7 +51,7 @@ static int build_edge(struct model_fold *fold, const struct model_cloth *cloth,
     for (uint32_t s = 0; s < seams->n; s++)
         for (int k = 0; k < 2; k++)
             if (seams->seam[s].side[k].edge == edge && !strcmp(seams->seam[s].side[k].panel, panel))
-                return take_side(fold, seams->seam + s, k, error);
+                return fold_take_side(fold, seams->seam + s, k, error);
     return scene_tree_fail(tree, node, error,
                            "no seam of cloth '%.60s' has edge %u of a panel '%.60s', so nothing "
                            "folds there; an edge that is sewn is expected",

@@ -48,7 +48,7 @@ static int check_body_frame(const struct reading *r, int node, const struct mesh
     return CLOTH_OK;
 }
 
-static int read_obj(const struct reading *r, int node, double *place)
+static int build_frames_read_obj(const struct reading *r, int node, double *place)
 {
     struct cloth_error inner = {0};
     struct mesh frame = {0};
@@ -70,7 +70,7 @@ static int read_objs(const struct reading *r, int list, uint32_t *n, double **pl
     *n = (uint32_t)scene_tree_length(r->tree, list);
     *place = scene_build_array(*n, stride * sizeof **place, r->error);
     for (uint32_t k = 0; *place && k < *n && !code; k++)
-        code = read_obj(r, scene_tree_item(r->tree, list, k), *place + k * stride);
+        code = build_frames_read_obj(r, scene_tree_item(r->tree, list, k), *place + k * stride);
     return *place ? code : r->error->code;
 }
 

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 /* The places of a body at time 0, n_vertices x 3, and then its triangles. */
-static int take_body(struct girth_mesh *mesh, const struct contact_body *body,
-                     struct cloth_error *error)
+static int build_girth_take_body(struct girth_mesh *mesh, const struct contact_body *body,
+                                 struct cloth_error *error)
 {
     const phys_vec *x = contact_body_vertices(body);
     const struct contact_facet *facet = contact_body_facets(body);
@@ -34,7 +34,7 @@ static int compare_girths(struct girth_worst *worst, const struct model_cloth *c
                                        (const uint32_t(*)[3])cloth->mesh.triangle};
     struct girth_mesh wearer;
     struct girth_seam *seam = scene_build_array(cloth->seams.n, sizeof *seam, error);
-    int code = take_body(&wearer, body, error);
+    int code = build_girth_take_body(&wearer, body, error);
     code = seam ? code : error->code;
     for (uint32_t s = 0; s < cloth->seams.n && !code; s++)
         seam[s] = (struct girth_seam){cloth->seams.seam[s].n_pairs,

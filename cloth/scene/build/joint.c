@@ -37,8 +37,8 @@ int scene_build_cloth_of(uint32_t *cloth, const char *what, const struct model *
 /* ---- Ends on edges ---- */
 
 /* One edge is a list of one. */
-static int take_edge(struct model_end *end, const struct scene_tree *tree, int node,
-                     struct cloth_error *error)
+static int joint_take_edge(struct model_end *end, const struct scene_tree *tree, int node,
+                           struct cloth_error *error)
 {
     const int one = scene_tree_get(tree, node, "edge");
     double number[2];
@@ -109,11 +109,12 @@ static int build_at(struct model_end *end, const struct scene_tree *tree, int no
 }
 
 /* all: of each cloth, those that have been needed. */
-static int build_edges(struct model_end *end, const struct model *model, struct mesh_edges *all,
-                       const struct scene_tree *tree, int node, struct cloth_error *error)
+static int joint_build_edges(struct model_end *end, const struct model *model,
+                             struct mesh_edges *all, const struct scene_tree *tree, int node,
+                             struct cloth_error *error)
 {
     const int at = scene_tree_get(tree, node, "at");
-    int code = take_edge(end, tree, node, error);
+    int code = joint_take_edge(end, tree, node, error);
     if (!code && at && !end->edges)
         return scene_tree_fail(tree, at, error,
                                "at is given without an edge, which it is a place on; edge or edges "
@@ -163,7 +164,7 @@ static int build_pairs(struct model_pairs *pairs, const char *what, const struct
     if (!code)
         code = build_end(&pairs->end[1], what, model, tree, to, error);
     if (!code)
-        code = build_edges(&pairs->end[1], model, edges, tree, to, error);
+        code = joint_build_edges(&pairs->end[1], model, edges, tree, to, error);
     if (code || pairs->end[0].n == pairs->end[1].n)
         return code;
     return scene_tree_fail(tree, to, error,

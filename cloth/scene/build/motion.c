@@ -22,8 +22,8 @@ static int build_times(struct phys_key *keys, const struct scene_tree *tree, int
     return CLOTH_OK;
 }
 
-static int check_length(const struct scene_tree *tree, int list, const char *what, size_t n,
-                        struct cloth_error *error)
+static int build_motion_check_length(const struct scene_tree *tree, int list, const char *what,
+                                     size_t n, struct cloth_error *error)
 {
     if (!list || scene_tree_length(tree, list) == n)
         return CLOTH_OK;
@@ -122,9 +122,9 @@ int scene_build_motion(struct model *model, struct model_motion *motion,
         keys[i] = (struct phys_key){.rotate = {1, 0, 0, 0}};
     int code = build_times(keys, tree, times, n, error);
     if (!code)
-        code = check_length(tree, translate, "translate", n, error);
+        code = build_motion_check_length(tree, translate, "translate", n, error);
     if (!code)
-        code = check_length(tree, rotate, "rotate", n, error);
+        code = build_motion_check_length(tree, rotate, "rotate", n, error);
     for (size_t i = 0; translate && i < n && !code; i++)
         scene_tree_vector(tree, scene_tree_item(tree, translate, i), 3, keys[i].translate);
     for (size_t i = 0; rotate && i < n && !code; i++)

@@ -56,7 +56,7 @@ static bool has_only_springs(const struct model *model, uint32_t entry)
 }
 
 /* By project cloths never meet each other. */
-static bool has_meetings(const struct model *model, uint32_t entry)
+static bool needs_has_meetings(const struct model *model, uint32_t entry)
 {
     bool left_out = model_seeks(model);
     (void)entry;
@@ -118,7 +118,7 @@ static const struct {
     {NEEDS_NO_SINE, has_no_sine},
     {NEEDS_SPRINGS, has_springs},
     {NEEDS_ONLY_SPRINGS, has_only_springs},
-    {NEEDS_MEETINGS, has_meetings},
+    {NEEDS_MEETINGS, needs_has_meetings},
     {NEEDS_GUARDED, is_guarded},
     {NEEDS_OWN_TRIANGLES, has_own_triangles},
     {NEEDS_OWN_LINKS, has_own_links},

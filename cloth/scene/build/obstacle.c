@@ -151,8 +151,8 @@ static void build_view(const struct model *model, struct contact_shape *shape,
                           scene_tree_integer(tree, node, "resolution"), &shape->view);
 }
 
-static int build_body(struct model *model, struct contact_shape *shape, struct scene_tree *tree,
-                      int node, struct cloth_error *error)
+static int obstacle_build_body(struct model *model, struct contact_shape *shape,
+                               struct scene_tree *tree, int node, struct cloth_error *error)
 {
     struct cloth_error inner = {0};
     struct mesh mesh = {0};
@@ -195,7 +195,7 @@ static int build_shape(struct model *model, struct contact_shape *shape, struct 
                           ? scene_tree_number(tree, node, "friction")
                           : model->contact.friction;
     if (!code && kind == &contact_body_kind)
-        code = build_body(model, shape, tree, node, error);
+        code = obstacle_build_body(model, shape, tree, node, error);
     const int motion = scene_tree_get(tree, node, "motion");
     return code || !motion ? code : build_shape_motion(model, shape, tree, motion, error);
 }
@@ -242,7 +242,7 @@ int scene_build_obstacles(struct model *model, struct scene_tree *tree, struct c
 }
 
 /* A point of a plane, and its normal. */
-static const double *point_of(const struct contact_shape *plane)
+static const double *obstacle_point_of(const struct contact_shape *plane)
 {
     return plane->value;
 }
@@ -261,7 +261,7 @@ static double height_above(const struct contact_shape *plane, const double x[3])
 {
     double sum = 0;
     for (int i = 0; i < 3; i++)
-        sum += normal_of(plane)[i] * (x[i] - point_of(plane)[i]);
+        sum += normal_of(plane)[i] * (x[i] - obstacle_point_of(plane)[i]);
     return sum;
 }
 

@@ -13,8 +13,8 @@
 #include <string.h>
 
 /* The panels of a garment as one mesh; uv is that of the panels, and each is a group. */
-static int take_mesh(struct mesh *mesh, const struct garment *garment,
-                     const struct garment_pattern *pattern, struct cloth_error *error)
+static int build_pattern_take_mesh(struct mesh *mesh, const struct garment *garment,
+                                   const struct garment_pattern *pattern, struct cloth_error *error)
 {
     const size_t n = garment->n_vertices;
     int code = mesh_inline(mesh, garment->n_vertices, *garment->position, 0, NULL,
@@ -64,8 +64,9 @@ static int take_seams(struct model_seams *to, const struct garment *garment,
 }
 
 /* Edge or vertices, one of the two. */
-static int check_fineness(const struct scene_pattern *asked, const struct scene_tree *tree,
-                          int node, struct cloth_error *error)
+static int build_pattern_check_fineness(const struct scene_pattern *asked,
+                                        const struct scene_tree *tree, int node,
+                                        struct cloth_error *error)
 {
     const int edge = scene_tree_get(tree, node, "edge");
     const int vertices = scene_tree_get(tree, node, "vertices");
@@ -139,9 +140,9 @@ static int make_own(struct garment_pattern *pattern, const struct scene_pattern 
 }
 
 /* path: NULL for an own garment. */
-static int take_pattern(struct garment_pattern *pattern, const struct scene_pattern *asked,
-                        const char *path, const struct scene_tree *tree, int node,
-                        struct cloth_error *error, struct cloth_error *inner)
+static int build_pattern_take(struct garment_pattern *pattern, const struct scene_pattern *asked,
+                              const char *path, const struct scene_tree *tree, int node,
+                              struct cloth_error *error, struct cloth_error *inner)
 {
     if (!path)
         return make_own(pattern, asked, tree, node, error, inner);
@@ -163,8 +164,8 @@ static int make_garment(struct scene_made_part *to, const char *path, struct sce
 {
     struct scene_pattern asked = {0};
     int code = scene_fill(&asked, &scene_pattern, tree, node, error);
-    code = code ? code : check_fineness(&asked, tree, node, error);
-    code = code ? code : take_pattern(&to->pattern, &asked, path, tree, node, error, inner);
+    code = code ? code : build_pattern_check_fineness(&asked, tree, node, error);
+    code = code ? code : build_pattern_take(&to->pattern, &asked, path, tree, node, error, inner);
     const struct garment_fineness fineness = {asked.edge, asked.vertices};
     if (!code && asked.edge > 0)
         code = scene_build_check_memory(
@@ -199,7 +200,7 @@ int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct s
         code = make_garment(of, path, tree, node, error, inner);
     if (!code && path)
         code = warn_of_file(model, &of->pattern, path, tree, file, error);
-    code = code ? code : take_mesh(&cloth->mesh, &of->garment, &of->pattern, inner);
+    code = code ? code : build_pattern_take_mesh(&cloth->mesh, &of->garment, &of->pattern, inner);
     code = code ? code : take_seams(&cloth->seams, &of->garment, &of->pattern, error);
     free(key);
     free(path);

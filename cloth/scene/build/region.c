@@ -133,7 +133,8 @@ static int build_panel(struct model_cloth *cloth, const struct model *model, uns
 }
 
 /* Checks that no group stands twice. */
-static int check_once(const struct scene_tree *tree, int list, size_t i, struct cloth_error *error)
+static int region_check_once(const struct scene_tree *tree, int list, size_t i,
+                             struct cloth_error *error)
 {
     const int node = scene_tree_item(tree, list, i);
     const char *name = scene_tree_text(tree, node, "group");
@@ -155,7 +156,7 @@ static int build_panels(struct model_cloth *cloth, const struct model *model,
     unsigned char *room = scene_build_array(cloth->mesh.n_vertices, 1, error);
     int code = cloth->grain_mask && cloth->grain && room ? CLOTH_OK : error->code;
     for (size_t i = 0; i < n && !code; i++) {
-        code = check_once(tree, list, i, error);
+        code = region_check_once(tree, list, i, error);
         if (!code)
             code = build_panel(cloth, model, room, tree, scene_tree_item(tree, list, i), error);
     }

@@ -21,7 +21,7 @@ struct pair {
     uint32_t seam, i;   /* pair i of this seam */
 };
 
-static int compare_pairs(const void *va, const void *vb)
+static int build_seams_compare_pairs(const void *va, const void *vb)
 {
     const struct pair *a = va, *b = vb;
     const uint32_t left[4] = {a->low, a->high, a->seam, a->i};
@@ -48,7 +48,7 @@ static int find_firsts(const struct model_seams *seams, enum model_seams_state s
             if (seams->seam[s].sewing.state == state)
                 all[of_state++] = (struct pair){a < b ? a : b, a < b ? b : a, s, (uint32_t)k};
         }
-    qsort(all, of_state, sizeof *all, compare_pairs);
+    qsort(all, of_state, sizeof *all, build_seams_compare_pairs);
     for (k = 0; k < of_state; k++) {
         const bool again = k && all[k].low == all[k - 1].low && all[k].high == all[k - 1].high;
         joins[all[k].i] = !again && all[k].low != all[k].high;
@@ -227,7 +227,7 @@ static void lay_over(struct model_sewing *to, const struct model_sewing *from,
         to->bending = from->bending;
 }
 
-static bool is_between(const struct model_seam *seam, const char *const panel[2])
+static bool build_seams_is_between(const struct model_seam *seam, const char *const panel[2])
 {
     bool is = false;
     for (int k = 0; k < 2; k++)
@@ -247,7 +247,7 @@ static int find_between(const struct model_cloth *cloth, struct model_some_seams
     if (!some->number)
         return error->code;
     for (uint32_t s = 0; s < cloth->seams.n; s++)
-        if (is_between(cloth->seams.seam + s, panel))
+        if (build_seams_is_between(cloth->seams.seam + s, panel))
             some->number[some->n++] = s;
     if (some->n)
         return CLOTH_OK;
@@ -343,7 +343,7 @@ static int find_seams(struct model *model, struct model_cloth *cloth, const stru
 
 /* ---- Vertices that meet as one ---- */
 
-static int find_joined(struct model *model, struct cloth_error *error)
+static int build_seams_find_joined(struct model *model, struct cloth_error *error)
 {
     uint32_t *joined = model->n_pulled ? find_roots(model, error) : NULL;
     model->contact.apart.joined = joined;
@@ -384,5 +384,5 @@ int scene_build_seams(struct model *model, struct scene_tree *tree, struct cloth
                                "time.sewn waits for pulled seams, and the scene has none: a cloth "
                                "with seams: {state: pulled} is expected, or time.sewn: null in a "
                                "phase that has welded them");
-    return code ? code : find_joined(model, error);
+    return code ? code : build_seams_find_joined(model, error);
 }

@@ -15,8 +15,8 @@ enum { SIDES, PAIRS, REVERSED, DISTANCES };
 static const char *const SEAM_KEYS[PATTERN_KEYS] = {"sides", "pairs", "reversed", "distances"};
 static const char *const SIDE_KEYS[PATTERN_KEYS] = {"panel", "edge", "length"};
 
-static int read_count(const struct pattern_reader *reader, int node, const char *what,
-                      uint32_t expected)
+static int seams_file_read_count(const struct pattern_reader *reader, int node, const char *what,
+                                 uint32_t expected)
 {
     uint32_t n;
     const int code = pattern_index(reader, node, what, UINT32_MAX, what, &n);
@@ -88,8 +88,10 @@ static int read_seams_tree(const struct pattern_reader *reader, struct model_sea
     code = code ? code : pattern_index(reader, value[SCHEMA], "schema", 2, "schemas", &schema);
     if (!code && schema != 1)
         return pattern_wrong(reader, value[SCHEMA], "schema is %u; it has to be 1", schema);
-    code = code ? code : read_count(reader, value[VERTICES], "vertices", mesh->n_vertices);
-    code = code ? code : read_count(reader, value[TRIANGLES], "triangles", mesh->n_triangles);
+    code =
+        code ? code : seams_file_read_count(reader, value[VERTICES], "vertices", mesh->n_vertices);
+    code = code ? code
+                : seams_file_read_count(reader, value[TRIANGLES], "triangles", mesh->n_triangles);
     code = code ? code : pattern_list(reader, value[SEAMS], "seams", 0, UINT32_MAX);
     if (code)
         return code;

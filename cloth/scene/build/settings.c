@@ -11,7 +11,7 @@
 enum { MAX_PATH = 600 };
 
 /* These change no state; phases are in the settings of each phase. */
-static bool is_free(const char *path)
+static bool settings_is_free(const char *path)
 {
     static const char *const keys[] = {"name", "phases", "output", "time.end"};
     bool is = false;
@@ -21,7 +21,7 @@ static bool is_free(const char *path)
 }
 
 /* A line is one value, whatever is in it. */
-static void put_line(FILE *file, const char *path, const char *value)
+static void settings_put_line(FILE *file, const char *path, const char *value)
 {
     fprintf(file, "%s: ", path);
     for (; *value; value++)
@@ -33,10 +33,10 @@ static void put_node(FILE *file, const struct scene_tree *tree, int node, const 
 {
     char inner[MAX_PATH];
     const char *value = scene_tree_scalar(tree, node);
-    if (is_free(path))
+    if (settings_is_free(path))
         return;
     if (value)
-        put_line(file, path, value);
+        settings_put_line(file, path, value);
     for (size_t i = 0; !value && i < scene_tree_length(tree, node); i++) {
         if (scene_tree_is(tree, node, YAML_SEQUENCE_NODE)) {
             snprintf(inner, sizeof inner, "%s[%zu]", path, i);

@@ -23,24 +23,24 @@ struct shorts {
     double (*box)[2][3]; /* by the lowest vertex of a set, m */
 };
 
-static double length_of(const struct shorts *shorts, const struct mesh_edge *edge)
+static double short_length_of(const struct shorts *shorts, const struct mesh_edge *edge)
 {
     return mesh_length(shorts->rest, edge->triangle, edge->a, edge->b);
 }
 
-static bool is_short(const struct shorts *shorts, const struct mesh_edge *edge)
+static bool short_is(const struct shorts *shorts, const struct mesh_edge *edge)
 {
-    return edge->opposite[0] != UINT32_MAX && length_of(shorts, edge) < shorts->thickness;
+    return edge->opposite[0] != UINT32_MAX && short_length_of(shorts, edge) < shorts->thickness;
 }
 
-static void find_shorts(struct shorts *shorts, const struct mesh_edges *edges)
+static void short_find(struct shorts *shorts, const struct mesh_edges *edges)
 {
     cloth_sets_start(shorts->set, shorts->rest->n_vertices);
     for (uint32_t e = 0; e < edges->n; e++) {
         const struct mesh_edge *edge = edges->edge + e;
-        if (!is_short(shorts, edge))
+        if (!short_is(shorts, edge))
             continue;
-        const double length = length_of(shorts, edge);
+        const double length = short_length_of(shorts, edge);
         shorts->shortest = length < shorts->least ? edge : shorts->shortest;
         shorts->least = fmin(shorts->least, length);
         shorts->n++;
@@ -82,12 +82,12 @@ static int join_shorts(struct model *model, const struct shorts *shorts, uint32_
     return CLOTH_OK;
 }
 
-static int take_cloth(struct model *model, uint32_t c, struct shorts *shorts,
-                      const struct mesh_edges *edges, const struct scene_tree *tree,
-                      struct cloth_error *error)
+static int short_take_cloth(struct model *model, uint32_t c, struct shorts *shorts,
+                            const struct mesh_edges *edges, const struct scene_tree *tree,
+                            struct cloth_error *error)
 {
     const int list = scene_tree_get(tree, 1, "cloths");
-    find_shorts(shorts, edges);
+    short_find(shorts, edges);
     if (!shorts->n || shorts->n > MOST_SHARE * edges->n)
         return CLOTH_OK;
     find_extent(shorts);
@@ -134,7 +134,7 @@ int scene_build_short_edges(struct model *model, struct scene_tree *tree, struct
         shorts.box = scene_build_array(rest->n_vertices, sizeof *shorts.box, error);
         code = shorts.set && shorts.box ? mesh_edges_find(&edges, rest, error) : error->code;
         if (!code)
-            code = take_cloth(model, c, &shorts, &edges, tree, error);
+            code = short_take_cloth(model, c, &shorts, &edges, tree, error);
         mesh_edges_free(&edges);
         free(shorts.set);
         free(shorts.box);

@@ -73,7 +73,7 @@ static int find_surface(const struct model *model, uint32_t *number, const struc
     return obstacle != UINT32_MAX ? CLOTH_OK : no_surface(model, name, tree, node, error);
 }
 
-static bool is_of(const struct model_rub *pair, const uint32_t of[2])
+static bool build_sides_is_of(const struct model_rub *pair, const uint32_t of[2])
 {
     return (pair->of[0] == of[0] && pair->of[1] == of[1]) ||
            (pair->of[0] == of[1] && pair->of[1] == of[0]);
@@ -88,7 +88,7 @@ static int build_pair(struct model *model, uint32_t i, const struct scene_tree *
     for (size_t k = 0; k < 2 && !code; k++)
         code = find_surface(model, pairs[i].of + k, tree, scene_tree_item(tree, of, k), error);
     for (uint32_t k = 0; k < i && !code; k++)
-        if (is_of(pairs + k, pairs[i].of))
+        if (build_sides_is_of(pairs + k, pairs[i].of))
             code = scene_tree_fail(tree, of, error,
                                    "contact.pairs[%u] and contact.pairs[%u] are of the same two; "
                                    "one is expected",

@@ -22,7 +22,7 @@ struct folder {
 /* ---- Its cloths ---- */
 
 /* The text behind `o `, without the end of the line; NULL: the line is another one. */
-static const char *name_of(char *line)
+static const char *build_start_name_of(char *line)
 {
     line[strcspn(line, "\r\n")] = '\0';
     return line[0] == 'o' && line[1] == ' ' ? line + 2 : NULL;
@@ -35,7 +35,7 @@ static void scan_cloths(FILE *file, const char *wanted, struct folder *folder)
     size_t room = 0;
     bool here = false;
     while (getline(&line, &room, file) >= 0) {
-        const char *name = name_of(line);
+        const char *name = build_start_name_of(line);
         if (name) {
             here = !folder->found && !strcmp(name, wanted);
             folder->first = here ? folder->n_all : folder->first;
@@ -89,7 +89,7 @@ static int check_from_frame(const struct scene_settled *from, uint32_t n_frames,
 }
 
 /* The number of a frame as files count; one that does not fit becomes a number that no file has. */
-static uint32_t frame_of(const struct scene_settled *from)
+static uint32_t build_start_frame_of(const struct scene_settled *from)
 {
     return from->frame == SCENE_LAST_FRAME ? MESH_LAST_FRAME
            : from->frame < MESH_LAST_FRAME ? (uint32_t)from->frame
@@ -97,8 +97,9 @@ static uint32_t frame_of(const struct scene_settled *from)
 }
 
 /* place: of all vertices in the frame, m. */
-static int take_places(struct model_cloth *cloth, const struct folder *folder, const double *place,
-                       const struct scene_tree *tree, int node, struct cloth_error *error)
+static int build_start_take_places(struct model_cloth *cloth, const struct folder *folder,
+                                   const double *place, const struct scene_tree *tree, int node,
+                                   struct cloth_error *error)
 {
     const uint32_t n = cloth->mesh.n_vertices;
     cloth->start = scene_build_array(n, 6 * sizeof *cloth->start, error);
@@ -116,21 +117,21 @@ static int take_places(struct model_cloth *cloth, const struct folder *folder, c
     return cloth->start ? CLOTH_OK : error->code;
 }
 
-static int take_frame(struct model_cloth *cloth, const struct scene_settled *from,
-                      const struct folder *folder, const struct scene_tree *tree, int node,
-                      struct cloth_error *error)
+static int build_start_take_frame(struct model_cloth *cloth, const struct scene_settled *from,
+                                  const struct folder *folder, const struct scene_tree *tree,
+                                  int node, struct cloth_error *error)
 {
     struct cloth_error inner = {0};
     uint32_t n_frames = 0;
     double *places = NULL;
-    int code =
-        mesh_read_pc2_frame(folder->pc2, folder->n_all, frame_of(from), &n_frames, &places, &inner);
+    int code = mesh_read_pc2_frame(folder->pc2, folder->n_all, build_start_frame_of(from),
+                                   &n_frames, &places, &inner);
     code =
         scene_build_blame(code, &inner, "from", tree, scene_tree_get(tree, node, "frames"), error);
     if (!code)
         code = check_from_frame(from, n_frames, folder, tree, node, error);
     if (!code)
-        code = take_places(cloth, folder, places, tree, node, error);
+        code = build_start_take_places(cloth, folder, places, tree, node, error);
     free(places);
     return code;
 }
@@ -168,7 +169,7 @@ int scene_build_settled(struct model *model, struct model_cloth *cloth, struct s
     if (!code)
         code = find_cloth(&folder, from.cloth ? from.cloth : cloth->name, cloth, tree, node, error);
     if (!code)
-        code = take_frame(cloth, &from, &folder, tree, node, error);
+        code = build_start_take_frame(cloth, &from, &folder, tree, node, error);
     free(folder.obj);
     free(folder.pc2);
     free(path);

@@ -21,7 +21,7 @@ struct unusual {
     scene_build_warn((of)->model, (of)->tree, node, (of)->error, __VA_ARGS__)
 
 /* Number i of a node, a number or a list of n of them; 0: it has no node. */
-static double number_of(const struct unusual *of, int node, size_t i, int *at, size_t *n)
+static double unusual_number_of(const struct unusual *of, int node, size_t i, int *at, size_t *n)
 {
     const bool list = scene_tree_is(of->tree, node, YAML_SEQUENCE_NODE);
     double value = 0;
@@ -37,7 +37,7 @@ static int warn_of_density(const struct unusual *of, const char *name, int mater
     const int node = scene_tree_get(of->tree, material, "density");
     int at;
     size_t n;
-    const double value = number_of(of, node, 0, &at, &n);
+    const double value = unusual_number_of(of, node, 0, &at, &n);
     if (!n || (value >= LEAST_DENSITY && value <= MOST_DENSITY))
         return CLOTH_OK;
     return WARN(of, at,
@@ -52,7 +52,7 @@ static int warn_of_rigidity(const struct unusual *of, const char *name, int mate
     size_t n = 1;
     for (size_t i = 0; i < n; i++) {
         int at;
-        const double value = number_of(of, node, i, &at, &n);
+        const double value = unusual_number_of(of, node, i, &at, &n);
         if (n && value > MOST_RIGIDITY)
             return WARN(of, at,
                         "materials.%.60s.bending.rigidity is %g N m; fabrics have up to %g: is "
@@ -70,7 +70,7 @@ static int warn_of_stretch(const struct unusual *of, const char *name, int mater
     size_t n = 1;
     for (size_t i = 0; i < n; i++) {
         int at;
-        const double value = number_of(of, node, i, &at, &n);
+        const double value = unusual_number_of(of, node, i, &at, &n);
         if (n && !(value > 0))
             return WARN(of, at, "materials.%.60s.stretch is 0%s: nothing resists being stretched%s",
                         name, n > 1 ? along[i] : "", n > 1 ? " there" : "");

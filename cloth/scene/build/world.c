@@ -12,7 +12,7 @@
 static const double MAX_STEPS = 4294967294;  /* of a run: steps are counted in 32 bits */
 static const double MAX_FRAMES = 2147483647; /* of a run: as many as PC2 can count */
 
-static void out_of_memory(struct cloth_error *error)
+static void world_out_of_memory(struct cloth_error *error)
 {
     cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
 }
@@ -21,7 +21,7 @@ void *scene_build_array(size_t n, size_t size, struct cloth_error *error)
 {
     void *array = calloc(n ? n : 1, size);
     if (!array)
-        out_of_memory(error);
+        world_out_of_memory(error);
     return array;
 }
 
@@ -29,7 +29,7 @@ void *scene_build_grow(void *list, size_t n, size_t more, size_t size, struct cl
 {
     char *grown = realloc(list, (n + more) * size);
     if (!grown) {
-        out_of_memory(error);
+        world_out_of_memory(error);
         return NULL;
     }
     memset(grown + n * size, 0, more * size);
@@ -49,7 +49,7 @@ char *scene_build_place(const struct scene_tree *tree, int node, struct cloth_er
 {
     char *place = scene_tree_place(tree, node);
     if (!place)
-        out_of_memory(error);
+        world_out_of_memory(error);
     return place;
 }
 
@@ -83,7 +83,8 @@ int scene_build_blame(int code, const struct cloth_error *inner, const char *wha
 }
 
 /* The scene's name, else the file's without folder and ending. */
-static int name_scene(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+static int world_name_scene(struct model *model, const struct scene_tree *tree,
+                            struct cloth_error *error)
 {
     const char *slash = strrchr(tree->path, '/');
     if (model->name)
@@ -198,7 +199,7 @@ static void build_count(struct model *model, const struct scene_tree *tree)
 int scene_build_world(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     build_count(model, tree);
-    int code = name_scene(model, tree, error);
+    int code = world_name_scene(model, tree, error);
     if (!code)
         code = build_time(model, tree, error);
     if (!code)

@@ -18,7 +18,7 @@ struct name {
     uint32_t panel;
 };
 
-static int compare_names(const void *a, const void *b)
+static int pattern_compare_names(const void *a, const void *b)
 {
     return strcmp(((const struct name *)a)->text, ((const struct name *)b)->text);
 }
@@ -28,7 +28,7 @@ static int sort_names(const struct pattern_reader *reader, int node, struct name
     const struct garment_pattern *pattern = reader->pattern;
     for (uint32_t p = 0; p < pattern->n_panels; p++)
         names[p] = (struct name){pattern->panel[p].name, p};
-    qsort(names, pattern->n_panels, sizeof *names, compare_names);
+    qsort(names, pattern->n_panels, sizeof *names, pattern_compare_names);
     for (uint32_t p = 1; p < pattern->n_panels; p++)
         if (!strcmp(names[p - 1].text, names[p].text))
             return pattern_wrong(reader, node, "two panels have the name '%s'", names[p].text);
@@ -51,7 +51,7 @@ static int read_stitch_side(const struct pattern_reader *reader, const struct na
         return reader->error->code;
     const struct name key = {text, 0};
     const struct name *found =
-        bsearch(&key, names, pattern->n_panels, sizeof *names, compare_names);
+        bsearch(&key, names, pattern->n_panels, sizeof *names, pattern_compare_names);
     if (!found)
         code = pattern_wrong(reader, value[0], "there is no panel '%s'", text);
     free(text);

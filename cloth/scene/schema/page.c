@@ -121,7 +121,7 @@ struct path {
 };
 
 /* The path of a key in a map, and of the keys behind it. */
-static struct path path_of(const char *map, const struct scene_rule *key)
+static struct path page_path_of(const char *map, const struct scene_rule *key)
 {
     struct path path;
     snprintf(path.text, sizeof path.text, "%s%s%s", map, *map ? "." : "", key->key);
@@ -163,7 +163,7 @@ static void print_rows(FILE *file, const struct scene_rule *of, const char *path
             shared = key->shared;
             continue;
         }
-        print_row(file, of, key, path_of(path, key).text);
+        print_row(file, of, key, page_path_of(path, key).text);
         if (map_of(key) && !key->section)
             print_rows(file, map_of(key), path_inside(path, key).text, NULL);
     }
@@ -210,7 +210,7 @@ static void print_section(struct page *page, const struct scene_rule *key, const
     if (is_printed(page, key->section))
         return;
     print_head(page->file, key->section, level);
-    fprintf(page->file, "\n`%s`: %s.\n", path_of(path, key).text, key->about);
+    fprintf(page->file, "\n`%s`: %s.\n", page_path_of(path, key).text, key->about);
     print_text(page->file, key->section);
     if (!map_of(key))
         return;
@@ -256,7 +256,7 @@ static void list_keys(FILE *file, const struct scene_rule *of, const char *path)
 {
     for (const struct scene_rule *key = of->inside; key->key; key++) {
         char expected[200];
-        fprintf(file, "%s: %s; ", path_of(path, key).text,
+        fprintf(file, "%s: %s; ", page_path_of(path, key).text,
                 scene_rule_expected(key, expected, sizeof expected));
         if (key->fallback)
             fprintf(file, "default %s\n", key->fallback);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int no_memory(struct cloth_error *error)
+static int store_no_memory(struct cloth_error *error)
 {
     return cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
 }
@@ -19,7 +19,7 @@ static void *member_of(void *base, const struct scene_field *field)
 static int store_text(char **field, const char *text, struct cloth_error *error)
 {
     *field = strdup(text);
-    return *field ? CLOTH_OK : no_memory(error);
+    return *field ? CLOTH_OK : store_no_memory(error);
 }
 
 /* A number into each of the doubles that the field has. */
@@ -69,7 +69,7 @@ int scene_store_presence(void *base, const struct scene_rule *rule, const struct
         return CLOTH_OK;
     char **place = member_of(base, &rule->place);
     *place = scene_tree_place(tree, node);
-    return *place ? CLOTH_OK : no_memory(error);
+    return *place ? CLOTH_OK : store_no_memory(error);
 }
 
 void *scene_store_items(void *base, const struct scene_rule *rule, size_t n, size_t *step,
@@ -85,7 +85,7 @@ void *scene_store_items(void *base, const struct scene_rule *rule, size_t n, siz
     *array = calloc(n ? n : 1, rule->item);
     *(uint32_t *)member_of(base, &rule->count) = *array ? (uint32_t)n : 0;
     if (!*array)
-        no_memory(error);
+        store_no_memory(error);
     return *array;
 }
 

@@ -21,7 +21,7 @@ struct edit {
 /* No scene is as deep; each part of a path is a call. */
 enum { MAX_PARTS = 100 };
 
-static int out_of_memory(struct cloth_error *error)
+static int edit_out_of_memory(struct cloth_error *error)
 {
     cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
     return 0;
@@ -29,7 +29,7 @@ static int out_of_memory(struct cloth_error *error)
 
 /* Adds a node of the type, tag and text of another, without its children. Returns its number, or 0.
  */
-static int add_node(struct edit *edit, const yaml_node_t *like)
+static int edit_add_node(struct edit *edit, const yaml_node_t *like)
 {
     yaml_document_t *document = &edit->tree->document;
     int node = 0;
@@ -41,7 +41,7 @@ static int add_node(struct edit *edit, const yaml_node_t *like)
     else
         node = yaml_document_add_mapping(document, like->tag, YAML_FLOW_MAPPING_STYLE);
     if (!node)
-        return out_of_memory(edit->error);
+        return edit_out_of_memory(edit->error);
     scene_tree_node(edit->tree, node)->start_mark = edit->mark;
     return node;
 }
@@ -71,12 +71,12 @@ static int graft_nodes(struct edit *edit, const yaml_document_t *from)
     struct scene_tree *tree = edit->tree;
     int shift = (int)(tree->document.nodes.top - tree->document.nodes.start);
     for (const yaml_node_t *node = from->nodes.start; node < from->nodes.top; node++)
-        if (!add_node(edit, node))
+        if (!edit_add_node(edit, node))
             return 0;
     int to = shift + 1;
     for (const yaml_node_t *node = from->nodes.start; node < from->nodes.top; node++, to++)
         if (!copy_children(tree, to, node, shift))
-            return out_of_memory(edit->error);
+            return edit_out_of_memory(edit->error);
     return shift + 1;
 }
 
@@ -86,7 +86,7 @@ static int edit_fails(const struct edit *edit, const char *what)
     if (place)
         cloth_fail(edit->error, CLOTH_E_INPUT, "%s: %s", place, what);
     else
-        out_of_memory(edit->error);
+        edit_out_of_memory(edit->error);
     free(place);
     return 0;
 }
@@ -97,14 +97,14 @@ static int add_value(struct edit *edit, const char *text)
     yaml_parser_t parser;
     yaml_document_t document;
     if (!yaml_parser_initialize(&parser))
-        return out_of_memory(edit->error);
+        return edit_out_of_memory(edit->error);
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, strlen(text));
     int node = 0;
     if (!yaml_parser_load(&parser, &document)) {
         char what[256];
         snprintf(what, sizeof what, "the value is not YAML: %s", parser.problem);
-        node =
-            parser.error == YAML_MEMORY_ERROR ? out_of_memory(edit->error) : edit_fails(edit, what);
+        node = parser.error == YAML_MEMORY_ERROR ? edit_out_of_memory(edit->error)
+                                                 : edit_fails(edit, what);
     } else {
         size_t line;
         if (scene_tree_circle(&document, &line))
@@ -129,22 +129,22 @@ static int own_node(struct edit *edit, int node, yaml_node_type_t type)
     if (node == 1 && type == YAML_MAPPING_NODE)
         return node;
     if (!node || scene_tree_empty(tree, node))
-        return add_node(edit, &like);
+        return edit_add_node(edit, &like);
     if (!scene_tree_is(tree, node, type)) {
         char what[160];
         snprintf(what, sizeof what, "'%.*s' is not a %s", (int)(edit->at - edit->start),
                  edit->start, type == YAML_SEQUENCE_NODE ? "list" : "map");
         return edit_fails(edit, what);
     }
-    int copy = add_node(edit, &like);
+    int copy = edit_add_node(edit, &like);
     if (!copy)
         return 0;
     const yaml_node_t *from = scene_tree_node(tree, node);
     scene_tree_node(tree, copy)->start_mark = from->start_mark;
-    return copy_children(tree, copy, from, 0) ? copy : out_of_memory(edit->error);
+    return copy_children(tree, copy, from, 0) ? copy : edit_out_of_memory(edit->error);
 }
 
-static int put_value(struct edit *edit, int node);
+static int edit_put_value(struct edit *edit, int node);
 
 static int no_path(const struct edit *edit)
 {
@@ -152,16 +152,16 @@ static int no_path(const struct edit *edit)
                                         : "KEY=VALUE is expected, such as time.h=0.002");
 }
 
-static int add_key(struct edit *edit, const char *name, size_t length)
+static int edit_add_key(struct edit *edit, const char *name, size_t length)
 {
     yaml_node_t key = {.type = YAML_SCALAR_NODE};
     key.data.scalar.value = (yaml_char_t *)name;
     key.data.scalar.length = length;
     key.data.scalar.style = YAML_PLAIN_SCALAR_STYLE;
-    return add_node(edit, &key);
+    return edit_add_node(edit, &key);
 }
 
-static int put_key(struct edit *edit, int node)
+static int edit_put_key(struct edit *edit, int node)
 {
     struct scene_tree *tree = edit->tree;
     const char *name = edit->at + (*edit->at == '.');
@@ -179,17 +179,17 @@ static int put_key(struct edit *edit, int node)
     }
     const bool ends = edit->value ? !name[length] : name[length] == '=';
     edit->at = name + length;
-    int value = put_value(edit, i < n ? scene_tree_pair(tree, map, i).value : 0);
+    int value = edit_put_value(edit, i < n ? scene_tree_pair(tree, map, i).value : 0);
     if (value && ends && scene_tree_empty(tree, value)) { /* the key has its default again */
         if (i < n)
             scene_edit_remove(tree, map, i);
         return map;
     }
-    int key = value ? add_key(edit, name, length) : 0;
+    int key = value ? edit_add_key(edit, name, length) : 0;
     if (key && i < n)
         scene_tree_node(tree, map)->data.mapping.pairs.start[i] = (yaml_node_pair_t){key, value};
     else if (key && !yaml_document_append_mapping_pair(&tree->document, map, key, value))
-        key = out_of_memory(edit->error);
+        key = edit_out_of_memory(edit->error);
     return key ? map : 0;
 }
 
@@ -211,16 +211,16 @@ static int put_index(struct edit *edit, int node)
         return edit_fails(edit, what);
     }
     edit->at = end + 1;
-    int value = put_value(edit, i < n ? scene_tree_item(tree, list, i) : 0);
+    int value = edit_put_value(edit, i < n ? scene_tree_item(tree, list, i) : 0);
     if (value && i < n)
         scene_tree_node(tree, list)->data.sequence.items.start[i] = value;
     else if (value && !yaml_document_append_sequence_item(&tree->document, list, value))
-        return out_of_memory(edit->error);
+        return edit_out_of_memory(edit->error);
     return value ? list : 0;
 }
 
 /* The replacement of `node` (0: none) after following the rest of the path; 0 with an error. */
-static int put_value(struct edit *edit, int node)
+static int edit_put_value(struct edit *edit, int node)
 {
     if (edit->value && !*edit->at)
         return edit->value;
@@ -232,7 +232,7 @@ static int put_value(struct edit *edit, int node)
         return add_value(edit, edit->at + 1);
     if (*edit->at == '[')
         return put_index(edit, node);
-    return put_key(edit, node);
+    return edit_put_key(edit, node);
 }
 
 static bool starts_no_path(const char *text)
@@ -267,7 +267,7 @@ static int edit_by_options(struct scene_tree *tree, bool phases, struct cloth_er
         if (starts_no_path(text))
             no_path(&edit);
         else
-            put_value(&edit, 1);
+            edit_put_value(&edit, 1);
         if (error->code)
             return error->code;
     }
@@ -291,7 +291,7 @@ static int edit_by_phase(struct scene_tree *tree, uint32_t phase, struct cloth_e
         else if (key && starts_no_path(key))
             no_path(&edit);
         else if (key)
-            put_value(&edit, 1);
+            edit_put_value(&edit, 1);
     }
     return error->code;
 }
@@ -309,9 +309,9 @@ int scene_edit_default(struct scene_tree *tree, int map, const char *key, const 
 {
     struct edit edit = {tree, {.index = SCENE_BY_DEFAULT}, value, value, error, 0, NULL, 0};
     int value_node = add_value(&edit, value);
-    int key_node = value_node ? add_key(&edit, key, strlen(key)) : 0;
+    int key_node = value_node ? edit_add_key(&edit, key, strlen(key)) : 0;
     if (key_node && !yaml_document_append_mapping_pair(&tree->document, map, key_node, value_node))
-        key_node = out_of_memory(error);
+        key_node = edit_out_of_memory(error);
     return key_node ? CLOTH_OK : error->code;
 }
 

@@ -33,8 +33,8 @@ static int read_all(FILE *file, char **bytes, size_t *size)
 }
 
 /* A scene may come through a pipe, too. */
-static int read_bytes(const char *path, const struct scene_words *words, char **bytes, size_t *size,
-                      struct cloth_error *error)
+static int yaml_load_read_bytes(const char *path, const struct scene_words *words, char **bytes,
+                                size_t *size, struct cloth_error *error)
 {
     FILE *file = words == &scene_words ? fopen(path, "rb") : cloth_file_open(path);
     if (!file)
@@ -183,7 +183,7 @@ static int check_maps(const struct scene_tree *tree, const struct scene_words *w
 }
 
 /* Part k of a list or map, keys before their values; 0: there are no more. */
-static int part_of(const yaml_node_t *node, size_t k)
+static int yaml_load_part_of(const yaml_node_t *node, size_t k)
 {
     if (node->type == YAML_SEQUENCE_NODE) {
         const yaml_node_item_t *item = node->data.sequence.items.start + k;
@@ -201,11 +201,11 @@ int scene_tree_circle(const yaml_document_t *document, size_t *line)
     const yaml_node_t *first = document->nodes.start;
     for (const yaml_node_t *node = first; node < document->nodes.top; node++) {
         *line = node->start_mark.line;
-        for (size_t k = 0; part_of(node, k); k++) {
-            const yaml_node_t *part = first + part_of(node, k) - 1;
+        for (size_t k = 0; yaml_load_part_of(node, k); k++) {
+            const yaml_node_t *part = first + yaml_load_part_of(node, k) - 1;
             if (part <= node && part->type != YAML_SCALAR_NODE &&
                 part->end_mark.index >= node->end_mark.index)
-                return part_of(node, k);
+                return yaml_load_part_of(node, k);
         }
     }
     return 0;
@@ -259,7 +259,7 @@ int scene_tree_load(struct scene_tree *tree, const char *path, const struct scen
     char *bytes = NULL;
     size_t size = 0;
     yaml_parser_t parser;
-    int code = read_bytes(path, words, &bytes, &size, error);
+    int code = yaml_load_read_bytes(path, words, &bytes, &size, error);
     if (!code)
         code = check_depth(path, words, bytes, size, error);
     if (!code)

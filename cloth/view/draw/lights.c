@@ -11,7 +11,7 @@
 static const double GOLDEN =
     2.39996322972865332; /* radians: the golden angle, spreads points evenly */
 
-static void cross(const double a[3], const double b[3], double c[3])
+static void lights_cross(const double a[3], const double b[3], double c[3])
 {
     for (int i = 0; i < 3; i++)
         c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
@@ -28,12 +28,12 @@ static void normalise(double a[3])
 static void across(const double d[3], double u[3], double v[3])
 {
     double other[3] = {fabs(d[0]) < 0.7 ? 1 : 0, 0, fabs(d[0]) < 0.7 ? 0 : 1};
-    cross(other, d, u);
+    lights_cross(other, d, u);
     normalise(u);
-    cross(d, u, v);
+    lights_cross(d, u, v);
 }
 
-static void set_vector(float to[4], const double from[3])
+static void lights_set_vector(float to[4], const double from[3])
 {
     for (int k = 0; k < 3; k++)
         to[k] = (float)from[k];
@@ -44,9 +44,9 @@ static void set_sun(struct draw_light_block *block)
     double toward[3] = {-0.50, 1.0, 0.38}, right[3], up[3];
     normalise(toward);
     across(toward, right, up);
-    set_vector(block->toward, toward);
-    set_vector(block->right, right);
-    set_vector(block->up, up);
+    lights_set_vector(block->toward, toward);
+    lights_set_vector(block->right, right);
+    lights_set_vector(block->up, up);
 }
 
 static void set_sky(struct draw_light_block *block)
@@ -56,8 +56,8 @@ static void set_sky(struct draw_light_block *block)
         const double d[3] = {r * cos(a), y, r * sin(a)};
         double right[3], up[3];
         across(d, right, up);
-        set_vector(block->sky[2 * i], d);
-        set_vector(block->sky[2 * i + 1], right);
+        lights_set_vector(block->sky[2 * i], d);
+        lights_set_vector(block->sky[2 * i + 1], right);
     }
 }
 

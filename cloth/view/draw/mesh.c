@@ -8,7 +8,7 @@
 enum { COARSE = 3000, MAX_ROUNDS = 3 }; /* triangles that are few enough */
 static const float SHORT = 0.04f;       /* edges that may vanish, in radii of the mesh */
 
-static bool is_short(const float *vertex, uint32_t a, uint32_t b, float longest)
+static bool draw_mesh_is_short(const float *vertex, uint32_t a, uint32_t b, float longest)
 {
     float square = 0;
     for (size_t k = 0; k < 3; k++) {
@@ -22,7 +22,8 @@ static bool is_short(const float *vertex, uint32_t a, uint32_t b, float longest)
 static void join_triangle(const float *vertex, float longest, uint32_t *join, const uint32_t of[3])
 {
     for (int i = 0; i < 3; i++)
-        if (join[of[i]] != UINT32_MAX || !is_short(vertex, of[i], of[(i + 1) % 3], longest))
+        if (join[of[i]] != UINT32_MAX ||
+            !draw_mesh_is_short(vertex, of[i], of[(i + 1) % 3], longest))
             return;
     join[of[0]] = join[of[1]] = join[of[2]] = of[0];
 }
@@ -33,7 +34,7 @@ static void join_corner(const float *vertex, float longest, uint32_t *join, cons
 {
     for (int k = 1; k < 3 && join[of[corner]] == UINT32_MAX; k++) {
         const uint32_t other = of[(corner + k) % 3];
-        if (is_short(vertex, of[corner], other, longest))
+        if (draw_mesh_is_short(vertex, of[corner], other, longest))
             join[of[corner]] = join[other];
     }
 }

@@ -15,7 +15,7 @@ static GLint max_samples(void)
     return max > 1 ? max : 1;
 }
 
-static void make(struct draw_surfaces *surfaces)
+static void surfaces_make(struct draw_surfaces *surfaces)
 {
     static const GLint format[DRAW_SURFACES] = {GL_RGBA8, GL_RGBA8, GL_DEPTH_COMPONENT24};
     static const GLenum attachment[DRAW_SURFACES] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
@@ -41,7 +41,7 @@ int draw_surfaces_start(struct draw_surfaces *surfaces, int width, int height,
         draw_surfaces_free(surfaces);
         *surfaces =
             (struct draw_surfaces){.width = width, .height = height, .samples = max_samples()};
-        make(surfaces);
+        surfaces_make(surfaces);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, surfaces->frame);
     const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);

@@ -1,6 +1,6 @@
 /* The monitor's looks, and its reports where nobody reads them. */
-#include "runtime/base/monitor.h"
 #include "runtime/base/error.h"
+#include "runtime/base/monitor.h"
 #include "tests/support/unit.h"
 
 #include <dirent.h>

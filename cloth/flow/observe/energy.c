@@ -1,8 +1,8 @@
 /* Energies are of the state that the tasks forked so far leave, and do not change it. A spring
  * between two blocks gives half of its own to each. Sums are contributions, so that they are the
  * same for any ranks and threads. */
-#include "cloth/flow/pins/sliders.h"
 #include "cloth/flow/contact/mode.h"
+#include "cloth/flow/pins/sliders.h"
 #include "cloth/flow/run/step.h"
 
 #include "cloth/physics/energy.h"

@@ -102,10 +102,10 @@ struct flow {
 
     /* Rank 0 only. */
     char warning[FLOW_WARNINGS][600]; /* empty: there is none */
-    struct flow_source source; /* until the tables are distributed */
-    uint32_t *vertex;          /* by place; from then on */
-    uint32_t *cloth_first;     /* n_cloths of the model: the first vertex of each among all */
-    struct flow_names names;   /* from then on */
+    struct flow_source source;        /* until the tables are distributed */
+    uint32_t *vertex;                 /* by place; from then on */
+    uint32_t *cloth_first;   /* n_cloths of the model: the first vertex of each among all */
+    struct flow_names names; /* from then on */
     struct flow_unused unused;
     uint32_t *attached; /* from then on: flow_attached */
     struct flow_watched watched;

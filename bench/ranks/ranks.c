@@ -49,8 +49,8 @@ bool ranks_on_hosts(void)
 /* Those of the cloth, and the one that waves the sheet. */
 static const duite_kernel *const *kernels(void)
 {
-    static const duite_kernel *all[1 + FLOW_KERNELS_OF_ALL + 1] = {&sheet_wave_kernel};
-    memcpy(all + 1, flow_kernels(), FLOW_KERNELS_OF_ALL * sizeof *all);
+    static const duite_kernel *all[1 + FLOW_KERNELS_LISTED + 1] = {&sheet_wave_kernel};
+    memcpy(all + 1, flow_kernels(), FLOW_KERNELS_LISTED * sizeof *all);
     return all;
 }
 

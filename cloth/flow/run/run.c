@@ -29,7 +29,8 @@ const duite_kernel *const *flow_kernels(void)
 {
 #define TASK(name)      &flow_kernel_##name.task,
 #define TASK_LESS(name) &flow_kernel_##name##_less,
-    static const duite_kernel *const all[] = {FLOW_KERNELS(TASK) FLOW_KERNELS_IF(TASK_LESS) NULL};
+    static const duite_kernel *const all[FLOW_KERNELS_LISTED + 1] = {
+        FLOW_KERNELS(TASK) FLOW_KERNELS_IF(TASK_LESS) NULL};
     return all;
 }
 

@@ -36,4 +36,8 @@ FLOW_KERNELS(FLOW_KERNEL_EXTERN)
 #define FLOW_KERNEL_EXTERN_LESS(name) extern const duite_kernel flow_kernel_##name##_less;
 FLOW_KERNELS_IF(FLOW_KERNEL_EXTERN_LESS)
 
+/* How many flow_kernels (run.h) lists. */
+#define FLOW_KERNEL_ONE_MORE(name) +1
+enum { FLOW_KERNELS_LISTED = FLOW_KERNELS_OF_ALL FLOW_KERNELS_IF(FLOW_KERNEL_ONE_MORE) };
+
 #endif

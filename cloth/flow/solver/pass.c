@@ -103,7 +103,8 @@ static void begin_solve(struct pass *pass, double *ghosts, size_t n_ghosts)
 
 FLOW_KERNEL_IF(cg_start, part, FLOW_CG, struct flow_block_args,
                (R(table), R(f), W(dv), W(r), W(p), W(q), W(ghosts), W(halo_q), W_IF(part), W_IF(z),
-                W_IF(s), IF_MADE(factor), IF_MADE(basis)))
+                W_IF(s), IF_MADE(factor), IF_MADE(basis)),
+               .side_effects = 0)
 static int cg_start_body(const duite_call *call, const struct cg_start_fields *on)
 {
     struct pass pass = {.call = call,
@@ -292,7 +293,8 @@ FLOW_KERNEL_IF(cg_pass, part, FLOW_CG, struct flow_block_args,
                (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(ghosts),
                 RW(halo_q_next), RW_IF(part), RW_IF(z), RW_IF(s), SUM_ELSE(sums),
                 NEIGHBOURS(halo_q), IF_MADE(factor), IF_MADE(basis), IF_MADE(basis_ghosts),
-                IF_MADE(motion), IF_MADE(lift), IF_MADE(tie_table), TIED(tie_q), TIED(tie_basis)))
+                IF_MADE(motion), IF_MADE(lift), IF_MADE(tie_table), TIED(tie_q), TIED(tie_basis)),
+               .side_effects = 0)
 
 /* The preconditioner as the pass sees it. Motions of groups are the last parameters. */
 static struct flow_preconditioner conditioning(const duite_call *call,

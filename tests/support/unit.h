@@ -71,7 +71,7 @@ void unit_register(struct unit_cases *cases);
     ck_assert_msg(strstr(TEXT, PART) != NULL, "'%s' does not say '%s'", TEXT, PART)
 
 /* Before a variable of a test: FREE(&variable) at the end of its scope. */
-#define UNIT_OWNED(FREE) __attribute__((cleanup(FREE)))
+#define UNIT_OWNED(FREE) __attribute__((cleanup(FREE), unused))
 
 /* The main() of a program that has none of its own: runs what is registered. Returns the exit
  * status: 0 if all passed, else 1. Under mpirun rank 0 prints; a failure on another rank goes to

@@ -3,7 +3,8 @@
 
 #include "cloth/flow/state/state.h"
 
-/* An integrator: its part of a step. A new one is a file and a row of flow_integrators. */
+/* An integrator: its part of a step. A new one is a row here, its rule in model_schemes
+ * (cloth/model/model.c), and two functions in explicit.c or implicit.c. */
 struct flow_integrator {
     /* Forks the part of a step that leaves x and v as they are; NULL: no such part. */
     int (*begin)(struct flow_state *state);

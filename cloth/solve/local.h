@@ -6,8 +6,8 @@
 /* Preconditioners of one block of rows, made of B, the block's own part of S A S + (I - S). B has
  * the inner entries between free rows and the whole diagonals of the rows, to which entries into
  * other blocks, entries to held rows and ties add. They are symmetric and positive definite,
- * leave held rows at zero, and commute with S: a row that may move along a line or plane alone stays
- * in it. Pure functions; nothing is allocated. */
+ * leave held rows at zero, and commute with S: a row that may move along a line or plane alone
+ * stays in it. Pure functions; nothing is allocated. */
 enum solve_local {
     SOLVE_IDENTITY, /* s is q: it has no factor, and nothing applies it */
     SOLVE_JACOBI,   /* the inverses of the 3 x 3 blocks on the diagonal */

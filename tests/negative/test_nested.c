@@ -20,6 +20,7 @@ enum deed {
     FORK_TWICE,
     FORK_OTHER_LAW,
     FORK_UNLISTED,
+    FORK_UNLISTED_THEN_TWICE,
     FORK_AT,
     FORK_WITH_ARGUMENTS,
     FREE,
@@ -104,6 +105,9 @@ static int fork_something(const duite_call *call, const struct args *args)
         return duite_fork(call->rt, kernel, args, 1, &call->param[0].object);
     case FORK_UNLISTED:
         return duite_fork(call->rt, &UNLISTED, NULL, 1, &call->param[0].object);
+    case FORK_UNLISTED_THEN_TWICE:
+        duite_fork(call->rt, &UNLISTED, NULL, 1, &call->param[0].object);
+        return fork_made(call, &TWO, FORK_TWICE);
     default:
         return duite_fork(call->rt, kernel, NULL, 1, &call->param[0].object);
     }
@@ -274,6 +278,18 @@ UNIT_TEST(other_objects)
     with.deed = FREE;
     asks(DUITE_RWP, with, DUITE_E_RIGHT, "duite_free: the object is the caller's");
     asks(DUITE_WP, with, DUITE_E_RIGHT, "duite_free, parameter 0: the task holds wp");
+}
+
+/* A body that goes on after a refused call fails with that one, whatever it is refused later. */
+UNIT_TEST(the_first_refusal_counts)
+{
+    const struct args args = {.deed = FORK_UNLISTED_THEN_TWICE};
+
+    ck_assert_int_eq(DUITE_FORK(rt, &parents[DUITE_RWP], &args, object), DUITE_OK);
+    ck_assert_int_eq(duite_wait(rt), DUITE_E_KERNEL);
+    unit_says(duite_message(), "not listed");
+    ck_assert_int_eq(told, DUITE_E_ACCESS);
+    duite_set(rt, object, NULL);
 }
 
 UNIT_TEST(other_law)

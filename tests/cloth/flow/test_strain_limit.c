@@ -106,9 +106,9 @@ UNIT_TEST(a_free_chain_keeps_its_momentum)
  * which is held. */
 UNIT_TEST(the_longest_step_counts_limits)
 {
-    UNIT_OWNED(flow_source_free) struct flow_source source;
     struct flow_limit limit;
     SETUP(setup_weight(&setup));
+    UNIT_OWNED(flow_source_free) struct flow_source source;
     setup.model.format = SOLVE_HALF;
     setup.material.limit_strain = 0.1;
     setup.material.limit_stiffness = LIMIT;
@@ -154,9 +154,9 @@ static void count(void *to, const struct element *element)
 UNIT_TEST(edges_of_a_grid)
 {
     for (int triangles = 0; triangles < 2; triangles++) {
-        UNIT_OWNED(element_cloths_free) struct element_cloths cloths;
         uint32_t n = 0;
         SETUP(setup_sheet(&setup, 5));
+        UNIT_OWNED(element_cloths_free) struct element_cloths cloths;
         setup.model.format = SOLVE_HALF;
         setup.material.model = triangles ? MODEL_TRIANGLES : MODEL_SPRINGS;
         setup.material.limit_stiffness = 1;

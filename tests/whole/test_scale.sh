@@ -3,7 +3,9 @@
 # the same motion and the same counts. Sizes are powers of two, so all of it is equal to the last bit. Certificates try less for features that
 # are 2 m long (cloth/contact/certificate.c), so it is no larger.
 . "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
 plan_later
+cd "$scratch" || exit 99
 
 # scene SIZE MODE: two sheets fall onto a ball and a floor, and onto each other.
 scene() {

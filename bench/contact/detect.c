@@ -1,5 +1,5 @@
-/* What lies near to what in a sheet of 34,969 vertices in 36 blocks: skins as a run has them, made
- * for a step, met with themselves and each other, and the distance of every pair that comes.
+/* Detection of near pairs in a sheet of 34,969 vertices in 36 blocks: skins as a run has them are
+ * made for a step and met with themselves and each other; each pair that comes is measured.
  * Threads take blocks, then pairs of blocks, one after the other. */
 #include "bench/contact/contact.h"
 #include "bench/contact/shapes.h"

@@ -6,7 +6,7 @@
 #include "cloth/contact/row.h"
 #include "cloth/contact/skin.h"
 
-/* Certified contact of a step, as its main program drives it. In reading order: certify.c is the
+/* Certified contact of a step, as its main program drives it. In reading order: certified.c is the
  * step: solve, look, solve again or cut. pairs.c finds which sides are near each other. meet.c is
  * the task of two sides: it certifies pairs that may touch and lists near ones. touch.c makes the
  * contacts of a block from these lists; they are state. index.c lists contacts by the blocks of
@@ -182,7 +182,7 @@ void flow_contact_ahead(const struct flow *flow, double from, double to,
 void flow_contact_speed(const struct flow_ties *ties, const struct flow_view *view, uint32_t i,
                         phys_vec *speed);
 
-/* N/m: the k of contact_row.h in a step of h. */
+/* N/m: the k of cloth/contact/row.h in a step of h. */
 double flow_contact_stiffness(const struct flow *flow, double h);
 
 /* m: nearer features are contacts. Implicit steps also need features that may come near: rows that

@@ -241,8 +241,8 @@ int flow_contact_tie(struct flow_state *state)
 
 /* ---- Their part of a system ---- */
 
-/* The point of a contact (contact_row.h) after corners have moved for `ahead` seconds at their
- * velocities. */
+/* The point of a contact (cloth/contact/row.h) after corners have moved for `ahead` seconds at
+ * their velocities. */
 static void rows_find_point(const struct flow_ties *ties, const struct flow_view *view,
                             double ahead, uint32_t i, phys_vec *point)
 {

@@ -119,8 +119,8 @@ static const phys_vec *ends_of(const struct touching *t, uint32_t side)
     return NULL;
 }
 
-/* Finds the point of a contact (contact_row.h) at the step's end. Returns false if the two blocks
- * have parted: they have no meeting any more. */
+/* Finds the point of a contact (cloth/contact/row.h) at the step's end. Returns false if the two
+ * blocks have parted: they have no meeting any more. */
 static bool touch_find_point(const struct touching *t, const struct flow_contact *contact,
                              phys_vec *point)
 {

@@ -272,7 +272,8 @@ struct flow_watched {
     size_t n_columns;
 };
 
-/* The triangles of skins (skins.c), block after block: numbers among those of all cloths. */
+/* The triangles of skins (contact/skin_tables.c), block after block: numbers among those of all
+ * cloths. */
 struct flow_skins {
     uint32_t *start; /* a block, and one more: its triangles; NULL: there are no skins */
     uint32_t *triangle;
@@ -381,8 +382,8 @@ double flow_source_inertia(const struct flow_source *source);
  * vertex moves to the centre and as far on. 0 without weights and loads. Local. */
 double flow_source_release(const struct flow_source *source);
 
-/* The scales of contacts (stiffness.c): the stiffness of a contact, N/m; the mean mass of a vertex,
- * kg. Local. */
+/* The scales of contacts (contact/scales.c): the stiffness of a contact, N/m; the mean mass of a
+ * vertex, kg. Local. */
 double flow_source_stiffness(const struct flow_source *source);
 double flow_source_mass(const struct flow_source *source);
 

@@ -170,7 +170,7 @@ static bool lacks_springs(const struct model *model, const struct model_cloth *c
     return lacks;
 }
 
-/* Between all corners of each triangle, for contact (skins.c). */
+/* Between all corners of each triangle, for contact (contact/skin_tables.c). */
 static void link_triangles(const struct visitor *visitor, const struct mesh *mesh)
 {
     for (uint32_t t = 0; t < mesh->n_triangles; t++) {

@@ -1,8 +1,8 @@
 #ifndef CLOTH_SCENE_SCHEMA_NEEDS_H
 #define CLOTH_SCENE_SCHEMA_NEEDS_H
 
-/* What a key does nothing without (struct scene_rule, needs), in words that the page shows, that
- * warnings quote and that scene_build_needs (build/needs.c) understands:
+/* The needs of a key, without which it does nothing (struct scene_rule), in words that the page
+ * shows, that warnings quote and that scene_build_needs (build/needs.c) understands:
  *
  *   [VALUE: ]TERM[ and TERM]...   with VALUE: only where the key has this value
  *   TERM: KEY = VALUE[ or VALUE]...; KEY > NUMBER; KEY[ or KEY]...: one is given; no KEY; or a fact

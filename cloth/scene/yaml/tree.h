@@ -63,8 +63,8 @@ int scene_tree_get(const struct scene_tree *tree, int map, const char *key); /* 
 /* The map of a phase, counted from 0; 0: there is none, or it is no map. */
 int scene_tree_phase(const struct scene_tree *tree, uint32_t phase);
 
-/* What a node is, short and on one line: 3, a list of 2, or a text in quotes. quotes: what stands
- * before a text, the last character also behind it. Returns text, or a constant. */
+/* Describes a node on one line: 3, a list of 2, or a text in quotes. quotes: they stand before a
+ * text, their last character also behind it. Returns text, or a constant. */
 #define SCENE_QUOTES "the text '"
 const char *scene_tree_found(const struct scene_tree *tree, int node, const char *quotes,
                              char *text, size_t size);

@@ -1,10 +1,9 @@
 /* A shadow is cut by evenly spaced lines. The intervals of all triangles along a line are joined,
  * so overlapping triangles count once. */
 #include "cloth/base/memory.h"
-#include "cloth/mesh/detail/vector.h"
+#include "cloth/base/vector.h"
 #include "cloth/mesh/mesh.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 enum { LINES = 2048 };
@@ -47,8 +46,8 @@ static void project_vertices(struct shadow *shadow, const double axis[3])
     shadow_find_frame(axis, along, across);
     for (uint32_t v = 0; v < shadow->shape->n_vertices; v++) {
         const double *x = shadow->shape->position + 3 * (size_t)v;
-        shadow->at[v][0] = along[0] * x[0] + along[1] * x[1] + along[2] * x[2];
-        shadow->at[v][1] = across[0] * x[0] + across[1] * x[1] + across[2] * x[2];
+        shadow->at[v][0] = cloth_dot(along, x);
+        shadow->at[v][1] = cloth_dot(across, x);
         low = fmin(low, shadow->at[v][1]);
         high = fmax(high, shadow->at[v][1]);
     }

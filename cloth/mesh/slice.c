@@ -2,8 +2,8 @@
 #include "cloth/mesh/slice.h"
 #include "cloth/base/memory.h"
 #include "cloth/base/sets.h"
+#include "cloth/base/vector.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,12 +28,7 @@ static bool slice_cut_triangle(struct slice_segment *segment, const struct slice
         if ((mesh->height[a] < 0) != (mesh->height[b] < 0))
             cut_edge(&segment->end[n++], mesh, a, b);
     }
-    double square = 0;
-    for (int k = 0; k < 3 && n == 2; k++) {
-        const double d = segment->end[0].place[k] - segment->end[1].place[k];
-        square += d * d;
-    }
-    segment->length = sqrt(square);
+    segment->length = n == 2 ? cloth_distance(segment->end[0].place, segment->end[1].place) : 0;
     return n == 2;
 }
 
@@ -78,16 +73,10 @@ int slice_make(struct slice *slice, const struct slice_mesh *mesh, struct cloth_
     struct cloth_list list = {0};
     struct slice_segment segment;
     int code = CLOTH_OK;
-    *slice = (struct slice){0};
     for (uint32_t t = 0; t < mesh->n_triangles && !code; t++)
-        if (slice_cut_triangle(&segment, mesh, t)) {
-            struct slice_segment *next = cloth_list_add(&list, sizeof segment, 1, error);
-            code = next ? CLOTH_OK : CLOTH_E_MEMORY;
-            if (next)
-                *next = segment;
-        }
-    slice->n = (uint32_t)list.n;
-    slice->segment = list.items;
+        if (slice_cut_triangle(&segment, mesh, t))
+            code = cloth_list_put(&list, &segment, sizeof segment, error);
+    *slice = (struct slice){.n = (uint32_t)list.n, .segment = list.items};
     return code ? code : slice_join(slice, error);
 }
 
@@ -106,16 +95,10 @@ static int compare_points(const void *a, const void *b)
     return (p[1] > q[1]) - (p[1] < q[1]);
 }
 
-/* Twice the area of a triangle, above 0 if it is counterclockwise. */
-static double slice_turn(const double a[2], const double b[2], const double c[2])
-{
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
 /* Goes on with a chain of k points, of which those from `lower` on may be dropped. */
 static uint32_t extend(double (*chain)[2], uint32_t k, uint32_t lower, const double point[2])
 {
-    while (k >= lower && slice_turn(chain[k - 2], chain[k - 1], point) <= 0)
+    while (k >= lower && cloth_turn(chain[k - 2], chain[k - 1], point) <= 0)
         k--;
     memcpy(chain[k], point, sizeof *chain);
     return k + 1;
@@ -156,7 +139,7 @@ double slice_around(const double (*hull)[2], uint32_t n)
 bool slice_inside(const double (*hull)[2], uint32_t n, const double point[2])
 {
     for (uint32_t i = 0; i < n; i++)
-        if (slice_turn(hull[i], hull[(i + 1) % n], point) < 0)
+        if (cloth_turn(hull[i], hull[(i + 1) % n], point) < 0)
             return false;
     return n >= 3;
 }

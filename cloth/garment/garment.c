@@ -4,7 +4,6 @@
 #include "cloth/base/memory.h"
 #include "cloth/garment/detail/flat.h"
 #include "cloth/garment/detail/meshing.h"
-#include "cloth/garment/detail/seams.h"
 #include "cloth/physics/curve.h"
 
 #include <math.h>
@@ -20,14 +19,28 @@ static const uint32_t MOST = (uint32_t)1 << 27;
  * about 0.365 P / h, since its vertices are nearer to each other. */
 static const double INSIDE = 1.155, AROUND = 0.365;
 
-static double first_spacing(const struct meshing *meshing, double n)
+static void measure_pattern(const struct garment_pattern *pattern, double *area, double *around)
 {
-    double area = 0, around = 0;
-    for (uint32_t p = 0; p < meshing->pattern->n_panels; p++) {
-        area += fabs(garment_panel_area(&meshing->pattern->panel[p]));
-        for (uint32_t e = meshing->first[p]; e < meshing->first[p + 1]; e++)
-            around += meshing->edge[e].curve.length;
+    *area = *around = 0;
+    for (uint32_t p = 0; p < pattern->n_panels; p++) {
+        *area += fabs(garment_panel_area(&pattern->panel[p]));
+        for (uint32_t e = 0; e < pattern->panel[p].n_edges; e++)
+            *around += garment_edge_length(&pattern->panel[p], e);
     }
+}
+
+double garment_vertices(const struct garment_pattern *pattern, double edge)
+{
+    double area, around;
+    measure_pattern(pattern, &area, &around);
+    return INSIDE * area / (edge * edge) + AROUND * around / edge;
+}
+
+/* The spacing that gives about n vertices. */
+static double first_spacing(const struct garment_pattern *pattern, double n)
+{
+    double area, around;
+    measure_pattern(pattern, &area, &around);
     const double a = INSIDE * area, b = AROUND * around;
     return (b + sqrt(b * b + 4 * a * n)) / (2 * n);
 }
@@ -43,7 +56,7 @@ static double next_spacing(double spacing, double n, double wanted, double fine,
 
 static int mesh_by_count(struct meshing *meshing, uint32_t wanted, struct cloth_error *error)
 {
-    double spacing = first_spacing(meshing, wanted), best = spacing, least = INFINITY;
+    double spacing = first_spacing(meshing->pattern, wanted), best = spacing, least = INFINITY;
     double fine = 0, coarse = INFINITY; /* spacings that gave too many and too few */
     int code = CLOTH_OK;
     for (int k = 0; k < TRIES && least > (k < EARLY ? CLOSE : FAIR) && !code; k++) {
@@ -65,20 +78,8 @@ static int mesh_by_count(struct meshing *meshing, uint32_t wanted, struct cloth_
     return code;
 }
 
-double garment_vertices(const struct garment_pattern *pattern, double edge)
-{
-    double n = 0;
-    for (uint32_t p = 0; p < pattern->n_panels; p++) {
-        const struct garment_panel *panel = pattern->panel + p;
-        n += INSIDE * fabs(garment_panel_area(panel)) / (edge * edge);
-        for (uint32_t e = 0; e < panel->n_edges; e++)
-            n += AROUND * garment_edge_length(panel, e) / edge;
-    }
-    return n;
-}
-
-static int garment_check_fineness(const struct garment_fineness *fineness,
-                                  const struct garment_pattern *pattern, struct cloth_error *error)
+static int check_fineness(const struct garment_fineness *fineness,
+                          const struct garment_pattern *pattern, struct cloth_error *error)
 {
     if (fineness->vertices && (fineness->vertices < 3 || fineness->vertices > MOST))
         return cloth_fail(error, CLOTH_E_INPUT, "%u vertices cannot be had: 3 to %u",
@@ -93,8 +94,8 @@ static int garment_check_fineness(const struct garment_fineness *fineness,
     return CLOTH_OK;
 }
 
-static int garment_make_room(struct garment *garment, const struct meshing *meshing,
-                             struct cloth_error *error)
+static int make_room(struct garment *garment, const struct meshing *meshing,
+                     struct cloth_error *error)
 {
     const struct garment_pattern *pattern = meshing->pattern;
     uint64_t n = 0, n_triangles = 0;
@@ -120,7 +121,7 @@ static int garment_make_room(struct garment *garment, const struct meshing *mesh
 
 /* Maya's rotation x, y, z: the vector turns about x first. Only the first two columns are needed,
  * since panels are flat. */
-static void garment_axes_of(const double degrees[3], double axis[2][3])
+static void panel_axes(const double degrees[3], double axis[2][3])
 {
     double c[3], s[3];
     for (int k = 0; k < 3; k++)
@@ -140,7 +141,7 @@ static void put_piece(struct garment *garment, struct meshing *meshing, uint32_t
     struct meshing_panel *of = &meshing->panel[p];
     const uint32_t n = of->plane.n, n_triangles = of->plane.n_triangles;
     double axis[2][3];
-    garment_axes_of(panel->rotate, axis);
+    panel_axes(panel->rotate, axis);
     for (uint32_t v = 0; v < n; v++) {
         const double *uv = of->plane.place[v], x = of->clockwise ? -uv[0] : uv[0];
         memcpy(garment->uv[first + v], uv, sizeof garment->uv[0]);
@@ -158,10 +159,9 @@ static void put_piece(struct garment *garment, struct meshing *meshing, uint32_t
     of->start = NULL; /* the garment's now */
 }
 
-static int garment_put_all(struct garment *garment, struct meshing *meshing,
-                           struct cloth_error *error)
+static int put_pieces(struct garment *garment, struct meshing *meshing, struct cloth_error *error)
 {
-    int code = garment_make_room(garment, meshing, error);
+    int code = make_room(garment, meshing, error);
     uint32_t first = 0, first_triangle = 0;
     if (code)
         return code;
@@ -180,14 +180,14 @@ int garment_make(struct garment *garment, const struct garment_pattern *pattern,
 {
     struct meshing meshing = {0};
     *garment = (struct garment){0};
-    int code = garment_check_fineness(fineness, pattern, error);
+    int code = check_fineness(fineness, pattern, error);
     if (code)
         return code;
     code = meshing_make(&meshing, pattern, error);
     if (!code)
         code = fineness->vertices ? mesh_by_count(&meshing, fineness->vertices, error)
                                   : meshing_mesh(&meshing, fineness->edge, error);
-    code = code ? code : garment_put_all(garment, &meshing, error);
+    code = code ? code : put_pieces(garment, &meshing, error);
     meshing_free(&meshing);
     return code;
 }

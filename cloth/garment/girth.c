@@ -74,11 +74,11 @@ static int list_loose(struct cloth_list *list, const struct slice *slice, const 
                     : NULL;
             if (!edge)
                 continue;
-            struct loose *loose = cloth_list_add(list, sizeof *loose, 1, error);
-            if (!loose)
-                return CLOTH_E_MEMORY;
-            *loose = (struct loose){end, s, edge->seam, edge->side,
-                                    edge->k + (edge->backward ? 1 - end->part : end->part)};
+            const struct loose loose = {end, s, edge->seam, edge->side,
+                                        edge->k + (edge->backward ? 1 - end->part : end->part)};
+            const int code = cloth_list_put(list, &loose, sizeof loose, error);
+            if (code)
+                return code;
         }
     return CLOTH_OK;
 }
@@ -151,8 +151,7 @@ static int take_loop(struct loop *loop, const struct slice *slice, uint32_t set,
 }
 
 /* How much of each part of a body's slice is inside of a loop. */
-static void garment_girth_measure(const struct slice *body, const struct loop *loop,
-                                  double (*part)[2])
+static void measure_inside(const struct slice *body, const struct loop *loop, double (*part)[2])
 {
     for (uint32_t s = 0; s < body->n; s++) {
         const struct slice_segment *segment = &body->segment[s];
@@ -176,17 +175,18 @@ static int body_girth(double *girth, const struct slice *body, const struct loop
     int code = part && point ? CLOTH_OK : CLOTH_E_MEMORY;
     *girth = 0;
     if (!code)
-        garment_girth_measure(body, loop, part);
+        measure_inside(body, loop, part);
     for (uint32_t s = 0; s < body->n && !code; s++) {
         const double *of = part[cloth_sets_root(body->set, s)];
-        clear = clear && (of[1] <= LEAST * of[0] || of[1] >= MOST * of[0]);
-        for (int k = 0; k < 2 && of[1] >= MOST * of[0]; k++)
+        const bool inside = of[1] >= MOST * of[0];
+        clear = clear && (inside || of[1] <= LEAST * of[0]);
+        for (int k = 0; k < 2 && inside; k++)
             flatten(point[n++], &body->segment[s].end[k]);
     }
-    if (!code && clear && n > 2)
+    if (!code && clear && n > 2) {
         code = slice_hull(point, n, &n, error);
-    if (!code && clear && n > 2)
-        *girth = slice_around((const double(*)[2])point, n);
+        *girth = code ? 0 : slice_around((const double(*)[2])point, n);
+    }
     free(part);
     free(point);
     return code;
@@ -220,8 +220,8 @@ struct levels {
     struct slice *body;
 };
 
-static int garment_girth_cut_body(struct levels *levels, const struct girth_mesh *garment,
-                                  const struct girth_mesh *body, struct cloth_error *error)
+static int cut_body(struct levels *levels, const struct girth_mesh *garment,
+                    const struct girth_mesh *body, struct cloth_error *error)
 {
     double low = INFINITY, high = -INFINITY;
     for (uint32_t t = 0; t < garment->n_triangles; t++)
@@ -243,9 +243,8 @@ static int garment_girth_cut_body(struct levels *levels, const struct girth_mesh
 }
 
 /* Compares a loop on a level with the body around this level. */
-static int garment_girth_compare(struct girth_worst *worst, const struct loop *loop,
-                                 const struct levels *levels, uint32_t level,
-                                 struct cloth_error *error)
+static int compare_loop(struct girth_worst *worst, const struct loop *loop,
+                        const struct levels *levels, uint32_t level, struct cloth_error *error)
 {
     double least = INFINITY;
     for (uint32_t l = level - WINDOW; l <= level + WINDOW; l++) {
@@ -273,7 +272,7 @@ static int compare_level(struct girth_worst *worst, const struct girth_mesh *gar
             continue;
         code = take_loop(&loop, &slice, s, error);
         if (!code && loop.girth > 0)
-            code = garment_girth_compare(worst, &loop, levels, level, error);
+            code = compare_loop(worst, &loop, levels, level, error);
         free(loop.hull);
     }
     slice_free(&slice);
@@ -288,7 +287,7 @@ int girth_compare(struct girth_worst *worst, const struct girth_mesh *garment, u
     struct seams seams = {0};
     *worst = (struct girth_worst){0};
     int code = list_seams(&seams, n_seams, seam, error);
-    code = code ? code : garment_girth_cut_body(&levels, garment, body, error);
+    code = code ? code : cut_body(&levels, garment, body, error);
     for (uint32_t l = WINDOW; l + WINDOW < levels.n && !code; l++)
         code = compare_level(worst, garment, &seams, &levels, l, error);
     for (uint32_t l = 0; l < levels.n; l++)

@@ -21,13 +21,17 @@ uint32_t delaunay_new_vertex(struct delaunay *plane, const double place[2]);
  * the triangle that is opposite the edge, the edge joins corners 1 and 3. Side k is from corner k
  * to the one after it. */
 struct delaunay_quad {
-    uint32_t other;     /* the triangle on the other side of the edge */
+    uint32_t other;     /* the triangle on the other side of the edge, */
+    int other_side;     /* and which of its corners is opposite the edge */
     uint32_t corner[4]; /* vertices */
     uint32_t beside[4]; /* the triangles beyond the sides */
     unsigned fixed[4];  /* 1: the side is fixed */
 };
 /* That at the edge opposite corner i of a triangle, which is no edge of the hull. */
 struct delaunay_quad delaunay_quad_at(const struct delaunay *plane, uint32_t triangle, int i);
+
+/* Whether the other diagonal makes two triangles that are not turned over. */
+bool delaunay_may_flip(const struct delaunay *plane, const struct delaunay_quad *quad);
 
 /* Flips the edge that is opposite corner i of a triangle; not of a fixed edge or one of the hull.
  */

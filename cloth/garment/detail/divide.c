@@ -2,9 +2,9 @@
  * but none much longer than the spacing. Their parts are equal read from either end, so that the
  * direction of the stitch does not matter. */
 #include "cloth/base/memory.h"
+#include "cloth/base/vector.h"
 #include "cloth/garment/detail/meshing.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 static const double TURN = 0.8;         /* rad: a division turns no more */
@@ -15,14 +15,6 @@ static const double JUMP = 1.35;        /* of divisions on both sides of a corne
 static const double GROWTH = 0.3;       /* of divisions, a length along their edge */
 static const double LEAST = 0.25;       /* of the shortest division: none becomes shorter */
 enum { SWEEPS = 8 };                    /* over all corners: sizes spread that far */
-
-static void divide_add_edge(struct meshing *meshing, uint32_t panel, uint32_t e)
-{
-    struct meshing_edge *edge = &meshing->edge[meshing->first[panel] + e];
-    curve_make(&edge->curve, &meshing->pattern->panel[panel], e);
-    edge->least = 1 + (uint32_t)(curve_turning(&edge->curve) / TURN);
-    edge->partner = UINT32_MAX;
-}
 
 int meshing_make(struct meshing *meshing, const struct garment_pattern *pattern,
                  struct cloth_error *error)
@@ -40,8 +32,12 @@ int meshing_make(struct meshing *meshing, const struct garment_pattern *pattern,
     if (!meshing->edge)
         return CLOTH_E_MEMORY;
     for (uint32_t p = 0; p < pattern->n_panels; p++)
-        for (uint32_t e = 0; e < pattern->panel[p].n_edges; e++)
-            divide_add_edge(meshing, p, e);
+        for (uint32_t e = 0; e < pattern->panel[p].n_edges; e++) {
+            struct meshing_edge *edge = &meshing->edge[meshing->first[p] + e];
+            curve_make(&edge->curve, &pattern->panel[p], e);
+            edge->least = 1 + (uint32_t)(curve_turning(&edge->curve) / TURN);
+            edge->partner = UINT32_MAX;
+        }
     for (uint32_t s = 0; s < pattern->n_stitches; s++) {
         const struct garment_side *side = pattern->stitch[s].side;
         const uint32_t one = meshing->first[side[0].panel] + side[0].edge;
@@ -182,59 +178,41 @@ static int divide_edge(struct meshing_edge *edge, double n, struct cloth_error *
     return equal ? CLOTH_OK : grade(edge, error);
 }
 
-/* Whether an edge has other divisions than before. */
-static bool divide_differs(const struct meshing_edge *edge, const struct meshing_edge *before)
-{
-    return edge->n != before->n || edge->end[0] != before->end[0] || edge->end[1] != before->end[1];
-}
-
-static int divide_panel(struct meshing *meshing, uint32_t panel, const struct meshing_edge *before,
-                        struct cloth_error *error)
-{
-    for (uint32_t e = meshing->first[panel]; e < meshing->first[panel + 1]; e++) {
-        struct meshing_edge *edge = &meshing->edge[e];
-        int code = divide_edge(edge, 1 / edge->middle + 0.5, error);
-        if (code)
-            return code;
-        meshing->panel[panel].meshed =
-            meshing->panel[panel].meshed && !divide_differs(edge, &before[e]);
-    }
-    return CLOTH_OK;
-}
-
 int meshing_divide(struct meshing *meshing, struct cloth_error *error)
 {
-    const uint32_t n = meshing->first[meshing->pattern->n_panels];
+    const uint32_t *first = meshing->first, n_panels = meshing->pattern->n_panels;
     double sum = 0;
-    struct meshing_edge *before = cloth_alloc(n, sizeof *before, error);
-    int code = before ? CLOTH_OK : CLOTH_E_MEMORY;
-    for (uint32_t e = 0; e < n && !code; e++) {
-        const double parts = divide_wanted(meshing, &meshing->edge[e]);
-        before[e] = meshing->edge[e];
+    for (uint32_t e = 0; e < first[n_panels]; e++) {
+        struct meshing_edge *edge = &meshing->edge[e];
+        const double parts = divide_wanted(meshing, edge);
         sum += parts;
         if (!(sum <= MOST))
-            code = cloth_fail(error, CLOTH_E_INPUT,
+            return cloth_fail(error, CLOTH_E_INPUT,
                               "edges of %g m would divide the boundary into more than %.0f parts",
                               meshing->spacing, MOST);
-        meshing->edge[e].middle = meshing->edge[e].end[0] = meshing->edge[e].end[1] = 1 / parts;
+        edge->before = (struct meshing_divisions){edge->n, {edge->end[0], edge->end[1]}};
+        edge->middle = edge->end[0] = edge->end[1] = 1 / parts;
     }
-    if (!code)
-        even_out(meshing);
-    for (uint32_t p = 0; p < meshing->pattern->n_panels && !code; p++)
-        code = divide_panel(meshing, p, before, error);
-    free(before);
+    even_out(meshing);
+    int code = CLOTH_OK;
+    for (uint32_t p = 0; p < n_panels; p++)
+        for (uint32_t e = first[p]; e < first[p + 1] && !code; e++) {
+            struct meshing_edge *edge = &meshing->edge[e];
+            code = divide_edge(edge, 1 / edge->middle + 0.5, error);
+            const bool same = edge->n == edge->before.n && edge->end[0] == edge->before.end[0] &&
+                              edge->end[1] == edge->before.end[1];
+            meshing->panel[p].meshed = meshing->panel[p].meshed && same;
+        }
     return code;
 }
 
 /* Whether the loop, which is counterclockwise, has an angle below 30 degrees inside of place i. */
 static bool is_sharp(const double (*place)[2], uint32_t n, uint32_t i)
 {
-    const double *a = place[(i + n - 1) % n], *b = place[i], *c = place[(i + 1) % n];
-    const double from[2] = {a[0] - b[0], a[1] - b[1]}, to[2] = {c[0] - b[0], c[1] - b[1]};
-    const double sizes =
-        sqrt((from[0] * from[0] + from[1] * from[1]) * (to[0] * to[0] + to[1] * to[1]));
-    return from[0] * to[0] + from[1] * to[1] > SHARP * sizes &&
-           to[0] * from[1] - to[1] * from[0] > 0;
+    double sine, cosine;
+    const double squares =
+        cloth_angle(place[(i + n - 1) % n], place[i], place[(i + 1) % n], &sine, &cosine);
+    return cosine > SHARP * sqrt(squares) && sine < 0;
 }
 
 int meshing_outline(struct meshing *meshing, uint32_t panel, double (**place)[2],
@@ -243,19 +221,17 @@ int meshing_outline(struct meshing *meshing, uint32_t panel, double (**place)[2]
     struct meshing_panel *of = &meshing->panel[panel];
     const struct meshing_edge *edge = meshing->edge + meshing->first[panel];
     const uint32_t n_edges = meshing->pattern->panel[panel].n_edges;
+    uint32_t n = 0;
     free(of->start);
     free(of->sharp);
-    of->sharp = NULL;
-    *place = NULL;
     of->start = cloth_alloc((size_t)n_edges + 1, sizeof *of->start, error);
-    if (!of->start)
-        return CLOTH_E_MEMORY;
-    for (uint32_t e = 0; e < n_edges; e++)
-        of->start[e + 1] = of->start[e] + edge[e].n;
-    const uint32_t n = of->start[n_edges];
+    for (uint32_t e = 0; of->start && e < n_edges; e++) {
+        n += edge[e].n;
+        of->start[e + 1] = n;
+    }
     of->sharp = cloth_alloc(n, 1, error);
     *place = cloth_alloc(n, sizeof **place, error);
-    if (!of->sharp || !*place)
+    if (!of->start || !of->sharp || !*place)
         return CLOTH_E_MEMORY;
     for (uint32_t e = 0; e < n_edges; e++)
         for (uint32_t k = 0; k < edge[e].n; k++) {

@@ -98,24 +98,24 @@ static int mesh_outline(struct meshing *meshing, uint32_t panel, const double (*
     const struct meet_loop outline = {n_edges, of->start, place};
     const struct flat_loop loop = {of->start[n_edges], place, of->sharp};
     struct cloth_error why = {0};
-    uint32_t edge[2] = {0, 0}, crossing;
+    uint32_t edge[2] = {0, 0}, crossing = DELAUNAY_NONE;
     bool meets = false;
     const bool last = try == TRIES - 1;
     int code = meet_find(&outline, 1e-8, &meets, edge, error);
-    if (!code && !meets && loop.n >= 3) {
+    if (code)
+        return code;
+    if (!meets && loop.n >= 3) {
         code = flat_make(&of->plane, &loop, meshing->spacing, &crossing, &why);
-        meets = crossing != DELAUNAY_NONE;
-        edge[0] = edge[1] = meets ? meshing_edge_of(of, n_edges, crossing) : 0;
-        if (code && !meets)
-            cloth_fail(error, code, "panel '%s': %s", meshing->pattern->panel[panel].name,
-                       why.text);
-        code = meets ? CLOTH_OK : code;
-        of->meshed = !code && !meets;
+        of->meshed = !code;
     }
-    if (code || of->meshed)
-        return code   ? code
-               : last ? CLOTH_OK
-                      : refine_poor(meshing, panel, try < FAIR_TRIES ? FAIR : POOR, again, error);
+    if (code && crossing == DELAUNAY_NONE)
+        return cloth_fail(error, code, "panel '%s': %s", meshing->pattern->panel[panel].name,
+                          why.text);
+    if (of->meshed)
+        return last ? CLOTH_OK
+                    : refine_poor(meshing, panel, try < FAIR_TRIES ? FAIR : POOR, again, error);
+    if (crossing != DELAUNAY_NONE)
+        edge[0] = edge[1] = meshing_edge_of(of, n_edges, crossing);
     if (last)
         return cannot(meshing, panel, edge[0], error);
     refine(meshing, panel, edge[0], 2, again);

@@ -25,6 +25,10 @@ struct meshing_edge {
     double middle;    /* parts of the edge's length: how long divisions are in its middle, */
     double end[2];    /* and at its begin and end, where they may be shorter */
     double *part;     /* n + 1: parts of the length up to each; NULL: they are equal */
+    struct meshing_divisions {
+        uint32_t n;
+        double end[2];
+    } before; /* the last ones */
 };
 
 struct meshing {
@@ -57,5 +61,10 @@ int meshing_divide(struct meshing *meshing, struct cloth_error *error);
  * and `sharp` of the panel are new, *place is to be freed, also after an error. */
 int meshing_outline(struct meshing *meshing, uint32_t panel, double (**place)[2],
                     struct cloth_error *error);
+
+/* Pairs the vertices of all stitches of a garment that has its pieces, each in the direction that
+ * docs/garments.md says. Error: CLOTH_E_MEMORY. Local. */
+int seams_make(struct garment *garment, const struct garment_pattern *pattern,
+               struct cloth_error *error);
 
 #endif

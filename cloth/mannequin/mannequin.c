@@ -1,13 +1,12 @@
 /* Rounds of remeshing and measuring: the error of a girth goes into the factor on its widths, until
  * the mesh itself has the girths. */
 #include "cloth/mannequin/mannequin.h"
-#include "cloth/base/memory.h"
-#include "cloth/mannequin/detail/rig.h"
-#include "cloth/mannequin/measures.h"
+#include "cloth/base/sets.h"
+#include "cloth/base/vector.h"
+#include "cloth/mannequin/detail/surface.h"
+#include "cloth/mesh/slice.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { SHAPING = 8, FITTING = 12, COLLAPSES = 4 };
 static const double CELL = 0.02;   /* m: of the lattice */
@@ -33,6 +32,65 @@ static int remesh(struct making *making)
     return code ? code : surface_smooth(surface, &making->figure, making->error);
 }
 
+/* ---- Girths: loops of the half's sections ---- */
+
+/* By set: its length, and the sum of its places weighted by length. */
+static void sum_loops(const struct slice *slice, double (*sum)[4])
+{
+    for (uint32_t s = 0; s < slice->n; s++) {
+        const struct slice_segment *segment = slice->segment + s;
+        double *to = sum[cloth_sets_root(slice->set, s)];
+        for (int c = 0; c < 3; c++)
+            to[c] += 0.5 * segment->length * (segment->end[0].place[c] + segment->end[1].place[c]);
+        to[3] += segment->length;
+    }
+}
+
+/* The length of the loop whose middle is nearest to a point; one that is open goes on in the mirror
+ * image. */
+static double nearest_loop(const struct slice *slice, const double (*sums)[4],
+                           const double point[3], bool half)
+{
+    double best = INFINITY, length = 0;
+    for (uint32_t s = 0; s < slice->n; s++) {
+        const double *sum = sums[s];
+        if (!(sum[3] > 0))
+            continue;
+        const double middle[3] = {half ? 0 : sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]};
+        const double far = cloth_distance(middle, point) + (half ? sum[0] / sum[3] : 0);
+        if (far < best) {
+            best = far;
+            length = half ? 2 * sum[3] : sum[3];
+        }
+    }
+    return length;
+}
+
+/* The length of the section of a measure, of both halves; 0: there is none. */
+static int find_girth(const struct surface *surface, const struct figure *figure, uint32_t measured,
+                      double *girth, struct cloth_error *error)
+{
+    double point[3], normal[3], (*sum)[4] = NULL;
+    double *height = cloth_alloc(surface->n, sizeof *height, error);
+    const struct slice_mesh mesh = {surface->m, (const uint32_t(*)[3])surface->triangle,
+                                    (const double(*)[3])surface->x, height};
+    struct slice slice = {0};
+    figure_section(figure, measured, point, normal);
+    const double level = cloth_dot(point, normal);
+    for (uint32_t v = 0; v < surface->n && height; v++)
+        height[v] = cloth_dot(surface->x[v], normal) - level;
+    if (height && !slice_make(&slice, &mesh, error))
+        sum = cloth_alloc(slice.n, sizeof *sum, error);
+    if (sum) {
+        sum_loops(&slice, sum);
+        *girth = nearest_loop(&slice, (const double(*)[4])sum, point, measured < MANNEQUIN_THIGH);
+    }
+    free(sum);
+    free(height);
+    slice_free(&slice);
+    return error->code;
+}
+
 /* Measures, and corrects the factors. *worst: the measure that is furthest from its wanted value;
  * MANNEQUIN_GIRTHS: all are close. */
 static int fit(struct making *making, uint32_t *worst)
@@ -41,8 +99,7 @@ static int fit(struct making *making, uint32_t *worst)
     int code = CLOTH_OK;
     *worst = MANNEQUIN_GIRTHS;
     for (uint32_t i = 0; i < MANNEQUIN_GIRTHS && !code; i++) {
-        code =
-            surface_girth(&making->surface, &making->figure, i, &making->girth[i], making->error);
+        code = find_girth(&making->surface, &making->figure, i, &making->girth[i], making->error);
         const double ratio = making->asked.girth[i] / fmax(making->girth[i], 1e-3);
         if (fabs(ratio - 1) > most) {
             most = fabs(ratio - 1);
@@ -55,7 +112,7 @@ static int fit(struct making *making, uint32_t *worst)
     return code;
 }
 
-static int mannequin_mannequin_make(struct making *making, uint32_t *worst)
+static int make_half(struct making *making, uint32_t *worst)
 {
     figure_make(&making->figure, making->factor);
     int code = surface_march(&making->surface, &making->figure, CELL, making->error);
@@ -115,8 +172,7 @@ static uint32_t mirror(const struct surface *half, const struct fitting *fitting
 }
 
 /* The whole mesh, and its rig unless NULL. */
-static int mannequin_finish(const struct making *making, struct mesh *mesh,
-                            struct mannequin_rig *rig)
+static int make_whole(const struct making *making, struct mesh *mesh, struct mannequin_rig *rig)
 {
     const struct surface *half = &making->surface;
     const struct fitting fitting = fit_height(half, making->asked.height);
@@ -166,10 +222,10 @@ int mannequin_make_rigged(struct mesh *mesh, struct mannequin_rig *rig,
         making.asked.girth[i] /= scale;
         making.factor[i] = making.asked.girth[i] / mannequin_measures[i].girth;
     }
-    int code = mannequin_mannequin_make(&making, &worst);
+    int code = make_half(&making, &worst);
     if (!code && worst < MANNEQUIN_GIRTHS)
         code = check_girths(&making, worst, scale);
-    code = code ? code : mannequin_finish(&making, mesh, rig);
+    code = code ? code : make_whole(&making, mesh, rig);
     for (uint32_t i = 0; i < MANNEQUIN_GIRTHS && girth; i++)
         girth[i] = making.girth[i] * scale;
     surface_free(&making.surface);

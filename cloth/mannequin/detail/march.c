@@ -1,7 +1,6 @@
 /* A lattice of cubes, each cut in six tetrahedra along its diagonal (Kuhn). Tetrahedra of
  * neighbours share their faces, so the surface is closed but at x = 0, where a plane of the lattice
  * is. The places on edges are linear between nodes. */
-#include "cloth/base/memory.h"
 #include "cloth/mannequin/detail/surface.h"
 
 #include <math.h>
@@ -39,25 +38,14 @@ static uint32_t vertex_on(struct lattice *lattice, uint32_t node, uint32_t a, ui
     uint32_t *vertex = &lattice->vertex[7 * (size_t)from + (low ^ high) - 1];
     if (*vertex != UINT32_MAX)
         return *vertex;
-    const uint32_t v = surface_add_vertex(lattice->surface, lattice->error);
-    if (v == UINT32_MAX)
-        return v;
-    double x[3], y[3], *at = lattice->surface->x[v];
+    double x[3], y[3];
     const double p = lattice->value[from], q = lattice->value[to], part = p / (p - q);
     march_place_of(lattice, from, x);
     march_place_of(lattice, to, y);
+    const bool middle = !(x[0] > 0) && !(y[0] > 0);
     for (int c = 0; c < 3; c++)
-        at[c] = x[c] + part * (y[c] - x[c]);
-    lattice->surface->middle[v] = !(x[0] > 0) && !(y[0] > 0);
-    return *vertex = v;
-}
-
-static int march_add(struct lattice *lattice, const uint32_t v[3])
-{
-    const uint32_t t = surface_add_triangle(lattice->surface, lattice->error);
-    if (t != UINT32_MAX)
-        memcpy(lattice->surface->triangle[t], v, sizeof lattice->surface->triangle[t]);
-    return lattice->error->code;
+        x[c] += part * (y[c] - x[c]);
+    return *vertex = surface_add_vertex(lattice->surface, x, middle, lattice->error);
 }
 
 /* The part of a tetrahedron, whose corners are those of the cube at a node and turn right. */
@@ -82,11 +70,12 @@ static int march_cut(struct lattice *lattice, uint32_t node, const uint32_t corn
         for (int i = 0; i < 4; i++)
             v[i] = vertex_on(lattice, node, c[end[i][0]], c[end[i][1]]);
         const uint32_t second[3] = {v[0], v[2], v[3]};
-        return march_add(lattice, v) ? lattice->error->code : march_add(lattice, second);
+        const int code = surface_add_triangle(lattice->surface, v, lattice->error);
+        return code ? code : surface_add_triangle(lattice->surface, second, lattice->error);
     }
     for (uint32_t i = 0; i < 3; i++)
         v[count == 1 ? i : 2 - i] = vertex_on(lattice, node, c[0], c[i + 1]);
-    return march_add(lattice, v);
+    return surface_add_triangle(lattice->surface, v, lattice->error);
 }
 
 static int cut_cube(struct lattice *lattice, uint32_t node)
@@ -131,7 +120,7 @@ int surface_march(struct surface *surface, const struct figure *figure, double c
     for (uint32_t i = 0; i < nodes && !code; i++) {
         double x[3];
         march_place_of(&lattice, i, x);
-        lattice.value[i] = figure_distance(figure, x);
+        lattice.value[i] = figure_near(figure, x).distance;
     }
     for (uint32_t k = 0; k + 1 < n[2]; k++)
         for (uint32_t j = 0; j + 1 < n[1]; j++)

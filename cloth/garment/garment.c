@@ -54,6 +54,14 @@ static double next_spacing(double spacing, double n, double wanted, double fine,
                                            : next;
 }
 
+static uint32_t count_vertices(const struct meshing *meshing)
+{
+    uint32_t n = 0;
+    for (uint32_t p = 0; p < meshing->pattern->n_panels; p++)
+        n += meshing->panel[p].plane.n;
+    return n;
+}
+
 static int mesh_by_count(struct meshing *meshing, uint32_t wanted, struct cloth_error *error)
 {
     double spacing = first_spacing(meshing->pattern, wanted), best = spacing, least = INFINITY;
@@ -61,7 +69,7 @@ static int mesh_by_count(struct meshing *meshing, uint32_t wanted, struct cloth_
     int code = CLOTH_OK;
     for (int k = 0; k < TRIES && least > (k < EARLY ? CLOSE : FAIR) && !code; k++) {
         code = meshing_mesh(meshing, spacing, error);
-        const double n = meshing_count(meshing), off = fabs(n - wanted) / wanted;
+        const double n = count_vertices(meshing), off = fabs(n - wanted) / wanted;
         if (off < least) {
             least = off;
             best = spacing;

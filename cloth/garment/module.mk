@@ -9,7 +9,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/garment/own/trousers.c \
 	cloth/garment/own/tshirt.c \
 	cloth/garment/detail/curve.c cloth/garment/detail/curve.h \
-	cloth/garment/detail/delaunay.c cloth/garment/detail/delaunay.h cloth/garment/detail/delaunay_parts.h \
+	cloth/garment/detail/delaunay.c cloth/garment/detail/delaunay.h \
 	cloth/garment/detail/delaunay_change.c \
 	cloth/garment/detail/delaunay_fix.c \
 	cloth/garment/detail/divide.c \

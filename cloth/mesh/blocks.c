@@ -103,19 +103,6 @@ static int fill_empty(struct cutter *cutter)
     return code;
 }
 
-static int blocks_cut(struct cutter *cutter)
-{
-    int code = mesh_order_make(&cutter->order, &cutter->graph, cutter->error);
-    if (!code)
-        code =
-            mesh_partition(cutter->part, &cutter->graph, cutter->blocks->n_blocks, cutter->error);
-    if (!code && !blocks_group(cutter))
-        code = fill_empty(cutter);
-    if (!code)
-        order_parts(cutter);
-    return code;
-}
-
 static void set_places(struct cutter *cutter)
 {
     struct mesh_blocks *blocks = cutter->blocks;
@@ -154,19 +141,22 @@ int mesh_blocks_cut(struct mesh_blocks *blocks, uint32_t n_vertices, const unsig
     if (grain == 0)
         return cloth_fail(error, CLOTH_E_INPUT, "a grain of 0 vertices; it must be at least 1");
     int code = number_nodes(&cutter, n_vertices, used, grain);
-    if (!code)
-        code = mesh_graph_build(&cutter.graph, blocks->n_places, n_vertices, blocks->place, pairs,
-                                error);
-    if (!code)
-        code = blocks_cut(&cutter);
-    mesh_graph_free(&cutter.graph);
+    code = code ? code
+                : mesh_graph_build(&cutter.graph, blocks->n_places, n_vertices, blocks->place,
+                                   pairs, error);
+    code = code ? code : mesh_order_make(&cutter.order, &cutter.graph, error);
+    code = code ? code : mesh_partition(cutter.part, &cutter.graph, blocks->n_blocks, error);
+    if (!code && !blocks_group(&cutter))
+        code = fill_empty(&cutter);
     if (!code) {
+        order_parts(&cutter);
         set_places(&cutter);
         code = set_hash(&cutter);
     }
     if (code)
         mesh_blocks_free(blocks);
     mesh_order_free(&cutter.order);
+    mesh_graph_free(&cutter.graph);
     free(cutter.part);
     free(cutter.nodes);
     return code;

@@ -1,7 +1,6 @@
 /* The triangulation as a structure: who is beside whom. A triangle is written by `put` alone, so
  * that every change can be undone. */
 #include "cloth/garment/detail/delaunay.h"
-#include "cloth/garment/detail/delaunay_parts.h"
 
 #include <stdlib.h>
 #include <string.h>

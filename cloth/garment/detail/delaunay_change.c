@@ -1,6 +1,5 @@
 /* Vertices that come and go, and the flips after them (Lawson, 1977). */
 #include "cloth/garment/detail/delaunay.h"
-#include "cloth/garment/detail/delaunay_parts.h"
 
 #include <math.h>
 

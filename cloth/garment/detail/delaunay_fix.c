@@ -1,6 +1,5 @@
 /* Edges of the boundary are put into a triangulation of its vertices by flips (Sloan, 1993). */
 #include "cloth/garment/detail/delaunay.h"
-#include "cloth/garment/detail/delaunay_parts.h"
 
 #include <string.h>
 

@@ -186,11 +186,3 @@ int meshing_mesh(struct meshing *meshing, double spacing, struct cloth_error *er
     return code ? cloth_fail(error, code, "%s", first.code ? first.text : "no memory for a mesh")
                 : CLOTH_OK;
 }
-
-uint32_t meshing_count(const struct meshing *meshing)
-{
-    uint32_t n = 0;
-    for (uint32_t p = 0; p < meshing->pattern->n_panels; p++)
-        n += meshing->panel[p].plane.n;
-    return n;
-}

@@ -49,9 +49,6 @@ void meshing_free(struct meshing *meshing);
  * panel cannot be meshed, the spacing becomes up to a third finer. */
 int meshing_mesh(struct meshing *meshing, double spacing, struct cloth_error *error);
 
-/* How many vertices all panels have. */
-uint32_t meshing_count(const struct meshing *meshing);
-
 /* The divisions of all edges by the spacing and by how much finer they are to be; panels of which
  * any changes are not meshed any more. Beside a short edge divisions are short, and become longer
  * along their edge. Errors: CLOTH_E_INPUT, too many; CLOTH_E_MEMORY. */

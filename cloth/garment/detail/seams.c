@@ -61,13 +61,13 @@ static double vote_of(const struct garment_seam *seam)
     return fabs(margin) > CLEAR * longer ? margin / longer : 0;
 }
 
-/* 0: nothing is known. */
-static int relation(const struct fronts *fronts, const struct garment_side side[2])
+/* Above 0: the fronts of two panels are on one side, below 0: not; 0: nothing is known. */
+static int relation(const struct fronts *fronts, uint32_t a, uint32_t b)
 {
-    const uint32_t a = cloth_sets_root(fronts->set, side[0].panel);
-    if (a == cloth_sets_root(fronts->set, side[1].panel))
+    const uint32_t root = cloth_sets_root(fronts->set, a);
+    if (root == cloth_sets_root(fronts->set, b))
         return 1;
-    return a == cloth_sets_root(fronts->set, side[1].panel + fronts->n_panels) ? -1 : 0;
+    return root == cloth_sets_root(fronts->set, b + fronts->n_panels) ? -1 : 0;
 }
 
 static void relate(const struct fronts *fronts, uint32_t a, uint32_t b, bool one_side)
@@ -121,12 +121,9 @@ static int find_fronts(struct fronts *fronts, const struct garment *garment,
     if (vote && fronts->set) {
         const uint32_t n = count_votes(vote, garment, pattern);
         cloth_sets_start(fronts->set, 2 * fronts->n_panels);
-        for (uint32_t i = 0; i < n && fabs(vote[i].sum) > 0; i++) {
-            const struct garment_side side[2] = {{.panel = vote[i].panel[0]},
-                                                 {.panel = vote[i].panel[1]}};
-            if (!relation(fronts, side))
-                relate(fronts, side[0].panel, side[1].panel, vote[i].sum > 0);
-        }
+        for (uint32_t i = 0; i < n && fabs(vote[i].sum) > 0; i++)
+            if (!relation(fronts, vote[i].panel[0], vote[i].panel[1]))
+                relate(fronts, vote[i].panel[0], vote[i].panel[1], vote[i].sum > 0);
     }
     const bool enough = vote && fronts->set;
     free(vote);
@@ -137,18 +134,20 @@ static int find_fronts(struct fronts *fronts, const struct garment *garment,
 static void turn_seams(struct garment *garment, const struct garment_pattern *pattern,
                        const struct fronts *fronts)
 {
-    for (uint32_t s = 0; s < garment->n_seams; s++)
-        garment->seam[s].unsure =
-            !pattern->stitch[s].right_wrong && !relation(fronts, pattern->stitch[s].side);
     for (uint32_t s = 0; s < garment->n_seams; s++) {
         const struct garment_stitch *stitch = &pattern->stitch[s];
-        const struct garment_side *side = stitch->side;
+        garment->seam[s].unsure =
+            !stitch->right_wrong && !relation(fronts, stitch->side[0].panel, stitch->side[1].panel);
+    }
+    for (uint32_t s = 0; s < garment->n_seams; s++) {
+        const struct garment_stitch *stitch = &pattern->stitch[s];
+        const uint32_t a = stitch->side[0].panel, b = stitch->side[1].panel;
         struct garment_seam *seam = &garment->seam[s];
         if (stitch->right_wrong)
             continue;
-        if (!relation(fronts, side))
-            relate(fronts, side[0].panel, side[1].panel, true);
-        seam->reversed = relation(fronts, side) > 0;
+        if (!relation(fronts, a, b))
+            relate(fronts, a, b, true);
+        seam->reversed = relation(fronts, a, b) > 0;
         const double vote = vote_of(seam);
         seam->unsure = seam->unsure || (seam->reversed ? vote < 0 : vote > 0);
     }

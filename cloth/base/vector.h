@@ -24,15 +24,20 @@ static inline double cloth_distance(const double a[3], const double b[3])
     return sqrt(cloth_square(a, b));
 }
 
+/* y = a x b. */
+static inline void cloth_cross(const double a[3], const double b[3], double y[3])
+{
+    for (int i = 0; i < 3; i++)
+        y[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
 /* The normal of a triangle, as long as twice its area. */
 static inline void cloth_normal(const double a[3], const double b[3], const double c[3],
                                 double normal[3])
 {
     const double p[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     const double q[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-    normal[0] = p[1] * q[2] - p[2] * q[1];
-    normal[1] = p[2] * q[0] - p[0] * q[2];
-    normal[2] = p[0] * q[1] - p[1] * q[0];
+    cloth_cross(p, q, normal);
 }
 
 /* ---- In a plane ---- */

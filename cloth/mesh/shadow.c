@@ -34,10 +34,9 @@ static void shadow_find_frame(const double axis[3], double along[3], double acro
     along[least] = 0;
     along[i] = -axis[j] / size;
     along[j] = axis[i] / size;
-    for (int c = 0; c < 3; c++) {
-        const int d = (c + 1) % 3, e = (c + 2) % 3;
-        across[c] = (axis[d] * along[e] - axis[e] * along[d]) / whole;
-    }
+    cloth_cross(axis, along, across);
+    for (int c = 0; c < 3; c++)
+        across[c] /= whole;
 }
 
 static void project_vertices(struct shadow *shadow, const double axis[3])

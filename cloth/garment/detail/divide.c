@@ -127,36 +127,26 @@ static double size_at(const struct meshing_edge *edge, double t)
     return fmin(edge->middle, fmin(begin, end));
 }
 
-/* Goes along an edge by its divisions, and writes them, if wanted. Returns how many fit best;
- * *reached: where the last of them ends. */
-static uint32_t divide_walk(const struct meshing_edge *edge, double *part, double *reached)
-{
-    uint32_t n = 0;
-    double t = 0;
-    for (;;) {
-        const double half = t + 0.5 * size_at(edge, t), step = size_at(edge, fmin(half, 1));
-        if (n > 0 && t + 0.5 * step >= 1)
-            break;
-        t += step;
-        n++;
-        if (part)
-            part[n] = t;
-    }
-    *reached = t;
-    return n;
-}
-
-/* Divisions that are not equal. Both ends of the list are exact. */
+/* Divisions that are not equal: goes along the edge by as many as fit best, and stretches them to
+ * its end. Both ends of the list are exact. */
 static int grade(struct meshing_edge *edge, struct cloth_error *error)
 {
-    double reached;
-    const uint32_t n = divide_walk(edge, NULL, &reached);
-    if (n < edge->least)
-        return CLOTH_OK;
-    double *part = cloth_alloc((size_t)n + 1, sizeof *part, error);
-    if (!part)
-        return CLOTH_E_MEMORY;
-    divide_walk(edge, part, &reached);
+    struct cloth_list list = {0};
+    double t = 0;
+    int code = CLOTH_OK;
+    for (bool more = true; more && !code;) {
+        const double step = size_at(edge, fmin(t + 0.5 * size_at(edge, t), 1));
+        code = cloth_list_put(&list, &t, sizeof t, error);
+        more = t <= 0 || t + 0.5 * step < 1;
+        t += step;
+    }
+    double *part = list.items;
+    const uint32_t n = (uint32_t)list.n - 1;
+    if (code || n < edge->least) {
+        free(part);
+        return code;
+    }
+    const double reached = part[n];
     for (uint32_t k = 0; k <= n; k++)
         part[k] /= reached;
     for (uint32_t k = 0; edge->partner != UINT32_MAX && k <= n / 2; k++) {

@@ -186,16 +186,15 @@ static bool flat_refine(struct delaunay *plane, const unsigned char *sharp)
 int flat_make(struct delaunay *plane, const struct flat_loop *loop, double edge, uint32_t *crossing,
               struct cloth_error *error)
 {
-    uint32_t n_inner;
-    double(*inner)[2];
+    struct cloth_list inner = {0};
     *plane = (struct delaunay){0};
     *crossing = DELAUNAY_NONE;
-    int code = garment_lattice(loop->n, loop->place, edge, &n_inner, &inner, error);
-    code = code ? code : make_box(plane, loop, n_inner, error);
+    int code = garment_lattice(loop->n, loop->place, edge, &inner, error);
+    code = code ? code : make_box(plane, loop, (uint32_t)inner.n, error);
     code = code ? code : flat_put_loop(plane, loop, crossing, error);
-    for (uint32_t i = 0; i < n_inner && !code; i++)
-        delaunay_insert(plane, inner[i], plane->last);
-    free(inner);
+    for (size_t i = 0; i < inner.n && !code; i++)
+        delaunay_insert(plane, ((const double(*)[2])inner.items)[i], plane->last);
+    free(inner.items);
     if (code)
         return code;
     delaunay_carve(plane);

@@ -34,11 +34,11 @@ void flat_improve(struct delaunay *plane, const unsigned char *sharp);
 bool flat_excused(const struct delaunay *plane, uint32_t n_sharp, const unsigned char *sharp,
                   uint32_t triangle);
 
-/* The vertices of equilateral triangles of a given edge length that are inside a polygon, and not
- * nearer to its boundary than a part of that length: row by row, every other one from right to
- * left. n places of a closed loop; *places (*count of them) belong to the caller. Errors:
- * CLOTH_E_INPUT for more than 2^28 places in the polygon's box, CLOTH_E_MEMORY. Local. */
-int garment_lattice(uint32_t n, const double (*loop)[2], double edge, uint32_t *count,
-                    double (**places)[2], struct cloth_error *error);
+/* Lists the vertices (double[2]) of equilateral triangles of a given edge length that are inside a
+ * closed loop of n places, and not nearer to it than a part of that length: row by row, every other
+ * one from right to left. Errors: CLOTH_E_INPUT for more than 2^28 places in the loop's box,
+ * CLOTH_E_MEMORY. Local. */
+int garment_lattice(uint32_t n, const double (*loop)[2], double edge, struct cloth_list *places,
+                    struct cloth_error *error);
 
 #endif

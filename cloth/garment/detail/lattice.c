@@ -124,39 +124,29 @@ static void leave_near(struct lattice *of, const double a[2], const double b[2])
     }
 }
 
-static int list_taken(const struct lattice *of, uint32_t *count, double (**places)[2],
+static int list_taken(const struct lattice *of, struct cloth_list *places,
                       struct cloth_error *error)
 {
-    size_t n = 0;
-    for (int64_t i = 0; i < of->rows * of->columns; i++)
-        n += of->taken[i];
-    *places = cloth_alloc(n, sizeof **places, error);
-    if (!*places)
-        return CLOTH_E_MEMORY;
-    *count = 0;
+    int code = CLOTH_OK;
     for (int64_t row = 0; row < of->rows; row++)
-        for (int64_t k = 0; k < of->columns; k++) {
+        for (int64_t k = 0; k < of->columns && !code; k++) {
             const int64_t c = row % 2 ? of->columns - 1 - k : k;
-            if (!of->taken[row * of->columns + c])
-                continue;
-            double *place = (*places)[(*count)++];
-            place[0] = row_x(of, row) + (double)c * of->edge;
-            place[1] = row_y(of, row);
+            const double place[2] = {row_x(of, row) + (double)c * of->edge, row_y(of, row)};
+            if (of->taken[row * of->columns + c])
+                code = cloth_list_put(places, place, sizeof place, error);
         }
-    return CLOTH_OK;
+    return code;
 }
 
-int garment_lattice(uint32_t n, const double (*loop)[2], double edge, uint32_t *count,
-                    double (**places)[2], struct cloth_error *error)
+int garment_lattice(uint32_t n, const double (*loop)[2], double edge, struct cloth_list *places,
+                    struct cloth_error *error)
 {
     struct lattice lattice = {0};
-    *count = 0;
-    *places = NULL;
     int code = make_lattice(&lattice, n, loop, edge, error);
     code = code ? code : take_inside(&lattice, n, loop, error);
     for (uint32_t i = 0; i < n && !code; i++)
         leave_near(&lattice, loop[i], loop[(i + 1) % n]);
-    code = code ? code : list_taken(&lattice, count, places, error);
+    code = code ? code : list_taken(&lattice, places, error);
     free(lattice.taken);
     return code;
 }

@@ -160,8 +160,7 @@ static void put_piece(struct garment *garment, struct meshing *meshing, uint32_t
     for (uint32_t t = 0; t < n_triangles; t++) {
         for (int i = 0; i < 3; i++)
             garment->triangle[first_triangle + t][i] = first + of->plane.triangle[t].vertex[i];
-        garment->excused[first_triangle + t] =
-            flat_excused(&of->plane, of->start[panel->n_edges], of->sharp, t);
+        garment->excused[first_triangle + t] = flat_excused(&of->plane, of->sharp, t);
     }
     garment->piece[p] = (struct garment_piece){first, n, first_triangle, n_triangles, of->start};
     of->start = NULL; /* the garment's now */

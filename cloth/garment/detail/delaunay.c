@@ -128,25 +128,11 @@ void delaunay_take_triangle(struct delaunay *plane, uint32_t triangle)
     plane->triangle[triangle].vertex[0] = DELAUNAY_NONE;
 }
 
-void delaunay_take_vertex(struct delaunay *plane, uint32_t vertex)
-{
-    delaunay_log_vertex(plane, vertex);
-    plane->at[vertex] = DELAUNAY_NONE;
-}
-
 uint32_t delaunay_new_triangle(struct delaunay *plane)
 {
     const uint32_t triangle = plane->n_triangles++;
     plane->triangle[triangle] = (struct delaunay_triangle){{DELAUNAY_NONE, 0, 0}, {0, 0, 0}, 0};
     return triangle;
-}
-
-uint32_t delaunay_new_vertex(struct delaunay *plane, const double place[2])
-{
-    const uint32_t vertex = plane->n++;
-    memcpy(plane->place[vertex], place, sizeof plane->place[vertex]);
-    plane->at[vertex] = DELAUNAY_NONE;
-    return vertex;
 }
 
 /* The two triangles at an edge that is not of the hull turn it:

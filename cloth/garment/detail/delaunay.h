@@ -112,10 +112,8 @@ void delaunay_put(struct delaunay *plane, uint32_t triangle, struct delaunay_tri
 /* What was beside a triangle (which may be DELAUNAY_NONE) is another one now. */
 void delaunay_put_beside(struct delaunay *plane, uint32_t triangle, uint32_t before, uint32_t now);
 void delaunay_take_triangle(struct delaunay *plane, uint32_t triangle);
-void delaunay_take_vertex(struct delaunay *plane, uint32_t vertex);
 /* There must be room. What is new has to be put. */
 uint32_t delaunay_new_triangle(struct delaunay *plane);
-uint32_t delaunay_new_vertex(struct delaunay *plane, const double place[2]);
 
 /* The two triangles at an edge as one quadrilateral, counterclockwise: its corner 0 is the one of
  * the triangle that is opposite the edge, the edge joins corners 1 and 3. Side k is from corner k

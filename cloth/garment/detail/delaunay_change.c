@@ -1,7 +1,7 @@
 /* Vertices that come and go, and the flips after them (Lawson, 1977). */
 #include "cloth/garment/detail/delaunay.h"
 
-#include <math.h>
+#include <string.h>
 
 void delaunay_suspect(struct delaunay *plane, uint32_t triangle)
 {
@@ -159,7 +159,9 @@ uint32_t delaunay_insert(struct delaunay *plane, const double place[2], uint32_t
     const int part = part_of(plane, of, place);
     if (part == 4 || (part < 3 && ((of->fixed >> part & 1) || of->beside[part] == DELAUNAY_NONE)))
         return DELAUNAY_NONE;
-    const uint32_t vertex = delaunay_new_vertex(plane, place);
+    const uint32_t vertex = plane->n++;
+    memcpy(plane->place[vertex], place, sizeof plane->place[vertex]);
+    plane->at[vertex] = DELAUNAY_NONE;
     if (part == 3)
         split_triangle(plane, t, vertex);
     else
@@ -219,7 +221,8 @@ bool delaunay_merge(struct delaunay *plane, uint32_t vertex, uint32_t to)
     for (uint32_t k = 0; k < n; k++)
         if (!stays[k])
             take_at_edge(plane, around[k], vertex, to);
-    delaunay_take_vertex(plane, vertex);
+    delaunay_log_vertex(plane, vertex);
+    plane->at[vertex] = DELAUNAY_NONE;
     for (uint32_t k = 0; k < n; k++)
         if (stays[k])
             delaunay_suspect(plane, around[k]);

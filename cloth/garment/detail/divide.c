@@ -48,12 +48,18 @@ int meshing_make(struct meshing *meshing, const struct garment_pattern *pattern,
     return CLOTH_OK;
 }
 
+static void free_outline(struct meshing_panel *panel)
+{
+    free(panel->start);
+    free(panel->place);
+    free(panel->sharp);
+}
+
 void meshing_free(struct meshing *meshing)
 {
     for (uint32_t p = 0; meshing->panel && p < meshing->pattern->n_panels; p++) {
         delaunay_free(&meshing->panel[p].plane);
-        free(meshing->panel[p].sharp);
-        free(meshing->panel[p].start);
+        free_outline(&meshing->panel[p]);
     }
     for (uint32_t e = 0; meshing->edge && e < meshing->first[meshing->pattern->n_panels]; e++)
         free(meshing->edge[e].part);
@@ -205,32 +211,30 @@ static bool is_sharp(const double (*place)[2], uint32_t n, uint32_t i)
     return cosine > SHARP * sqrt(squares) && sine < 0;
 }
 
-int meshing_outline(struct meshing *meshing, uint32_t panel, double (**place)[2],
-                    struct cloth_error *error)
+int meshing_outline(struct meshing *meshing, uint32_t panel, struct cloth_error *error)
 {
     struct meshing_panel *of = &meshing->panel[panel];
     const struct meshing_edge *edge = meshing->edge + meshing->first[panel];
     const uint32_t n_edges = meshing->pattern->panel[panel].n_edges;
     uint32_t n = 0;
-    free(of->start);
-    free(of->sharp);
+    free_outline(of);
     of->start = cloth_alloc((size_t)n_edges + 1, sizeof *of->start, error);
     for (uint32_t e = 0; of->start && e < n_edges; e++) {
         n += edge[e].n;
         of->start[e + 1] = n;
     }
     of->sharp = cloth_alloc(n, 1, error);
-    *place = cloth_alloc(n, sizeof **place, error);
-    if (!of->start || !of->sharp || !*place)
+    of->place = cloth_alloc(n, sizeof *of->place, error);
+    if (!of->start || !of->sharp || !of->place)
         return CLOTH_E_MEMORY;
     for (uint32_t e = 0; e < n_edges; e++)
         for (uint32_t k = 0; k < edge[e].n; k++) {
-            double *at = (*place)[of->start[e] + k];
+            double *at = of->place[of->start[e] + k];
             curve_at_length(&edge[e].curve, edge[e].part ? edge[e].part[k] : (double)k / edge[e].n,
                             at);
             at[0] = of->clockwise ? -at[0] : at[0];
         }
     for (uint32_t e = 0; e < n_edges; e++)
-        of->sharp[of->start[e]] = is_sharp((const double(*)[2]) * place, n, of->start[e]);
+        of->sharp[of->start[e]] = is_sharp((const double(*)[2])of->place, n, of->start[e]);
     return CLOTH_OK;
 }

@@ -122,8 +122,7 @@ static bool is_sharper(const struct delaunay *plane, const unsigned char *sharp,
                        double cosine)
 {
     return plane->triangle[triangle].vertex[0] != DELAUNAY_NONE &&
-           delaunay_sharpness_of(plane, triangle) > cosine &&
-           !flat_excused(plane, plane->n_fixed, sharp, triangle);
+           delaunay_sharpness_of(plane, triangle) > cosine && !flat_excused(plane, sharp, triangle);
 }
 
 void flat_centre(const struct delaunay *plane, uint32_t triangle, double centre[2])

@@ -31,8 +31,7 @@ void flat_centre(const struct delaunay *plane, uint32_t triangle, double centre[
 void flat_improve(struct delaunay *plane, const unsigned char *sharp);
 
 /* Whether a triangle is not to be blamed: one of its vertices is sharp. */
-bool flat_excused(const struct delaunay *plane, uint32_t n_sharp, const unsigned char *sharp,
-                  uint32_t triangle);
+bool flat_excused(const struct delaunay *plane, const unsigned char *sharp, uint32_t triangle);
 
 /* Lists the vertices (double[2]) of equilateral triangles of a given edge length that are inside a
  * closed loop of n places, and not nearer to it than a part of that length: row by row, every other

@@ -18,12 +18,11 @@ struct improve {
     bool wide;                        /* those around them move, too */
 };
 
-bool flat_excused(const struct delaunay *plane, uint32_t n_sharp, const unsigned char *sharp,
-                  uint32_t triangle)
+bool flat_excused(const struct delaunay *plane, const unsigned char *sharp, uint32_t triangle)
 {
     const uint32_t *v = plane->triangle[triangle].vertex;
     for (int i = 0; i < 3; i++)
-        if (v[i] < n_sharp && sharp[v[i]])
+        if (v[i] < plane->n_fixed && sharp[v[i]])
             return true;
     return false;
 }
@@ -32,7 +31,7 @@ bool flat_excused(const struct delaunay *plane, uint32_t n_sharp, const unsigned
 static double badness(const struct improve *of, uint32_t triangle)
 {
     const double sharpness = delaunay_sharpness_of(of->plane, triangle);
-    const bool excused = flat_excused(of->plane, of->plane->n_fixed, of->sharp, triangle);
+    const bool excused = flat_excused(of->plane, of->sharp, triangle);
     return excused && sharpness < 2 ? 0 : sharpness;
 }
 

@@ -47,11 +47,10 @@ static bool meshing_is_ear(const struct delaunay *plane, uint32_t triangle)
 }
 
 /* Whether a triangle is bad, and not excused. What is below 20 degrees and an ear stays so. */
-static bool is_worth(const struct meshing_panel *of, uint32_t n_edges, struct worth worth,
-                     uint32_t triangle)
+static bool is_worth(const struct meshing_panel *of, struct worth worth, uint32_t triangle)
 {
     return delaunay_sharpness_of(&of->plane, triangle) > worth.cosine &&
-           !flat_excused(&of->plane, of->start[n_edges], of->sharp, triangle) &&
+           !flat_excused(&of->plane, of->sharp, triangle) &&
            !(worth.cosine == POOR.cosine && meshing_is_ear(&of->plane, triangle));
 }
 
@@ -65,7 +64,7 @@ static int refine_poor(struct meshing *meshing, uint32_t panel, struct worth wor
     if (!poor)
         return CLOTH_E_MEMORY;
     for (uint32_t t = 0; t < of->plane.n_triangles; t++) {
-        if (!is_worth(of, n_edges, worth, t))
+        if (!is_worth(of, worth, t))
             continue;
         for (int i = 0; i < 3; i++) {
             const uint32_t v = of->plane.triangle[t].vertex[i];
@@ -80,28 +79,22 @@ static int refine_poor(struct meshing *meshing, uint32_t panel, struct worth wor
     return CLOTH_OK;
 }
 
-static int cannot(const struct meshing *meshing, uint32_t panel, uint32_t edge,
-                  struct cloth_error *error)
-{
-    return cloth_fail(error, CLOTH_E_INPUT,
-                      "panel '%s' cannot be meshed by edges of %g m: at edge %u its boundary comes "
-                      "too near to itself",
-                      meshing->pattern->panel[panel].name, meshing->spacing, edge);
-}
-
-/* place: the panel's boundary. */
-static int mesh_outline(struct meshing *meshing, uint32_t panel, const double (*place)[2], int try,
-                        bool *again, struct cloth_error *error)
+static int mesh_panel(struct meshing *meshing, uint32_t panel, int try, bool *again,
+                      struct cloth_error *error)
 {
     struct meshing_panel *of = &meshing->panel[panel];
+    const char *name = meshing->pattern->panel[panel].name;
     const uint32_t n_edges = meshing->pattern->panel[panel].n_edges;
-    const struct meet_loop outline = {n_edges, of->start, place};
-    const struct flat_loop loop = {of->start[n_edges], place, of->sharp};
     struct cloth_error why = {0};
     uint32_t edge[2] = {0, 0}, crossing = DELAUNAY_NONE;
     bool meets = false;
     const bool last = try == TRIES - 1;
-    int code = meet_find(&outline, 1e-8, &meets, edge, error);
+    delaunay_free(&of->plane);
+    int code = meshing_outline(meshing, panel, error);
+    const double(*place)[2] = (const double(*)[2])of->place;
+    const struct meet_loop outline = {n_edges, of->start, place};
+    const struct flat_loop loop = {of->start[n_edges], place, of->sharp};
+    code = code ? code : meet_find(&outline, 1e-8, &meets, edge, error);
     if (code)
         return code;
     if (!meets && loop.n >= 3) {
@@ -109,31 +102,21 @@ static int mesh_outline(struct meshing *meshing, uint32_t panel, const double (*
         of->meshed = !code;
     }
     if (code && crossing == DELAUNAY_NONE)
-        return cloth_fail(error, code, "panel '%s': %s", meshing->pattern->panel[panel].name,
-                          why.text);
+        return cloth_fail(error, code, "panel '%s': %s", name, why.text);
     if (of->meshed)
         return last ? CLOTH_OK
                     : refine_poor(meshing, panel, try < FAIR_TRIES ? FAIR : POOR, again, error);
     if (crossing != DELAUNAY_NONE)
         edge[0] = edge[1] = meshing_edge_of(of, n_edges, crossing);
     if (last)
-        return cannot(meshing, panel, edge[0], error);
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "panel '%s' cannot be meshed by edges of %g m: at edge %u its boundary "
+                          "comes too near to itself",
+                          name, meshing->spacing, edge[0]);
     refine(meshing, panel, edge[0], 2, again);
     if (edge[1] != edge[0])
         refine(meshing, panel, edge[1], 2, again);
     return CLOTH_OK;
-}
-
-static int mesh_panel(struct meshing *meshing, uint32_t panel, int try, bool *again,
-                      struct cloth_error *error)
-{
-    double(*place)[2];
-    int code = meshing_outline(meshing, panel, &place, error);
-    delaunay_free(&meshing->panel[panel].plane);
-    if (!code)
-        code = mesh_outline(meshing, panel, (const double(*)[2])place, try, again, error);
-    free(place);
-    return code;
 }
 
 /* *last: all tries were needed, so that there may be bad triangles. */
@@ -162,7 +145,7 @@ static bool is_poor(const struct meshing *meshing)
     for (uint32_t p = 0; p < meshing->pattern->n_panels; p++) {
         const struct meshing_panel *of = &meshing->panel[p];
         for (uint32_t t = 0; t < of->plane.n_triangles; t++)
-            if (is_worth(of, meshing->pattern->panel[p].n_edges, POOR, t))
+            if (is_worth(of, POOR, t))
                 return true;
     }
     return false;

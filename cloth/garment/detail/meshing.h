@@ -10,6 +10,7 @@
 
 struct meshing_panel {
     struct delaunay plane;  /* its mesh, in the plane as seen from its front */
+    double (*place)[2];     /* m: of its boundary */
     unsigned char *sharp;   /* a vertex of its boundary: the panel's angle there is below 30 degrees
                              */
     uint32_t *start;        /* n_edges + 1: where each edge's vertices begin */
@@ -54,10 +55,8 @@ int meshing_mesh(struct meshing *meshing, double spacing, struct cloth_error *er
  * along their edge. Errors: CLOTH_E_INPUT, too many; CLOTH_E_MEMORY. */
 int meshing_divide(struct meshing *meshing, struct cloth_error *error);
 
-/* The places of a panel's boundary by its divisions, and which of its corners are sharp. `start`
- * and `sharp` of the panel are new, *place is to be freed, also after an error. */
-int meshing_outline(struct meshing *meshing, uint32_t panel, double (**place)[2],
-                    struct cloth_error *error);
+/* Finds start, place and sharp of a panel by its divisions. */
+int meshing_outline(struct meshing *meshing, uint32_t panel, struct cloth_error *error);
 
 /* Pairs the vertices of all stitches of a garment that has its pieces, each in the direction that
  * docs/garments.md says. Error: CLOTH_E_MEMORY. Local. */

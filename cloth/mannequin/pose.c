@@ -183,28 +183,24 @@ void mannequin_rig_free(struct mannequin_rig *rig)
 
 static const double WIDTH = 0.055; /* m: over which weights are smooth */
 
-/* Neighbours of vertices as pairs, in the order of triangles: each edge has both its directions. */
-static void rig_add_neighbours(const struct mesh *mesh, const double (*from)[MANNEQUIN_BONES],
-                               double (*to)[MANNEQUIN_BONES], double *count)
-{
-    for (size_t i = 0; i < 3 * (size_t)mesh->n_triangles; i++) {
-        const uint32_t a = mesh->triangle[i], b = mesh->triangle[i - i % 3 + (i + 1) % 3];
-        for (uint32_t k = 0; k < MANNEQUIN_BONES; k++)
-            to[a][k] += from[b][k];
-        count[a] += 1;
-    }
-}
-
+/* Neighbours of vertices come in the order of triangles; each edge has both its directions. */
 static int rig_smooth(const struct mesh *mesh, double (*weight)[MANNEQUIN_BONES], uint32_t rounds,
                       struct cloth_error *error)
 {
-    double(*sum)[MANNEQUIN_BONES] = cloth_alloc(mesh->n_vertices, sizeof *sum, error);
-    double *count = cloth_alloc(mesh->n_vertices, sizeof *count, error);
-    for (uint32_t round = 0; sum && count && round < rounds; round++) {
-        memset(sum, 0, mesh->n_vertices * sizeof *sum);
-        memset(count, 0, mesh->n_vertices * sizeof *count);
-        rig_add_neighbours(mesh, (const double(*)[MANNEQUIN_BONES])weight, sum, count);
-        for (uint32_t v = 0; v < mesh->n_vertices; v++)
+    const size_t n = mesh->n_vertices, n_sides = 3 * (size_t)mesh->n_triangles;
+    double(*sum)[MANNEQUIN_BONES] = cloth_alloc(n, sizeof *sum, error);
+    double *count = cloth_alloc(n, sizeof *count, error);
+    const bool made = sum && count;
+    for (size_t i = 0; made && i < n_sides; i++)
+        count[mesh->triangle[i]] += 1;
+    for (uint32_t round = 0; made && round < rounds; round++) {
+        memset(sum, 0, n * sizeof *sum);
+        for (size_t i = 0; i < n_sides; i++) {
+            const uint32_t a = mesh->triangle[i], b = mesh->triangle[i - i % 3 + (i + 1) % 3];
+            for (uint32_t k = 0; k < MANNEQUIN_BONES; k++)
+                sum[a][k] += weight[b][k];
+        }
+        for (size_t v = 0; v < n; v++)
             for (uint32_t k = 0; k < MANNEQUIN_BONES; k++)
                 weight[v][k] = sum[v][k] / count[v];
     }

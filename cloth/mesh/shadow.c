@@ -136,27 +136,23 @@ int mesh_shadow(const struct mesh_shape *shape, const double axis[3], double *ar
                 struct cloth_error *error)
 {
     const size_t n = shape->n_triangles;
-    struct shadow *shadow = cloth_alloc(1, sizeof *shadow, error);
+    struct shadow shadow = {.shape = shape,
+                            .at = cloth_alloc(shape->n_vertices, sizeof *shadow.at, error),
+                            .next = cloth_alloc(n, sizeof *shadow.next, error),
+                            .active = cloth_alloc(n, sizeof *shadow.active, error),
+                            .cut = cloth_alloc(n, sizeof *shadow.cut, error)};
+    const bool made = shadow.at && shadow.next && shadow.active && shadow.cut;
     *area = 0;
-    if (!shadow)
-        return error->code;
-    shadow->shape = shape;
-    shadow->at = cloth_alloc(shape->n_vertices, sizeof *shadow->at, error);
-    shadow->next = cloth_alloc(n, sizeof *shadow->next, error);
-    shadow->active = cloth_alloc(n, sizeof *shadow->active, error);
-    shadow->cut = cloth_alloc(n, sizeof *shadow->cut, error);
-    const bool made = shadow->at && shadow->next && shadow->active && shadow->cut;
     if (made)
-        project_vertices(shadow, axis);
-    if (made && shadow->apart > 0) {
-        shadow_list_triangles(shadow);
-        *area = sweep_lines(shadow);
+        project_vertices(&shadow, axis);
+    if (made && shadow.apart > 0) {
+        shadow_list_triangles(&shadow);
+        *area = sweep_lines(&shadow);
     }
-    free(shadow->at);
-    free(shadow->next);
-    free(shadow->active);
-    free(shadow->cut);
-    free(shadow);
+    free(shadow.at);
+    free(shadow.next);
+    free(shadow.active);
+    free(shadow.cut);
     return made ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 

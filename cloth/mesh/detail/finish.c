@@ -96,17 +96,19 @@ static int check_lone_edges(const struct finish *of)
     return CLOTH_OK;
 }
 
-static int refuse_polygon(const struct finish *of, uint32_t f,
-                          const struct mesh_polygon_fault *fault)
+static int refuse_polygon(const struct finish *of, uint32_t f, enum mesh_polygon why,
+                          const uint32_t side[2])
 {
-    const uint32_t *corner = of->mesh->face_corner + of->mesh->face_start[f], *side = fault->side;
+    const uint32_t *corner = of->mesh->face_corner + of->mesh->face_start[f];
     const uint32_t n = of->mesh->face_start[f + 1] - of->mesh->face_start[f];
-    if (fault->kind == MESH_POLYGON_TOO_LARGE)
+    if (why == MESH_POLYGON_NO_MEMORY)
+        return CLOTH_E_MEMORY;
+    if (why == MESH_POLYGON_TOO_LARGE)
         return refuse(of, FINISH_FACE, f,
                       "the face is not convex and has %u corners; at most %d can be cut into "
                       "triangles",
                       n, MESH_MAX_CORNERS);
-    if (fault->kind == MESH_POLYGON_NO_AREA)
+    if (why == MESH_POLYGON_NO_AREA)
         return refuse(of, FINISH_FACE, f,
                       "the face has no area: its corners lie on a line, or it crosses itself");
     return refuse(of, FINISH_FACE, f,
@@ -126,14 +128,13 @@ static int cut_faces(const struct finish *of)
     for (uint32_t f = 0; f < mesh->n_faces; f++) {
         const uint32_t *corner = mesh->face_corner + mesh->face_start[f];
         const uint32_t n_corners = mesh->face_start[f + 1] - mesh->face_start[f];
-        struct mesh_polygon_fault fault;
-        int code = mesh_polygon_cut(mesh->position, n_corners, corner, to, &fault, of->error);
-        if (code == CLOTH_E_INPUT && of->source->fans && fault.kind == MESH_POLYGON_CROSSES) {
+        uint32_t side[2];
+        const enum mesh_polygon cut =
+            mesh_polygon_cut(mesh->position, n_corners, corner, to, side, of->error);
+        if (cut == MESH_POLYGON_CROSSES && of->source->fans)
             mesh_polygon_fan(n_corners, corner, to);
-            code = CLOTH_OK;
-        }
-        if (code)
-            return code == CLOTH_E_INPUT ? refuse_polygon(of, f, &fault) : code;
+        else if (cut != MESH_POLYGON_CUT)
+            return refuse_polygon(of, f, cut, side);
         to += 3 * (size_t)(n_corners - 2);
     }
     mesh->n_triangles = (uint32_t)n;

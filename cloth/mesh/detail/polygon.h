@@ -7,14 +7,13 @@
 
 enum { MESH_MAX_CORNERS = 10000 }; /* of a polygon that is not convex: it takes n^2 or more */
 
-/* What is wrong with a polygon. */
-struct mesh_polygon_fault {
-    enum {
-        MESH_POLYGON_NO_AREA, /* its corners are on one line, or its parts cancel */
-        MESH_POLYGON_CROSSES, /* two of its sides meet where they are no neighbours, or fold back */
-        MESH_POLYGON_TOO_LARGE /* more than MESH_MAX_CORNERS corners, and not convex */
-    } kind;
-    uint32_t side[2]; /* that cross: from these corners on to the next ones, from 0 */
+/* How a cut ended. */
+enum mesh_polygon {
+    MESH_POLYGON_CUT,
+    MESH_POLYGON_NO_AREA,   /* its corners are on one line, or its parts cancel */
+    MESH_POLYGON_CROSSES,   /* two of its sides meet where they are no neighbours, or fold back */
+    MESH_POLYGON_TOO_LARGE, /* more than MESH_MAX_CORNERS corners, and not convex */
+    MESH_POLYGON_NO_MEMORY
 };
 
 /* Cuts a polygon into n - 2 triangles of its corners, wound as it is. They are a fan from its first
@@ -23,10 +22,10 @@ struct mesh_polygon_fault {
  * polygon is projected along the axis nearest to its normal (Newell's, as in Sutherland, Sproull &
  * Schumacker 1974); for flat polygons that is its own plane. position: x 3 of all vertices; corner:
  * n >= 3 of these; triangle: (n - 2) x 3. Angles below 1e-9 count as flat; ears with an angle below
- * 1e-3 come last. Errors: CLOTH_E_INPUT, described in *fault, without a message; CLOTH_E_MEMORY.
- * Local. */
-int mesh_polygon_cut(const double *position, uint32_t n, const uint32_t *corner, uint32_t *triangle,
-                     struct mesh_polygon_fault *fault, struct cloth_error *error);
+ * 1e-3 come last. side: those that cross, from these corners on to the next ones, from 0. Only the
+ * lack of memory has a message. Local. */
+enum mesh_polygon mesh_polygon_cut(const double *position, uint32_t n, const uint32_t *corner,
+                                   uint32_t *triangle, uint32_t side[2], struct cloth_error *error);
 
 /* The n - 2 triangles that its first corner makes with its sides, whatever its shape. */
 void mesh_polygon_fan(uint32_t n, const uint32_t *corner, uint32_t *triangle);

@@ -29,29 +29,26 @@ static int compare_edges(const void *a, const void *b)
 }
 
 struct seams {
-    uint32_t n;
-    struct seam_edge *edge;
+    struct cloth_list edge; /* struct seam_edge, sorted */
     const struct girth_seam *seam;
 };
 
 static int list_seams(struct seams *seams, uint32_t n_seams, const struct girth_seam *seam,
                       struct cloth_error *error)
 {
-    size_t n = 0;
-    for (uint32_t s = 0; s < n_seams; s++)
-        n += 2 * (size_t)seam[s].n;
-    *seams = (struct seams){.edge = cloth_alloc(n, sizeof *seams->edge, error), .seam = seam};
-    if (!seams->edge)
-        return CLOTH_E_MEMORY;
+    int code = CLOTH_OK;
+    seams->seam = seam;
     for (uint32_t s = 0; s < n_seams; s++)
         for (uint32_t k = 0; k + 1 < seam[s].n; k++)
-            for (uint32_t side = 0; side < 2; side++) {
+            for (uint32_t side = 0; side < 2 && !code; side++) {
                 const uint32_t a = seam[s].pair[k][side], b = seam[s].pair[k + 1][side];
                 const uint64_t low = a < b ? a : b, high = a < b ? b : a;
-                seams->edge[seams->n++] = (struct seam_edge){low << 32 | high, s, side, k, b < a};
+                const struct seam_edge edge = {low << 32 | high, s, side, k, b < a};
+                code = cloth_list_put(&seams->edge, &edge, sizeof edge, error);
             }
-    qsort(seams->edge, seams->n, sizeof *seams->edge, compare_edges);
-    return CLOTH_OK;
+    if (seams->edge.n)
+        qsort(seams->edge.items, seams->edge.n, sizeof(struct seam_edge), compare_edges);
+    return code;
 }
 
 /* An open end of a cut on a seam. */
@@ -69,8 +66,8 @@ static int list_loose(struct cloth_list *list, const struct slice *slice, const 
             struct slice_end *end = &slice->segment[s].end[k];
             const struct seam_edge key = {.edge = end->edge};
             const struct seam_edge *edge =
-                end->open && seams->n
-                    ? bsearch(&key, seams->edge, seams->n, sizeof key, compare_edges)
+                end->open && seams->edge.n
+                    ? bsearch(&key, seams->edge.items, seams->edge.n, sizeof key, compare_edges)
                     : NULL;
             if (!edge)
                 continue;
@@ -198,20 +195,9 @@ static int body_girth(double *girth, const struct slice *body, const struct loop
 static int slice_at(struct slice *slice, const struct girth_mesh *mesh, double y,
                     struct cloth_error *error)
 {
-    uint32_t n = 0;
-    for (uint32_t t = 0; t < mesh->n_triangles; t++)
-        for (int k = 0; k < 3; k++)
-            n = mesh->triangle[t][k] < n ? n : mesh->triangle[t][k] + 1;
-    double *height = cloth_alloc(n, sizeof *height, error);
-    *slice = (struct slice){0};
-    if (!height)
-        return CLOTH_E_MEMORY;
-    for (uint32_t v = 0; v < n; v++)
-        height[v] = mesh->x[v][1] - y;
-    const struct slice_mesh cut = {mesh->n_triangles, mesh->triangle, mesh->x, height};
-    const int code = slice_make(slice, &cut, error);
-    free(height);
-    return code;
+    static const double up[3] = {0, 1, 0};
+    const struct slice_mesh cut = {mesh->n_triangles, mesh->triangle, mesh->x};
+    return slice_make(slice, &cut, up, y, error);
 }
 
 struct levels {
@@ -293,6 +279,6 @@ int girth_compare(struct girth_worst *worst, const struct girth_mesh *garment, u
     for (uint32_t l = 0; l < levels.n; l++)
         slice_free(&levels.body[l]);
     free(levels.body);
-    free(seams.edge);
+    free(seams.edge.items);
     return code;
 }

@@ -71,22 +71,17 @@ static int find_girth(const struct surface *surface, const struct figure *figure
                       double *girth, struct cloth_error *error)
 {
     double point[3], normal[3], (*sum)[4] = NULL;
-    double *height = cloth_alloc(surface->n, sizeof *height, error);
     const struct slice_mesh mesh = {surface->m, (const uint32_t(*)[3])surface->triangle,
-                                    (const double(*)[3])surface->x, height};
-    struct slice slice = {0};
+                                    (const double(*)[3])surface->x};
+    struct slice slice;
     figure_section(figure, measured, point, normal);
-    const double level = cloth_dot(point, normal);
-    for (uint32_t v = 0; v < surface->n && height; v++)
-        height[v] = cloth_dot(surface->x[v], normal) - level;
-    if (height && !slice_make(&slice, &mesh, error))
+    if (!slice_make(&slice, &mesh, normal, cloth_dot(point, normal), error))
         sum = cloth_alloc(slice.n, sizeof *sum, error);
     if (sum) {
         sum_loops(&slice, sum);
         *girth = nearest_loop(&slice, (const double(*)[4])sum, point, measured < MANNEQUIN_THIGH);
     }
     free(sum);
-    free(height);
     slice_free(&slice);
     return error->code;
 }

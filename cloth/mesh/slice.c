@@ -7,9 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void cut_edge(struct slice_end *end, const struct slice_mesh *mesh, uint32_t a, uint32_t b)
+/* part: where the plane is, from a on. */
+static void cut_edge(struct slice_end *end, const struct slice_mesh *mesh, uint32_t a, uint32_t b,
+                     double part)
 {
-    const double p = mesh->height[a], q = mesh->height[b], part = p / (p - q);
     end->part = a < b ? part : 1 - part;
     end->edge = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
     end->open = true;
@@ -17,16 +18,16 @@ static void cut_edge(struct slice_end *end, const struct slice_mesh *mesh, uint3
         end->place[k] = mesh->x[a][k] + part * (mesh->x[b][k] - mesh->x[a][k]);
 }
 
-/* False: the plane does not cut the triangle. */
+/* height: of its corners over the plane. False: the plane does not cut the triangle. */
 static bool slice_cut_triangle(struct slice_segment *segment, const struct slice_mesh *mesh,
-                               uint32_t t)
+                               uint32_t t, const double height[3])
 {
     const uint32_t *v = mesh->triangle[t];
     int n = 0;
     for (int i = 0; i < 3; i++) {
-        const uint32_t a = v[i], b = v[(i + 1) % 3];
-        if ((mesh->height[a] < 0) != (mesh->height[b] < 0))
-            cut_edge(&segment->end[n++], mesh, a, b);
+        const int j = (i + 1) % 3;
+        if ((height[i] < 0) != (height[j] < 0))
+            cut_edge(&segment->end[n++], mesh, v[i], v[j], height[i] / (height[i] - height[j]));
     }
     segment->length = n == 2 ? cloth_distance(segment->end[0].place, segment->end[1].place) : 0;
     return n == 2;
@@ -68,14 +69,19 @@ static int slice_join(struct slice *slice, struct cloth_error *error)
     return CLOTH_OK;
 }
 
-int slice_make(struct slice *slice, const struct slice_mesh *mesh, struct cloth_error *error)
+int slice_make(struct slice *slice, const struct slice_mesh *mesh, const double normal[3],
+               double level, struct cloth_error *error)
 {
     struct cloth_list list = {0};
     struct slice_segment segment;
     int code = CLOTH_OK;
-    for (uint32_t t = 0; t < mesh->n_triangles && !code; t++)
-        if (slice_cut_triangle(&segment, mesh, t))
+    for (uint32_t t = 0; t < mesh->n_triangles && !code; t++) {
+        double height[3];
+        for (int i = 0; i < 3; i++)
+            height[i] = cloth_dot(mesh->x[mesh->triangle[t][i]], normal) - level;
+        if (slice_cut_triangle(&segment, mesh, t, height))
             code = cloth_list_put(&list, &segment, sizeof segment, error);
+    }
     *slice = (struct slice){.n = (uint32_t)list.n, .segment = list.items};
     return code ? code : slice_join(slice, error);
 }

@@ -2,7 +2,6 @@
 #include "cloth/base/memory.h"
 #include "cloth/base/vector.h"
 #include "cloth/garment/detail/curve.h"
-#include "cloth/garment/detail/meet.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
  *
  * A vertex may have another uv in each of its triangles, and then another place at rest if the rest
  * shape comes from uv. So places at rest are asked for by triangle. */
-#include "cloth/mesh/detail/vector.h"
+#include "cloth/base/vector.h"
 #include "cloth/mesh/mesh.h"
 
 #include <string.h>
@@ -113,6 +113,19 @@ static uint32_t places_number_of(const struct mesh *mesh, uint32_t t, uint32_t v
 const double *mesh_place(const struct mesh *mesh, uint32_t t, uint32_t vertex)
 {
     return mesh->position + 3 * (size_t)places_number_of(mesh, t, vertex);
+}
+
+double mesh_distance(const double *position, uint32_t a, uint32_t b)
+{
+    return cloth_distance(position + 3 * (size_t)a, position + 3 * (size_t)b);
+}
+
+double mesh_area(const double *position, const uint32_t corner[3])
+{
+    double normal[3];
+    cloth_normal(position + 3 * (size_t)corner[0], position + 3 * (size_t)corner[1],
+                 position + 3 * (size_t)corner[2], normal);
+    return 0.5 * sqrt(cloth_dot(normal, normal));
 }
 
 double mesh_triangle_area(const struct mesh *mesh, uint32_t t)

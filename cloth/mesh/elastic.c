@@ -2,8 +2,6 @@
  * is singular, has its moduli, too. */
 #include "cloth/mesh/lattice.h"
 
-#include "cloth/mesh/detail/vector.h"
-
 #include <math.h>
 
 static const struct mesh_elastic NONE = {NAN, NAN, NAN, NAN};

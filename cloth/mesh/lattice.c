@@ -4,7 +4,6 @@
 
 #include "cloth/base/memory.h"
 #include "cloth/mesh/detail/sides.h"
-#include "cloth/mesh/detail/vector.h"
 
 #include <math.h>
 #include <stdlib.h>

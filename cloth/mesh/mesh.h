@@ -158,6 +158,9 @@ uint32_t mesh_uv_number(const struct mesh *mesh, uint32_t t, uint32_t vertex);
 /* Its place there, m: a shape at rest from uv may have several places of a vertex. */
 const double *mesh_place(const struct mesh *mesh, uint32_t t, uint32_t vertex);
 double mesh_triangle_area(const struct mesh *mesh, uint32_t t);
+/* The distance of two positions (n x 3), m, and the area of a triangle with these corners, m^2. */
+double mesh_distance(const double *position, uint32_t a, uint32_t b);
+double mesh_area(const double *position, const uint32_t corner[3]);
 
 /* The group of that name; UINT32_MAX: there is none. */
 uint32_t mesh_group_of(const struct mesh *mesh, const char *name);

@@ -8,6 +8,5 @@ libduite_cloth_a_SOURCES += \
 	cloth/mesh/detail/obj.h \
 	cloth/mesh/detail/obj_names.c cloth/mesh/detail/obj_text.c cloth/mesh/detail/obj_uv.c \
 	cloth/mesh/detail/order.c \
-	cloth/mesh/detail/polygon.c cloth/mesh/detail/polygon.h \
-	cloth/mesh/detail/sides.h \
-	cloth/mesh/detail/vector.h
+	cloth/mesh/detail/polygon.c \
+	cloth/mesh/detail/sides.h

@@ -1,8 +1,8 @@
 /* Segments are sorted along the longer axis of the loop; each is tried with those that it overlaps
  * there. */
-#include "cloth/garment/detail/meet.h"
 #include "cloth/base/memory.h"
 #include "cloth/base/vector.h"
+#include "cloth/garment/detail/curve.h"
 
 #include <stdlib.h>
 

@@ -5,7 +5,6 @@
 #include "cloth/garment/detail/meshing.h"
 #include "cloth/base/memory.h"
 #include "cloth/garment/detail/flat.h"
-#include "cloth/garment/detail/meet.h"
 
 #include <stdlib.h>
 

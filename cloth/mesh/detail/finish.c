@@ -3,7 +3,6 @@
 #include "cloth/mesh/detail/finish.h"
 
 #include "cloth/base/memory.h"
-#include "cloth/mesh/detail/polygon.h"
 #include "cloth/mesh/detail/sides.h"
 
 #include <math.h>

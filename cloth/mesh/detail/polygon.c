@@ -1,6 +1,6 @@
 /* A polygon that leaves here without a fault is simple, so that it has an ear until three corners
  * are left. */
-#include "cloth/mesh/detail/polygon.h"
+#include "cloth/mesh/detail/finish.h"
 
 #include "cloth/base/memory.h"
 

@@ -1,5 +1,4 @@
 /* Grids, what all meshes can do with their vertices, and the frame they stand in. */
-#include "cloth/mesh/detail/vector.h"
 #include "tests/cloth/mesh/tools.h"
 
 #include <math.h>

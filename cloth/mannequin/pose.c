@@ -184,8 +184,8 @@ void mannequin_rig_free(struct mannequin_rig *rig)
 static const double WIDTH = 0.055; /* m: over which weights are smooth */
 
 /* Neighbours of vertices come in the order of triangles; each edge has both its directions. */
-static int rig_smooth(const struct mesh *mesh, double (*weight)[MANNEQUIN_BONES], uint32_t rounds,
-                      struct cloth_error *error)
+static void rig_smooth(const struct mesh *mesh, double (*weight)[MANNEQUIN_BONES], uint32_t rounds,
+                       struct cloth_error *error)
 {
     const size_t n = mesh->n_vertices, n_sides = 3 * (size_t)mesh->n_triangles;
     double(*sum)[MANNEQUIN_BONES] = cloth_alloc(n, sizeof *sum, error);
@@ -206,19 +206,17 @@ static int rig_smooth(const struct mesh *mesh, double (*weight)[MANNEQUIN_BONES]
     }
     free(sum);
     free(count);
-    return error->code;
 }
 
-int rig_make(struct mannequin_rig *rig, const struct mesh *mesh, const struct surface *half,
-             const struct figure *figure, double edge, double low, const double scale[2],
-             struct cloth_error *error)
+void rig_make(struct mannequin_rig *rig, const struct mesh *mesh, const struct surface *half,
+              double edge, double low, const double scale[2])
 {
-    rig->weight = cloth_alloc(mesh->n_vertices, sizeof *rig->weight, error);
+    rig->weight = cloth_alloc(mesh->n_vertices, sizeof *rig->weight, half->error);
     if (!rig->weight)
-        return error->code;
+        return;
     for (uint32_t b = 1; b < FIGURE_BONES; b++) {
         double at[3];
-        figure_joint(figure, b, at);
+        figure_joint(half->figure, b, at);
         for (uint32_t side = 0; side < 2; side++) {
             double *joint = rig->joint[rig_bones[side][b]];
             joint[0] = scale[1] * (side ? -at[0] : at[0]);
@@ -228,10 +226,11 @@ int rig_make(struct mannequin_rig *rig, const struct mesh *mesh, const struct su
     }
     uint32_t image = half->n;
     for (uint32_t v = 0; v < half->n; v++) {
-        const enum figure_bone bone = figure_bone(figure, half->x[v]);
+        const enum figure_bone bone = figure_bone(half->figure, half->x[v]);
         rig->weight[v][rig_bones[0][bone]] = 1;
         if (!half->middle[v])
             rig->weight[image++][rig_bones[1][bone]] = 1;
     }
-    return rig_smooth(mesh, rig->weight, (uint32_t)(WIDTH * WIDTH / (edge * edge)) + 1, error);
+    const uint32_t rounds = (uint32_t)(WIDTH * WIDTH / (edge * edge)) + 1;
+    rig_smooth(mesh, rig->weight, rounds, half->error);
 }

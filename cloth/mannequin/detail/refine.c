@@ -12,26 +12,23 @@ static const double BENT = 0.5; /* the cosine by which a change may turn a trian
 /* A pass. touched: by triangle (split), by vertex (others). */
 struct pass {
     struct surface *surface;
-    const struct figure *figure;
     double wanted; /* how long edges are to be at most, m */
-    struct cloth_error *error;
     struct surface_links links;
     unsigned char *touched;
 };
 
 /* Goes over all edges; `change` may change the surface at one. */
-static int run_pass(struct pass *pass,
-                    void (*change)(struct pass *pass, const struct surface_edge *))
+static void run_pass(struct surface *surface, double wanted,
+                     void (*change)(struct pass *pass, const struct surface_edge *))
 {
-    struct cloth_error *error = pass->error;
-    const uint32_t n = pass->surface->n, m = pass->surface->m;
-    if (!surface_links_find(&pass->links, pass->surface, error))
-        pass->touched = cloth_alloc(n > m ? n : m, 1, error);
-    for (uint32_t e = 0; pass->touched && e < pass->links.n_edges && !error->code; e++)
-        change(pass, &pass->links.edge[e]);
-    surface_links_free(&pass->links);
-    free(pass->touched);
-    return error->code;
+    struct pass pass = {.surface = surface, .wanted = wanted};
+    const uint32_t n = surface->n, m = surface->m;
+    if (surface_links_find(&pass.links, surface))
+        pass.touched = cloth_alloc(n > m ? n : m, 1, surface->error);
+    for (uint32_t e = 0; !surface->error->code && e < pass.links.n_edges; e++)
+        change(&pass, &pass.links.edge[e]);
+    surface_links_free(&pass.links);
+    free(pass.touched);
 }
 
 static void middle_of(const struct surface *surface, const struct surface_edge *edge, double x[3])
@@ -48,7 +45,7 @@ static double relative_length(const struct pass *pass, const struct surface_edge
     double x[3];
     middle_of(surface, edge, x);
     return cloth_distance(surface->x[edge->end[0]], surface->x[edge->end[1]]) /
-           figure_edge(pass->figure, x, pass->wanted);
+           figure_edge(surface->figure, x, pass->wanted);
 }
 
 /* The cosine of the angle between two vectors; 0 if one has no length. */
@@ -61,15 +58,14 @@ static double refine_cosine(const double a[3], const double b[3])
 /* ---- Split ---- */
 
 /* The half of a triangle at the end a stays; the other half, at b, is new. */
-static void halve(struct surface *surface, uint32_t t, uint32_t a, uint32_t b, uint32_t vertex,
-                  struct cloth_error *error)
+static void halve(struct surface *surface, uint32_t t, uint32_t a, uint32_t b, uint32_t vertex)
 {
     uint32_t *old = surface->triangle[t], new[3];
     for (int i = 0; i < 3; i++) {
         new[i] = old[i] == a ? vertex : old[i];
         old[i] = old[i] == b ? vertex : old[i];
     }
-    surface_add_triangle(surface, new, error);
+    surface_add_triangle(surface, new);
 }
 
 static void split_edge(struct pass *pass, const struct surface_edge *edge)
@@ -80,19 +76,17 @@ static void split_edge(struct pass *pass, const struct surface_edge *edge)
         !(relative_length(pass, edge) > LONG))
         return;
     middle_of(pass->surface, edge, x);
-    const uint32_t v = surface_add_vertex(pass->surface, x, t[1] == UINT32_MAX, pass->error);
+    const uint32_t v = surface_add_vertex(pass->surface, x, t[1] == UINT32_MAX);
     for (int i = 0; i < 2 && v != UINT32_MAX; i++)
         if (t[i] != UINT32_MAX) {
             pass->touched[t[i]] = 1;
-            halve(pass->surface, t[i], a, b, v, pass->error);
+            halve(pass->surface, t[i], a, b, v);
         }
 }
 
-int surface_split(struct surface *surface, const struct figure *figure, double edge,
-                  struct cloth_error *error)
+void surface_split(struct surface *surface, double edge)
 {
-    struct pass pass = {surface, figure, edge, error, {0}, NULL};
-    return run_pass(&pass, split_edge);
+    run_pass(surface, edge, split_edge);
 }
 
 /* ---- Collapse ---- */
@@ -197,11 +191,11 @@ static void collapse_edge(struct pass *pass, const struct surface_edge *edge)
 }
 
 /* Leaves out triangles without corners, and vertices without triangles. */
-static int compact(struct surface *surface, struct cloth_error *error)
+static void compact(struct surface *surface)
 {
-    uint32_t *place = cloth_alloc(surface->n, sizeof *place, error), m = 0, n = 0;
+    uint32_t *place = cloth_alloc(surface->n, sizeof *place, surface->error), m = 0, n = 0;
     if (!place)
-        return error->code;
+        return;
     for (uint32_t t = 0; t < surface->m; t++)
         if (surface->triangle[t][0] != UINT32_MAX)
             memmove(surface->triangle[m++], surface->triangle[t], sizeof *surface->triangle);
@@ -220,15 +214,13 @@ static int compact(struct surface *surface, struct cloth_error *error)
         for (int k = 0; k < 3; k++)
             surface->triangle[t][k] = place[surface->triangle[t][k]];
     free(place);
-    return CLOTH_OK;
 }
 
-int surface_collapse(struct surface *surface, const struct figure *figure, double edge,
-                     struct cloth_error *error)
+void surface_collapse(struct surface *surface, double edge)
 {
-    struct pass pass = {surface, figure, edge, error, {0}, NULL};
-    const int code = run_pass(&pass, collapse_edge);
-    return code ? code : compact(surface, error);
+    run_pass(surface, edge, collapse_edge);
+    if (!surface->error->code)
+        compact(surface);
 }
 
 /* ---- Turn ---- */
@@ -298,8 +290,7 @@ static void turn_edge(struct pass *pass, const struct surface_edge *edge)
         pass->touched[all[i]] = 1;
 }
 
-int surface_turn(struct surface *surface, struct cloth_error *error)
+void surface_turn(struct surface *surface)
 {
-    struct pass pass = {.surface = surface, .error = error};
-    return run_pass(&pass, turn_edge);
+    run_pass(surface, 0, turn_edge);
 }

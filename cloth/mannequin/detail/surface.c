@@ -5,33 +5,30 @@
 
 #include <stdlib.h>
 
-/* Adds an item behind the first n of a list. */
-static int put_behind(struct cloth_list *list, uint32_t n, const void *item, size_t size,
-                      struct cloth_error *error)
+/* Adds an item behind the first n of a list. False: after an error. */
+static bool put_behind(const struct surface *surface, struct cloth_list *list, uint32_t n,
+                       const void *item, size_t size)
 {
     list->n = n;
-    return cloth_list_put(list, item, size, error);
+    return !surface->error->code && !cloth_list_put(list, item, size, surface->error);
 }
 
-uint32_t surface_add_vertex(struct surface *surface, const double x[3], bool middle,
-                            struct cloth_error *error)
+uint32_t surface_add_vertex(struct surface *surface, const double x[3], bool middle)
 {
-    if (put_behind(&surface->places, surface->n, x, sizeof *surface->x, error) ||
-        put_behind(&surface->middles, surface->n, &middle, sizeof middle, error))
+    if (!put_behind(surface, &surface->places, surface->n, x, sizeof *surface->x) ||
+        !put_behind(surface, &surface->middles, surface->n, &middle, sizeof middle))
         return UINT32_MAX;
     surface->x = surface->places.items;
     surface->middle = surface->middles.items;
     return surface->n++;
 }
 
-int surface_add_triangle(struct surface *surface, const uint32_t corner[3],
-                         struct cloth_error *error)
+void surface_add_triangle(struct surface *surface, const uint32_t corner[3])
 {
-    if (!put_behind(&surface->triangles, surface->m, corner, sizeof *surface->triangle, error)) {
+    if (put_behind(surface, &surface->triangles, surface->m, corner, sizeof *surface->triangle)) {
         surface->triangle = surface->triangles.items;
         surface->m++;
     }
-    return error->code;
 }
 
 void surface_free(struct surface *surface)
@@ -65,17 +62,17 @@ static void find_edge(struct surface_links *links, uint32_t v, uint32_t high, ui
     links->edge[links->n_edges++] = (struct surface_edge){{v, high}, {t, UINT32_MAX}};
 }
 
-int surface_links_find(struct surface_links *links, const struct surface *surface,
-                       struct cloth_error *error)
+bool surface_links_find(struct surface_links *links, const struct surface *surface)
 {
+    struct cloth_error *error = surface->error;
     *links = (struct surface_links){
         .edge = cloth_alloc(3 * (size_t)surface->m, sizeof *links->edge, error),
         .first_edge = cloth_alloc((size_t)surface->n + 1, sizeof *links->first_edge, error),
         .first = cloth_alloc((size_t)surface->n + 2, sizeof *links->first, error),
         .fan = cloth_alloc(3 * (size_t)surface->m, sizeof *links->fan, error),
     };
-    if (!links->edge || !links->first_edge || !links->first || !links->fan)
-        return error->code;
+    if (error->code)
+        return false;
     find_fans(links, surface);
     for (uint32_t v = 0; v < surface->n; v++) {
         for (uint32_t i = links->first[v]; i < links->first[v + 1]; i++)
@@ -87,7 +84,7 @@ int surface_links_find(struct surface_links *links, const struct surface *surfac
             }
         links->first_edge[v + 1] = links->n_edges;
     }
-    return CLOTH_OK;
+    return true;
 }
 
 void surface_links_free(struct surface_links *links)
@@ -106,13 +103,12 @@ static const double WAY = 0.7; /* towards the middle of the neighbours */
 static const double STEP = 0.008; /* m: no step is longer, since beyond thin parts slopes end */
 
 /* Newton's steps along the gradient. */
-static void project(const struct surface *surface, const struct figure *figure, uint32_t v,
-                    int steps)
+static void project(const struct surface *surface, uint32_t v, int steps)
 {
     double *x = surface->x[v];
     for (int i = 0; i < steps; i++) {
         double g[3];
-        const double d = figure_gradient(figure, x, g);
+        const double d = figure_gradient(surface->figure, x, g);
         if (surface->middle[v])
             g[0] = 0;
         const double square = fmax(cloth_dot(g, g), fmax(0.01, fabs(d) * fabs(d) / (STEP * STEP)));
@@ -121,10 +117,10 @@ static void project(const struct surface *surface, const struct figure *figure, 
     }
 }
 
-void surface_project(struct surface *surface, const struct figure *figure)
+void surface_project(struct surface *surface)
 {
     for (uint32_t v = 0; v < surface->n; v++)
-        project(surface, figure, v, 3);
+        project(surface, v, 3);
 }
 
 /* Sums of neighbours, by edges: those of a boundary's edge once, others twice, as seen from the
@@ -144,11 +140,10 @@ static void sum_neighbours(const struct surface *surface, const struct surface_l
     }
 }
 
-static void slide(const struct surface *surface, const struct figure *figure, uint32_t v,
-                  const double sum[4])
+static void slide(const struct surface *surface, uint32_t v, const double sum[4])
 {
     double *x = surface->x[v], g[3], way[3];
-    figure_gradient(figure, x, g);
+    figure_gradient(surface->figure, x, g);
     if (surface->middle[v])
         g[0] = 0;
     for (int c = 0; c < 3; c++)
@@ -158,20 +153,19 @@ static void slide(const struct surface *surface, const struct figure *figure, ui
         x[c] += way[c] - across * g[c];
     if (surface->middle[v])
         x[0] = 0;
-    project(surface, figure, v, 1);
+    project(surface, v, 1);
 }
 
-int surface_smooth(struct surface *surface, const struct figure *figure, struct cloth_error *error)
+void surface_smooth(struct surface *surface)
 {
     struct surface_links links;
     double(*sum)[4] = NULL;
-    if (!surface_links_find(&links, surface, error))
-        sum = cloth_alloc(surface->n, sizeof *sum, error);
+    if (surface_links_find(&links, surface))
+        sum = cloth_alloc(surface->n, sizeof *sum, surface->error);
     if (sum)
         sum_neighbours(surface, &links, sum);
     for (uint32_t v = 0; sum && v < surface->n; v++)
-        slide(surface, figure, v, sum[v]);
+        slide(surface, v, sum[v]);
     free(sum);
     surface_links_free(&links);
-    return error->code;
 }

@@ -8,10 +8,12 @@
 /* The mesh of half a figure, x >= 0, while it is made. Its boundary lies in the middle plane x = 0:
  * there its mirror image joins. */
 struct surface {
-    uint32_t n, m;                                /* vertices, triangles */
-    double (*x)[3];                               /* n, m */
-    bool *middle;                                 /* n: on the boundary: x is 0 and remains so */
-    uint32_t (*triangle)[3];                      /* m: counterclockwise as seen from outside */
+    const struct figure *figure;
+    struct cloth_error *error; /* the first one, lack of memory; after it nothing is done */
+    uint32_t n, m;             /* vertices, triangles */
+    double (*x)[3];            /* n, m */
+    bool *middle;              /* n: on the boundary: x is 0 and remains so */
+    uint32_t (*triangle)[3];   /* m: counterclockwise as seen from outside */
     struct cloth_list places, middles, triangles; /* room for the three, in surface.c alone */
 };
 
@@ -28,42 +30,35 @@ struct surface_links {
 };
 
 /* Marches over a lattice of tetrahedra with edges of `cell` and more, m: the surface is empty
- * before. Errors of all: CLOTH_E_MEMORY; the caller frees in any case. */
-int surface_march(struct surface *surface, const struct figure *figure, double cell,
-                  struct cloth_error *error);
+ * before. */
+void surface_march(struct surface *surface, double cell);
 
-int surface_links_find(struct surface_links *links, const struct surface *surface,
-                       struct cloth_error *error);
+/* False after an error; the links are to be freed in any case. */
+bool surface_links_find(struct surface_links *links, const struct surface *surface);
 void surface_links_free(struct surface_links *links);
 
 /* One pass each of a remesher: splits edges longer than 4/3 of what figure_edge says for `edge`,
  * collapses those shorter than 4/5 of it, turns edges where vertices then have nearer to six
  * neighbours, and moves vertices towards the middle of their neighbours, and onto the figure. No
  * two changes of a pass touch the same triangle. */
-int surface_split(struct surface *surface, const struct figure *figure, double edge,
-                  struct cloth_error *error);
-int surface_collapse(struct surface *surface, const struct figure *figure, double edge,
-                     struct cloth_error *error);
-int surface_turn(struct surface *surface, struct cloth_error *error);
-int surface_smooth(struct surface *surface, const struct figure *figure, struct cloth_error *error);
+void surface_split(struct surface *surface, double edge);
+void surface_collapse(struct surface *surface, double edge);
+void surface_turn(struct surface *surface);
+void surface_smooth(struct surface *surface);
 
 /* Moves a surface that is near it onto the figure. */
-void surface_project(struct surface *surface, const struct figure *figure);
+void surface_project(struct surface *surface);
 
-/* Adds a vertex, m, and returns its number, UINT32_MAX: no memory; and a triangle. Returns the code
- * of the error, also of one before. */
-uint32_t surface_add_vertex(struct surface *surface, const double x[3], bool middle,
-                            struct cloth_error *error);
-int surface_add_triangle(struct surface *surface, const uint32_t corner[3],
-                         struct cloth_error *error);
+/* Adds a vertex, m, and returns its number, UINT32_MAX after an error; and a triangle. */
+uint32_t surface_add_vertex(struct surface *surface, const double x[3], bool middle);
+void surface_add_triangle(struct surface *surface, const uint32_t corner[3]);
 void surface_free(struct surface *surface);
 
 /* Makes the rig of a figure's whole mesh, whose first half->n vertices are those of the half. Each
  * vertex belongs to the bone of its part, then weights are smoothed along the surface. low: the
  * height in the half where the mesh is 0; scale: by which heights are multiplied, and lengths
- * aside. Error: CLOTH_E_MEMORY. */
-int rig_make(struct mannequin_rig *rig, const struct mesh *mesh, const struct surface *half,
-             const struct figure *figure, double edge, double low, const double scale[2],
-             struct cloth_error *error);
+ * aside. The error is that of the half. */
+void rig_make(struct mannequin_rig *rig, const struct mesh *mesh, const struct surface *half,
+              double edge, double low, const double scale[2]);
 
 #endif

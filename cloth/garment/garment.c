@@ -62,13 +62,13 @@ static uint32_t count_vertices(const struct meshing *meshing)
     return n;
 }
 
-static int mesh_by_count(struct meshing *meshing, uint32_t wanted, struct cloth_error *error)
+static void mesh_by_count(struct meshing *meshing, uint32_t wanted)
 {
     double spacing = first_spacing(meshing->pattern, wanted), best = spacing, least = INFINITY;
     double fine = 0, coarse = INFINITY; /* spacings that gave too many and too few */
-    int code = CLOTH_OK;
-    for (int k = 0; k < TRIES && least > (k < EARLY ? CLOSE : FAIR) && !code; k++) {
-        code = meshing_mesh(meshing, spacing, error);
+    const struct cloth_error *error = meshing->error;
+    for (int k = 0; k < TRIES && least > (k < EARLY ? CLOSE : FAIR) && !error->code; k++) {
+        meshing_mesh(meshing, spacing);
         const double n = count_vertices(meshing), off = fabs(n - wanted) / wanted;
         if (off < least) {
             least = off;
@@ -81,9 +81,8 @@ static int mesh_by_count(struct meshing *meshing, uint32_t wanted, struct cloth_
         if (off > CLOSE)
             spacing = next_spacing(spacing, n, wanted, fine, coarse);
     }
-    if (!code && meshing->spacing != best)
-        code = meshing_mesh(meshing, best, error);
-    return code;
+    if (!error->code && meshing->spacing != best)
+        meshing_mesh(meshing, best);
 }
 
 static int check_fineness(const struct garment_fineness *fineness,
@@ -185,18 +184,19 @@ static int put_pieces(struct garment *garment, struct meshing *meshing, struct c
 int garment_make(struct garment *garment, const struct garment_pattern *pattern,
                  const struct garment_fineness *fineness, struct cloth_error *error)
 {
+    struct cloth_error own = {0};
     struct meshing meshing = {0};
     *garment = (struct garment){0};
-    int code = check_fineness(fineness, pattern, error);
-    if (code)
-        return code;
-    code = meshing_make(&meshing, pattern, error);
-    if (!code)
-        code = fineness->vertices ? mesh_by_count(&meshing, fineness->vertices, error)
-                                  : meshing_mesh(&meshing, fineness->edge, error);
-    code = code ? code : put_pieces(garment, &meshing, error);
+    if (!check_fineness(fineness, pattern, &own))
+        meshing_make(&meshing, pattern, &own);
+    if (!own.code && fineness->vertices)
+        mesh_by_count(&meshing, fineness->vertices);
+    else if (!own.code)
+        meshing_mesh(&meshing, fineness->edge);
+    if (!own.code)
+        put_pieces(garment, &meshing, &own);
     meshing_free(&meshing);
-    return code;
+    return own.code ? cloth_fail(error, own.code, "%s", own.text) : CLOTH_OK;
 }
 
 void garment_free(struct garment *garment)

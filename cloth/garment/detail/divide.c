@@ -16,21 +16,21 @@ static const double GROWTH = 0.3;       /* of divisions, a length along their ed
 static const double LEAST = 0.25;       /* of the shortest division: none becomes shorter */
 enum { SWEEPS = 8 };                    /* over all corners: sizes spread that far */
 
-int meshing_make(struct meshing *meshing, const struct garment_pattern *pattern,
-                 struct cloth_error *error)
+void meshing_make(struct meshing *meshing, const struct garment_pattern *pattern,
+                  struct cloth_error *error)
 {
-    *meshing = (struct meshing){.pattern = pattern};
+    *meshing = (struct meshing){.pattern = pattern, .error = error};
     meshing->first = cloth_alloc((size_t)pattern->n_panels + 1, sizeof *meshing->first, error);
     meshing->panel = cloth_alloc(pattern->n_panels, sizeof *meshing->panel, error);
     if (!meshing->first || !meshing->panel)
-        return CLOTH_E_MEMORY;
+        return;
     for (uint32_t p = 0; p < pattern->n_panels; p++) {
         meshing->first[p + 1] = meshing->first[p] + pattern->panel[p].n_edges;
         meshing->panel[p].clockwise = garment_panel_area(&pattern->panel[p]) < 0;
     }
     meshing->edge = cloth_alloc(meshing->first[pattern->n_panels], sizeof *meshing->edge, error);
     if (!meshing->edge)
-        return CLOTH_E_MEMORY;
+        return;
     for (uint32_t p = 0; p < pattern->n_panels; p++)
         for (uint32_t e = 0; e < pattern->panel[p].n_edges; e++) {
             struct meshing_edge *edge = &meshing->edge[meshing->first[p] + e];
@@ -45,7 +45,6 @@ int meshing_make(struct meshing *meshing, const struct garment_pattern *pattern,
         meshing->edge[one].partner = two;
         meshing->edge[two].partner = one;
     }
-    return CLOTH_OK;
 }
 
 static void free_outline(struct meshing_panel *panel)
@@ -135,7 +134,7 @@ static double size_at(const struct meshing_edge *edge, double t)
 
 /* Divisions that are not equal: goes along the edge by as many as fit best, and stretches them to
  * its end. Both ends of the list are exact. */
-static int grade(struct meshing_edge *edge, struct cloth_error *error)
+static void grade(struct meshing_edge *edge, struct cloth_error *error)
 {
     struct cloth_list list = {0};
     double t = 0;
@@ -150,7 +149,7 @@ static int grade(struct meshing_edge *edge, struct cloth_error *error)
     const uint32_t n = (uint32_t)list.n - 1;
     if (code || n < edge->least) {
         free(part);
-        return code;
+        return;
     }
     const double reached = part[n];
     for (uint32_t k = 0; k <= n; k++)
@@ -162,44 +161,43 @@ static int grade(struct meshing_edge *edge, struct cloth_error *error)
     }
     edge->part = part;
     edge->n = n;
-    return CLOTH_OK;
 }
 
-static int divide_edge(struct meshing_edge *edge, double n, struct cloth_error *error)
+static void divide_edge(struct meshing_edge *edge, double n, struct cloth_error *error)
 {
     free(edge->part);
     edge->part = NULL;
     edge->n = (uint32_t)n;
-    const bool equal = fmin(edge->end[0], edge->end[1]) > 0.999 * edge->middle;
-    return equal ? CLOTH_OK : grade(edge, error);
+    if (fmin(edge->end[0], edge->end[1]) <= 0.999 * edge->middle)
+        grade(edge, error);
 }
 
-int meshing_divide(struct meshing *meshing, struct cloth_error *error)
+void meshing_divide(struct meshing *meshing)
 {
     const uint32_t *first = meshing->first, n_panels = meshing->pattern->n_panels;
     double sum = 0;
-    for (uint32_t e = 0; e < first[n_panels]; e++) {
+    for (uint32_t e = 0; e < first[n_panels] && sum <= MOST; e++) {
         struct meshing_edge *edge = &meshing->edge[e];
         const double parts = divide_wanted(meshing, edge);
         sum += parts;
-        if (!(sum <= MOST))
-            return cloth_fail(error, CLOTH_E_INPUT,
-                              "edges of %g m would divide the boundary into more than %.0f parts",
-                              meshing->spacing, MOST);
         edge->before = (struct meshing_divisions){edge->n, {edge->end[0], edge->end[1]}};
         edge->middle = edge->end[0] = edge->end[1] = 1 / parts;
     }
+    if (!(sum <= MOST)) {
+        cloth_fail(meshing->error, CLOTH_E_INPUT,
+                   "edges of %g m would divide the boundary into more than %.0f parts",
+                   meshing->spacing, MOST);
+        return;
+    }
     even_out(meshing);
-    int code = CLOTH_OK;
     for (uint32_t p = 0; p < n_panels; p++)
-        for (uint32_t e = first[p]; e < first[p + 1] && !code; e++) {
+        for (uint32_t e = first[p]; e < first[p + 1]; e++) {
             struct meshing_edge *edge = &meshing->edge[e];
-            code = divide_edge(edge, 1 / edge->middle + 0.5, error);
+            divide_edge(edge, 1 / edge->middle + 0.5, meshing->error);
             const bool same = edge->n == edge->before.n && edge->end[0] == edge->before.end[0] &&
                               edge->end[1] == edge->before.end[1];
             meshing->panel[p].meshed = meshing->panel[p].meshed && same;
         }
-    return code;
 }
 
 /* Whether the loop, which is counterclockwise, has an angle below 30 degrees inside of place i. */
@@ -211,8 +209,9 @@ static bool is_sharp(const double (*place)[2], uint32_t n, uint32_t i)
     return cosine > SHARP * sqrt(squares) && sine < 0;
 }
 
-int meshing_outline(struct meshing *meshing, uint32_t panel, struct cloth_error *error)
+bool meshing_outline(struct meshing *meshing, uint32_t panel)
 {
+    struct cloth_error *error = meshing->error;
     struct meshing_panel *of = &meshing->panel[panel];
     const struct meshing_edge *edge = meshing->edge + meshing->first[panel];
     const uint32_t n_edges = meshing->pattern->panel[panel].n_edges;
@@ -225,8 +224,8 @@ int meshing_outline(struct meshing *meshing, uint32_t panel, struct cloth_error 
     }
     of->sharp = cloth_alloc(n, 1, error);
     of->place = cloth_alloc(n, sizeof *of->place, error);
-    if (!of->start || !of->sharp || !of->place)
-        return CLOTH_E_MEMORY;
+    if (error->code)
+        return false;
     for (uint32_t e = 0; e < n_edges; e++)
         for (uint32_t k = 0; k < edge[e].n; k++) {
             double *at = of->place[of->start[e] + k];
@@ -236,5 +235,5 @@ int meshing_outline(struct meshing *meshing, uint32_t panel, struct cloth_error 
         }
     for (uint32_t e = 0; e < n_edges; e++)
         of->sharp[of->start[e]] = is_sharp((const double(*)[2])of->place, n, of->start[e]);
-    return CLOTH_OK;
+    return true;
 }

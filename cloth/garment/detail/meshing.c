@@ -54,14 +54,13 @@ static bool is_worth(const struct meshing_panel *of, struct worth worth, uint32_
 }
 
 /* Edges of bad triangles; each is refined once. */
-static int refine_poor(struct meshing *meshing, uint32_t panel, struct worth worth, bool *again,
-                       struct cloth_error *error)
+static void refine_poor(struct meshing *meshing, uint32_t panel, struct worth worth, bool *again)
 {
     const struct meshing_panel *of = &meshing->panel[panel];
     const uint32_t n_edges = meshing->pattern->panel[panel].n_edges;
-    unsigned char *poor = cloth_alloc(n_edges, 1, error);
+    unsigned char *poor = cloth_alloc(n_edges, 1, meshing->error);
     if (!poor)
-        return CLOTH_E_MEMORY;
+        return;
     for (uint32_t t = 0; t < of->plane.n_triangles; t++) {
         if (!is_worth(of, worth, t))
             continue;
@@ -75,11 +74,9 @@ static int refine_poor(struct meshing *meshing, uint32_t panel, struct worth wor
         if (poor[e])
             refine(meshing, panel, e, worth.factor, again);
     free(poor);
-    return CLOTH_OK;
 }
 
-static int mesh_panel(struct meshing *meshing, uint32_t panel, int try, bool *again,
-                      struct cloth_error *error)
+static void mesh_panel(struct meshing *meshing, uint32_t panel, int try, bool *again)
 {
     struct meshing_panel *of = &meshing->panel[panel];
     const char *name = meshing->pattern->panel[panel].name;
@@ -89,54 +86,52 @@ static int mesh_panel(struct meshing *meshing, uint32_t panel, int try, bool *ag
     bool meets = false;
     const bool last = try == TRIES - 1;
     delaunay_free(&of->plane);
-    int code = meshing_outline(meshing, panel, error);
+    if (!meshing_outline(meshing, panel))
+        return;
     const double(*place)[2] = (const double(*)[2])of->place;
     const struct meet_loop outline = {n_edges, of->start, place};
     const struct flat_loop loop = {of->start[n_edges], place, of->sharp};
-    code = code ? code : meet_find(&outline, 1e-8, &meets, edge, error);
-    if (code)
-        return code;
-    if (!meets && loop.n >= 3) {
-        code = flat_make(&of->plane, &loop, meshing->spacing, &crossing, &why);
-        of->meshed = !code;
-    }
-    if (code && crossing == DELAUNAY_NONE)
-        return cloth_fail(error, code, "panel '%s': %s", name, why.text);
-    if (of->meshed)
-        return last ? CLOTH_OK
-                    : refine_poor(meshing, panel, try < FAIR_TRIES ? FAIR : POOR, again, error);
+    if (meet_find(&outline, 1e-8, &meets, edge, meshing->error))
+        return;
+    if (!meets && loop.n >= 3)
+        of->meshed = !flat_make(&of->plane, &loop, meshing->spacing, &crossing, &why);
     if (crossing != DELAUNAY_NONE)
         edge[0] = edge[1] = meshing_edge_of(of, n_edges, crossing);
-    if (last)
-        return cloth_fail(error, CLOTH_E_INPUT,
-                          "panel '%s' cannot be meshed by edges of %g m: at edge %u its boundary "
-                          "comes too near to itself",
-                          name, meshing->spacing, edge[0]);
-    refine(meshing, panel, edge[0], 2, again);
-    if (edge[1] != edge[0])
-        refine(meshing, panel, edge[1], 2, again);
-    return CLOTH_OK;
+    if (why.code && crossing == DELAUNAY_NONE)
+        cloth_fail(meshing->error, why.code, "panel '%s': %s", name, why.text);
+    else if (of->meshed && !last)
+        refine_poor(meshing, panel, try < FAIR_TRIES ? FAIR : POOR, again);
+    else if (!of->meshed && last)
+        cloth_fail(meshing->error, CLOTH_E_INPUT,
+                   "panel '%s' cannot be meshed by edges of %g m: at edge %u its boundary comes "
+                   "too near to itself",
+                   name, meshing->spacing, edge[0]);
+    else if (!of->meshed) {
+        refine(meshing, panel, edge[0], 2, again);
+        if (edge[1] != edge[0])
+            refine(meshing, panel, edge[1], 2, again);
+    }
 }
 
-/* *last: all tries were needed, so that there may be bad triangles. */
-static int mesh_at(struct meshing *meshing, double spacing, bool *last, struct cloth_error *error)
+/* Returns whether all tries were needed, so that there may be bad triangles. */
+static bool mesh_at(struct meshing *meshing, double spacing)
 {
-    int code = CLOTH_OK, k = 0;
+    const uint32_t n_panels = meshing->pattern->n_panels;
+    int k = 0;
     bool again = true;
     meshing->spacing = spacing;
-    for (uint32_t e = 0; e < meshing->first[meshing->pattern->n_panels]; e++)
+    for (uint32_t e = 0; e < meshing->first[n_panels]; e++)
         meshing->edge[e].finer = 1;
-    for (uint32_t p = 0; p < meshing->pattern->n_panels; p++)
+    for (uint32_t p = 0; p < n_panels; p++)
         meshing->panel[p].meshed = false;
-    for (; k < TRIES && again && !code; k++) {
+    for (; k < TRIES && again && !meshing->error->code; k++) {
         again = false;
-        code = meshing_divide(meshing, error);
-        for (uint32_t p = 0; p < meshing->pattern->n_panels && !code; p++)
+        meshing_divide(meshing);
+        for (uint32_t p = 0; p < n_panels && !meshing->error->code; p++)
             if (!meshing->panel[p].meshed)
-                code = mesh_panel(meshing, p, k, &again, error);
+                mesh_panel(meshing, p, k, &again);
     }
-    *last = k == TRIES;
-    return code;
+    return k == TRIES;
 }
 
 static bool is_poor(const struct meshing *meshing)
@@ -150,21 +145,22 @@ static bool is_poor(const struct meshing *meshing)
     return false;
 }
 
-int meshing_mesh(struct meshing *meshing, double spacing, struct cloth_error *error)
+void meshing_mesh(struct meshing *meshing, double spacing)
 {
-    struct cloth_error first = {0};
+    struct cloth_error *error = meshing->error;
     double finer = spacing;
-    bool last;
-    int code = mesh_at(meshing, finer, &last, &first);
-    const int before = code;
-    for (int k = 0;
-         k < FINER_TRIES && (code == CLOTH_E_INPUT || (!code && last && is_poor(meshing))); k++) {
-        struct cloth_error why = {0};
+    bool last = mesh_at(meshing, finer);
+    const struct cloth_error first = *error;
+    for (int k = 0; k < FINER_TRIES &&
+                    (error->code == CLOTH_E_INPUT || (!error->code && last && is_poor(meshing)));
+         k++) {
+        *error = (struct cloth_error){0};
         finer *= FINER;
-        code = mesh_at(meshing, finer, &last, &why);
+        last = mesh_at(meshing, finer);
     }
-    if (!before && (code || (last && is_poor(meshing)))) /* nothing helps: as it was asked for */
-        code = mesh_at(meshing, spacing, &last, error);
-    return code ? cloth_fail(error, code, "%s", first.code ? first.text : "no memory for a mesh")
-                : CLOTH_OK;
+    if (!first.code && (error->code || (last && is_poor(meshing)))) {
+        *error = (struct cloth_error){0};
+        mesh_at(meshing, spacing); /* nothing helps: as it was asked for */
+    } else if (error->code)
+        *error = first;
 }

@@ -227,7 +227,6 @@ static void instance_end(duite *rt)
         MPI_Comm_free(&rt->mpi);
     if (whole || !comm_is_lost(rt->comm)) /* else MPI_Finalize would wait for the lost rank */
         atomic_fetch_sub(&alive, 1);
-    offload_stop(&rt->graph);
     task_graph_stop(&rt->graph);
     check_stop(rt->check);
     base_free(rt);

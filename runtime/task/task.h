@@ -234,12 +234,11 @@ struct task_graph {
     /* Seldom used. */
     _Alignas(64) _Atomic int broken; /* memory ran out in a fork: the code of every later call */
     _Atomic uint64_t offloaded;      /* tasks of other ranks that are here */
+    _Atomic uint64_t delegated;      /* tasks of this rank that went to others so far: their names */
     task_top_over *offloaded_over;
     pthread_mutex_t lock; /* of the rest, and of the failures of scopes */
     struct task_failure *failures;
-    struct offload_names *offload_names; /* tasks on other ranks, or NULL */
-    bool offload_closed;                 /* no more of them */
-    struct data_sum *unclosed;           /* sums of ended tasks, kept for want of memory */
+    struct data_sum *unclosed; /* sums of ended tasks, kept for want of memory */
 };
 
 /* Checks `kernels`, which NULL ends, and copies the list; checks `laws`, likewise or NULL, and does

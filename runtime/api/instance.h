@@ -4,6 +4,7 @@
 #include "runtime/base/policy.h"
 #include "runtime/comm/comm.h"
 #include "runtime/map/map.h"
+#include "runtime/plan/memo.h"
 #include "runtime/plan/record.h"
 #include "runtime/task/body.h"
 #include "runtime/trace/trace.h"
@@ -22,7 +23,7 @@ struct duite {
     struct work_pool *pool;
     struct worker *worker;    /* the main thread's; as is: */
     const void *thread;       /* task_thread_mark() */
-    struct task_taker *taker; /* takes forks before they become tasks; NULL: nothing does */
+    struct plan_memo *memo;   /* takes forks before they become tasks; NULL: nothing does */
     struct trace *trace;      /* NULL: there is none */
     bool traced;              /* the trace is closed */
     struct base_monitor monitor;

@@ -291,7 +291,7 @@ int duite_count_all(duite *rt, duite_counters *counters)
     code = counters_gather(rt, counters);
     counters->graphs_recorded = rt->graphs_recorded;
     counters->migrated = rt->migration.objects;
-    counters->recognised = rt->taker ? rt->taker->tasks : 0;
-    counters->recognised_rounds = rt->taker ? rt->taker->rounds : 0;
+    if (rt->memo)
+        plan_memo_count(rt->memo, counters);
     return code;
 }

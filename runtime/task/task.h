@@ -304,15 +304,6 @@ int task_fork_main(struct task_graph *graph, struct worker *worker, const duite_
                    const void *args, size_t n, const duite_object *objects);
 int task_fork_nested(struct task_scope *scope, struct worker *worker, const duite_kernel *kernel,
                      const void *args, size_t n, const duite_object *objects);
-/* Takes forks of the main program that need not become tasks. Main thread. */
-struct task_taker {
-    /* A usual fork without options. True: it is made. */
-    bool (*fork)(struct task_taker *taker, const duite_kernel *kernel, const void *args, size_t n,
-                 const duite_object *objects);
-    void (*other)(struct task_taker *taker); /* any other call comes */
-    void (*stop)(struct task_taker *taker);  /* no task is left: frees the taker */
-    uint64_t tasks, rounds;                  /* taken so far; in whole rounds of a plan */
-};
 
 /* Overwrites the object with a copy of *count values, or with zeros if `values` is NULL; waits for
  * nothing. `count` NULL: the object's maximum. Errors: objects, DUITE_E_SIZE, memory. */

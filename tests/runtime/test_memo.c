@@ -236,8 +236,6 @@ UNIT_TEST(short_rounds_are_recognised_at_once)
     ck_assert_uint_ge(most, 5 * OBJECTS);
 }
 
-/* So long that a thread compiles them; how many forks come before it has done so is anybody's
- * guess. */
 UNIT_TEST(long_rounds_are_right)
 {
     const duite_options options = repeated_options(1);
@@ -287,7 +285,7 @@ UNIT_TEST(almost_a_round)
     int kept = 0, n = 0;
 
     struct repeated program = repeated_start(&options);
-    const struct plan_memo *memo = (const struct plan_memo *)program.rt->taker;
+    const struct plan_memo *memo = program.rt->memo;
 
     for (; memo->state != MEMO_RECORD && n < ROUNDS * OBJECTS; n++)
         repeated_fork(&program, &MIX, n % OBJECTS, (n + 3) % OBJECTS, 0);

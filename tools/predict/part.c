@@ -85,7 +85,7 @@ static struct predict_node part_node(const struct parting *p, const struct plan_
         break;
     case PLAN_SEND:
         node.kind = PREDICT_MESSAGE;
-        node.block = (uint32_t)m->message[from->channel].to;
+        node.block = (uint32_t)from->peer;
         node.number = part_message_bytes(p, m, from->channel);
         break;
     default:
@@ -98,11 +98,11 @@ static void part_end_note(struct parting *p, const struct plan_messages *m,
                           const struct plan_round_node *from)
 {
     const bool sends = from->kind == PLAN_SEND;
-    const struct plan_message *message = &m->message[from->channel];
+    const int from_rank = sends ? m->rank : from->peer, to_rank = sends ? from->peer : m->rank;
     if (!part_room(p, &p->end[sends], &p->capacity[sends], p->n_ends[sends], sizeof **p->end))
         return;
     p->end[sends][p->n_ends[sends]++] =
-        (struct part_end){message->from, message->to, message->phase, (uint32_t)p->round->n_nodes};
+        (struct part_end){from_rank, to_rank, from->phase, (uint32_t)p->round->n_nodes};
 }
 
 static void part_node_add(struct parting *p, const struct plan_messages *m,

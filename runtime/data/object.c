@@ -17,11 +17,10 @@ int data_table_start(struct data_table *table, int n_ranks)
     table->n_slots = 1;
     struct data_object *object =
         base_grow_lines(NULL, &table->capacity, table->n_slots, sizeof *table->object);
-    uint64_t *copies = base_grow(NULL, &table->copies_capacity, table->words, sizeof *copies);
     table->object = object;
-    table->copies = copies;
     table->blocks = calloc((size_t)n_ranks, sizeof *table->blocks);
-    if (!object || !copies || !table->blocks)
+    if (!object || !table->blocks ||
+        !BASE_GROW(table->copies, table->copies_capacity, table->words))
         return base_no_memory("the table of objects");
     object[0] = (struct data_object){.leaves = DATA_VACANT};
     return DUITE_OK;

@@ -108,9 +108,12 @@ struct predict_graph {
 
 /* ---- graph.c: nodes and edges ---- */
 
-/* Room for one more in an array. False without memory (and graph->failed). */
-bool predict_room_for(struct predict_graph *graph, void *array, size_t *capacity, size_t n,
-                      size_t size);
+/* An array has room for one more, or not for want of memory. False: graph->failed, now or before. */
+static inline bool predict_grew(struct predict_graph *graph, bool grew)
+{
+    graph->failed |= !grew;
+    return !graph->failed;
+}
 /* A node that waits for nothing yet. 0 without memory (and graph->failed). */
 uint32_t predict_add(struct predict_graph *graph, const struct predict_node *node);
 /* `to` waits for `from`; NONE is fine. */

@@ -85,10 +85,8 @@ static bool event_before(const void *left, const void *right, const void *unused
 
 bool predict_event_put(struct predict_events *events, double time, uint32_t node, uint32_t worker)
 {
-    void *moved = base_grow(events->event, &events->capacity, events->n + 1, sizeof *events->event);
-    if (!moved)
+    if (!BASE_GROW(events->event, events->capacity, events->n + 1))
         return false;
-    events->event = moved;
     struct predict_event new = {time, events->order++, node, worker};
     base_heap_push(events->event, events->n++, &new, sizeof new, event_before, NULL);
     return true;

@@ -49,15 +49,12 @@ void predict_spend(struct predict_program *p, uint32_t object, int host, double 
     if (!slot)
         return;
     size_t before = moves->spent_capacity;
-    double *spent =
-        base_grow(moves->spent, &moves->spent_capacity, (size_t)slot + 1, sizeof *spent);
-    p->graph->failed |= !spent;
-    if (!spent)
+    if (!predict_grew(p->graph,
+                      BASE_GROW(moves->spent, moves->spent_capacity, (size_t)slot + 1)))
         return;
-    moves->spent = spent;
     for (size_t i = before; i < moves->spent_capacity; i++)
-        spent[i] = 0;
-    spent[slot] += seconds;
+        moves->spent[i] = 0;
+    moves->spent[slot] += seconds;
 }
 
 /* ---- Numbers for policies ---- */

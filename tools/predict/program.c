@@ -37,11 +37,8 @@ static bool op_forks(const struct predict_graph *graph, const struct predict_nod
 static struct predict_op *op_add(struct predict_program *p, bool forked)
 {
     struct predict_graph *graph = p->graph;
-    void *moved = base_grow(graph->op, &graph->ops_capacity, graph->n_ops + 1, sizeof *graph->op);
-    graph->failed |= !moved;
-    if (!moved)
+    if (!predict_grew(graph, BASE_GROW(graph->op, graph->ops_capacity, graph->n_ops + 1)))
         return NULL;
-    graph->op = moved;
     size_t begin = graph->n_ops ? graph->op[graph->n_ops - 1].end : 0;
     struct predict_op *op = &graph->op[graph->n_ops++];
     *op = (struct predict_op){.end = (uint32_t)graph->n_nodes, .node = PREDICT_NONE};

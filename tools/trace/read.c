@@ -164,11 +164,8 @@ static int source_take_events(struct source *source, const struct trace_section 
         if (!event_is_valid(source->run, &event[i]))
             return source_damaged(source, at + sizeof *section + i * sizeof *event,
                                   "an invalid event");
-    void *moved =
-        base_grow(rank->piece, &rank->pieces_capacity, rank->n_pieces + 1, sizeof *rank->piece);
-    if (!moved)
+    if (!BASE_GROW(rank->piece, rank->pieces_capacity, rank->n_pieces + 1))
         return base_no_memory("a trace");
-    rank->piece = moved;
     rank->piece[rank->n_pieces++] = (struct trace_piece){event, n, section->worker};
     rank->n_events += n;
     return DUITE_OK;
@@ -180,11 +177,8 @@ static int source_take_words(struct source *source, const struct trace_section *
     size_t n = section->bytes / sizeof *run->word;
     if (source->rank != run->rank || section->bytes % 8)
         return source_damaged(source, at, "words of the program where there are none");
-    void *moved =
-        base_grow(run->word, &run->words_capacity, run->n_words + n + 1, sizeof *run->word);
-    if (!moved)
+    if (!BASE_GROW(run->word, run->words_capacity, run->n_words + n + 1))
         return base_no_memory("a trace");
-    run->word = moved;
     memcpy(run->word + run->n_words, section + 1, section->bytes);
     run->n_words += n;
     if (n && section->worker)

@@ -79,8 +79,5 @@ void predict_graph_free(struct predict_graph *graph)
     free(graph->link);
     free(graph->reader);
     free(graph->hint);
-    base_free(graph->count);
-    base_free(graph->began);
-    base_free(graph->over);
-    base_free(graph->all);
+    base_free(graph->memory);
 }

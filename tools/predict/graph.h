@@ -88,6 +88,7 @@ struct predict_graph {
     size_t readers_capacity;
     struct predict_hint *hint;
     size_t n_hints, hints_capacity;
+    void *memory;           /* of the arrays by host */
     uint32_t *began;        /* by host: the node that begins a replay there, or NONE */
     uint32_t *over;         /* ... that ends it, or a task that each host runs */
     uint64_t *all;          /* the set of all hosts */

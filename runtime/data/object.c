@@ -76,8 +76,8 @@ int data_object_refuse(duite_type type, size_t count, size_t max)
     return DUITE_OK;
 }
 
-static int object_add(struct data_table *table, duite_type type, size_t count, size_t max,
-                      bool sized, duite_object *name)
+int data_object_new(struct data_table *table, duite_type type, size_t count, size_t max, bool sized,
+                    duite_object *name)
 {
     const size_t size = data_type_size(type);
     *name = (duite_object){0, 0};
@@ -108,17 +108,6 @@ static int object_add(struct data_table *table, duite_type type, size_t count, s
     table->n_alive++;
     *name = (duite_object){slot, generation};
     return DUITE_OK;
-}
-
-int data_object_new(struct data_table *table, duite_type type, size_t count, duite_object *name)
-{
-    return object_add(table, type, count, count, false, name);
-}
-
-int data_object_new_sized(struct data_table *table, duite_type type, size_t count, size_t max,
-                          duite_object *name)
-{
-    return object_add(table, type, count, max, true, name);
 }
 
 struct data_object *data_object_missing(const struct data_table *table, duite_object name)

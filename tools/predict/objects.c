@@ -48,7 +48,7 @@ void predict_make(struct predict_program *p)
                                  .leader = PREDICT_NONE,
                                  .hints = PREDICT_NONE};
     p->name[graph->n_objects] = DUITE_NO_OBJECT;
-    if (data_object_new(&p->table, DUITE_BYTE, 1, &p->name[graph->n_objects]))
+    if (data_object_new(&p->table, DUITE_BYTE, 1, 1, false, &p->name[graph->n_objects]))
         graph->failed = true;
     graph->object[graph->n_objects] = new;
     *slot_object(p, slot) = (uint32_t)graph->n_objects++;

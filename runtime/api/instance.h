@@ -21,11 +21,11 @@ struct duite {
     struct comm *comm;   /* NULL: one rank */
     struct check *check; /* NULL: not in checking mode */
     struct work_pool *pool;
-    struct worker *worker;    /* the main thread's; as is: */
-    const void *thread;       /* task_thread_mark() */
-    struct plan_memo *memo;   /* takes forks before they become tasks; NULL: nothing does */
-    struct trace *trace;      /* NULL: there is none */
-    bool traced;              /* the trace is closed */
+    struct worker *worker;  /* the main thread's; as is: */
+    const void *thread;     /* task_thread_mark() */
+    struct plan_memo *memo; /* takes forks before they become tasks; NULL: nothing does */
+    struct trace *trace;    /* NULL: there is none */
+    bool traced;            /* the trace is closed */
     struct base_monitor monitor;
     struct base_marks *marks; /* NULL: all policies are built in */
     struct map_policy mapping;

@@ -140,8 +140,9 @@ static double migration_byte_seconds(const duite *rt)
     return 1e-6 * (comm_transfer(rt->comm, 1000000) - comm_transfer(rt->comm, 0));
 }
 
-/* Shows a record to the mapping, which writes the homes to be; or (guessed NULL) adds the traffic of
- * so many of its rounds. *guessed: the mapping is to see it once more when all costs are measured.
+/* Shows a record to the mapping, which writes the homes to be; or (guessed NULL) adds the traffic
+ * of so many of its rounds. *guessed: the mapping is to see it once more when all costs are
+ * measured.
  */
 static int migration_show(struct migration *m, const struct plan_record *record, double rounds,
                           bool *guessed)
@@ -193,7 +194,8 @@ static int migration_decide(struct migration *m)
     m->moves.mapping = &m->rt->mapping;
     for (size_t i = 0; i < m->moves.blocks.n; i++)
         m->moves.bytes[i] = m->moves.blocks.block[i].bytes;
-    int code = m->record ? migration_show(m, m->record, 0, &again) : migration_ask_balancer(m, &next);
+    int code =
+        m->record ? migration_show(m, m->record, 0, &again) : migration_ask_balancer(m, &next);
     if (code && (code == DUITE_E_MEMORY || !m->record))
         return code;
     m->values[ANSWER_NEXT] = next < NEVER ? (double)next : 0;

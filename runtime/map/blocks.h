@@ -59,9 +59,10 @@ struct map_moves {
     int *home;            /* n: the present homes, then those to be */
     unsigned *workers;    /* a rank; zeros to begin with */
     int n_ranks;
-    double byte_seconds, message_seconds; /* per byte, per message to a rank; 0 to begin with, and */
-    uint64_t seed;                        /* so are these: */
-    const struct map_policy *mapping;     /* the program's */
+    double byte_seconds,
+        message_seconds;              /* per byte, per message to a rank; 0 to begin with, and */
+    uint64_t seed;                    /* so are these: */
+    const struct map_policy *mapping; /* the program's */
 };
 
 /* Finds the blocks. All objects have homes. Errors: memory; map_moves_free is due all the same. */
@@ -73,8 +74,8 @@ bool map_moves_is_allowed(const struct map_moves *moves, size_t block);
 /* The error of a policy that did neither: "mapping" or "balancer", and its name. */
 int map_moves_refused(const char *kind, const char *name);
 
-/* The blocks as a balancer sees them; the caller adds the times and replays since it was last asked.
- * Points into the moves, whose traffic was ended. */
+/* The blocks as a balancer sees them; the caller adds the times and replays since it was last
+ * asked. Points into the moves, whose traffic was ended. */
 duite_blocks map_moves_shown(const struct map_moves *moves);
 
 /* Shows the mapping the tasks of a round, which writes the homes to be. block: by object, as above.

@@ -1,5 +1,5 @@
-/* Tasks as mappings see them: those of a round, the block that each runs for, and its cost. The cost
- * is the fork's, else the measured one, else a guess. */
+/* Tasks as mappings see them: those of a round, the block that each runs for, and its cost. The
+ * cost is the fork's, else the measured one, else a guess. */
 #include "runtime/map/blocks.h"
 
 #include "runtime/base/error.h"

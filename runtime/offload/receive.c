@@ -78,8 +78,7 @@ bool offload_arrived(void *context, struct worker *worker, struct data_packet *p
 
 static size_t result_lines(const struct task *task, size_t i)
 {
-    return message_lines(
-        message_room(task->access[i].waiter.mode, &param_of(task->offloaded)[i]));
+    return message_lines(message_room(task->access[i].waiter.mode, &param_of(task->offloaded)[i]));
 }
 
 /* Sets the value that the body finds: unspecified under w, the one that came under rw, the law's

@@ -8,10 +8,10 @@
  * stay the same. Main thread of a runtime of one rank.
  *
  * Each fork is hashed (kernel and objects). When the last forks repeat those before them, and
- * bodies are short, the next round is recorded while it is forked, and compiled to a plan. Then each
- * fork that is the expected one becomes a run of its node, in an open replay. Any other fork or call
- * closes that. Only forks without options, of plain kernels that write something, on objects of
- * fixed size are recognised. */
+ * bodies are short, the next round is recorded while it is forked, and compiled to a plan. Then
+ * each fork that is the expected one becomes a run of its node, in an open replay. Any other fork
+ * or call closes that. Only forks without options, of plain kernels that write something, on
+ * objects of fixed size are recognised. */
 struct plan_memo;
 
 /* Always: replays even long bodies. NULL without memory. */

@@ -234,7 +234,7 @@ struct task_graph {
     /* Seldom used. */
     _Alignas(64) _Atomic int broken; /* memory ran out in a fork: the code of every later call */
     _Atomic uint64_t offloaded;      /* tasks of other ranks that are here */
-    _Atomic uint64_t delegated;      /* tasks of this rank that went to others so far: their names */
+    _Atomic uint64_t delegated; /* tasks of this rank that went to others so far: their names */
     task_top_over *offloaded_over;
     pthread_mutex_t lock; /* of the rest, and of the failures of scopes */
     struct task_failure *failures;

@@ -109,7 +109,8 @@ struct predict_graph {
 
 /* ---- graph.c: nodes and edges ---- */
 
-/* An array has room for one more, or not for want of memory. False: graph->failed, now or before. */
+/* An array has room for one more, or not for want of memory. False: graph->failed, now or before.
+ */
 static inline bool predict_grew(struct predict_graph *graph, bool grew)
 {
     graph->failed |= !grew;

@@ -49,8 +49,7 @@ void predict_spend(struct predict_program *p, uint32_t object, int host, double 
     if (!slot)
         return;
     size_t before = moves->spent_capacity;
-    if (!predict_grew(p->graph,
-                      BASE_GROW(moves->spent, moves->spent_capacity, (size_t)slot + 1)))
+    if (!predict_grew(p->graph, BASE_GROW(moves->spent, moves->spent_capacity, (size_t)slot + 1)))
         return;
     for (size_t i = before; i < moves->spent_capacity; i++)
         moves->spent[i] = 0;

@@ -264,15 +264,14 @@ static bool program_prepare(struct predict_program *p)
     struct predict_graph *graph = p->graph;
     const uint32_t hosts = graph->cluster->hosts;
     p->times = predict_times_new(graph->run, graph->cluster->steady);
-    const struct base_array arrays[] = {BASE_ARRAY(graph->began, hosts),
-                                        BASE_ZEROS(graph->count, hosts),
-                                        BASE_ARRAY(graph->over, hosts),
-                                        BASE_ZEROS(graph->all, base_ranks_words((int)hosts)),
-                                        BASE_ZEROS(p->blocks_on, hosts),
-                                        {0}};
+    const struct base_array arrays[] = {
+        BASE_ARRAY(graph->began, hosts), BASE_ZEROS(graph->count, hosts),
+        BASE_ARRAY(graph->over, hosts),  BASE_ZEROS(graph->all, base_ranks_words((int)hosts)),
+        BASE_ZEROS(p->blocks_on, hosts), {0}};
     graph->memory = base_arrays(arrays);
     graph->round = PREDICT_NONE;
-    if (!p->times || !graph->memory || data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1) ||
+    if (!p->times || !graph->memory ||
+        data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1) ||
         !predict_moves_start(p))
         return false;
     for (uint32_t host = 0; host < hosts; host++)

@@ -32,7 +32,8 @@ static void value_order(struct predict_graph *graph, struct data_order_chain *ch
                         uint32_t object, int host, bool writes)
 {
     struct value_use use = {graph, &graph->object[object], host};
-    if (predict_grew(graph, BASE_GROW(graph->reader, graph->readers_capacity, graph->n_readers + 1)))
+    if (predict_grew(graph,
+                     BASE_GROW(graph->reader, graph->readers_capacity, graph->n_readers + 1)))
         data_order_next(chain, graph->reader, &graph->n_readers, node, writes, value_edge, &use);
 }
 

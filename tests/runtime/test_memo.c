@@ -236,18 +236,21 @@ UNIT_TEST(short_rounds_are_recognised_at_once)
     ck_assert_uint_ge(most, 5 * OBJECTS);
 }
 
-UNIT_TEST(long_rounds_are_right)
+/* Each fork is there up to three times in a round. */
+UNIT_TEST(long_rounds_are_recognised)
 {
-    const duite_options options = repeated_options(1);
+    enum { LENGTH = 300, OTHERS = OBJECTS - 1 };
+    const duite_options options = repeated_options(ALWAYS);
 
     struct repeated program = repeated_start(&options);
-    for (int i = 0; i < 200; i++)
-        for (int k = 0; k < 300; k++) {
-            const int to = k * k / 3 % OBJECTS;
+    for (int i = 0; i < ROUNDS; i++)
+        for (int k = 0; k < LENGTH; k++) {
+            const int to = k % OBJECTS, pair = k / OBJECTS;
 
-            repeated_fork(&program, k % 7 ? &MIX : &TWIN, to, (to + 1 + k % 5) % OBJECTS, 0);
+            repeated_fork(&program, pair / OTHERS % 2 ? &MIX : &TWIN, to,
+                          (to + 1 + pair % OTHERS) % OBJECTS, 0);
         }
-    repeated_stop(&program);
+    ck_assert_uint_ge(repeated_stop(&program), ROUNDS / 2 * LENGTH);
 }
 
 UNIT_TEST(tasks_that_write_nothing_stay_forks)

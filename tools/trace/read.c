@@ -87,6 +87,13 @@ static size_t source_max_workers(const struct source *source)
     return header->whole && !header->lost && max < DUITE_MAX_THREADS ? max : DUITE_MAX_THREADS;
 }
 
+/* Between those of a clock of a petahertz and one of a hertz: seconds fit into ticks, and ticks
+ * into seconds. */
+static bool tick_is_sound(double tick)
+{
+    return tick >= 1e-15 && tick <= 1;
+}
+
 static int source_check_header(struct source *source, uint32_t rank)
 {
     const struct trace_header *header = source->rank->header;
@@ -105,8 +112,9 @@ static int source_check_header(struct source *source, uint32_t rank)
                  header->version, TRACE_VERSION);
         return source_damaged(source, offsetof(struct trace_header, version), text);
     }
-    if (header->rank != rank || !header->n_ranks || !header->workers || !(header->tick > 0) ||
-        header->n_ranks > MAX_RANKS || header->workers > source_max_workers(source))
+    if (header->rank != rank || !header->n_ranks || !header->workers ||
+        !tick_is_sound(header->tick) || header->n_ranks > MAX_RANKS ||
+        header->workers > source_max_workers(source))
         return source_damaged(source, offsetof(struct trace_header, rank),
                               "another rank, or nonsense, where this one was expected");
     if (rank && (header->run != first->run || header->n_ranks != first->n_ranks))

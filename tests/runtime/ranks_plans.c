@@ -260,13 +260,10 @@ RANKS_CASE(plans)
     const duite_kernel *const list[] = {&START, &MEAN, &JUDGE, &SCALE, &GIVE, &KEEP, NULL};
     struct rod rod;
     duite_graph graph;
-    duite *rt;
-
-    misuse_mpi();
     duite_options options = misuse_options(MPI_COMM_WORLD);
-
     options.kernels = list;
-    if (duite_start(&rt, &options))
+    duite *rt = misuse_start_with(&options);
+    if (!rt)
         return 1;
     make(rt, &rod);
     tap_case(!duite_graph_new(rt, rounds, &rod, &graph), "record");

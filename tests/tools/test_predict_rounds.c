@@ -73,13 +73,13 @@ static int build(duite *rt, void *context)
     now.record = rt->building;
     for (size_t i = 0; i < n && !code; i++) {
         const size_t kernel = draw(N_KERNELS);
-        const int rank = 0;
+        const int here = 0;
         const bool named = !KERNELS[kernel]->replicated && !draw(6);
         duite_object objects[4];
         draw_objects(kernel, objects);
         if (draw(8))
             code = duite_fork_with(rt,
-                                   &(duite_task_options){.at = named ? &rank : NULL,
+                                   &(duite_task_options){.at = named ? &here : NULL,
                                                          .cost = 0x1p-10 * (double)(1 + draw(7))},
                                    KERNELS[kernel], NULL, PARAMETERS[kernel], objects);
         else

@@ -3,6 +3,7 @@
 #include "cloth/base/memory.h"
 #include "cloth/scene/schema/check.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static int store_no_memory(struct cloth_error *error)
@@ -86,6 +87,7 @@ void *scene_store_items(void *base, const struct scene_rule *rule, size_t n, siz
         *step = rule->count.width && !one ? rule->item : rule->inside->field.width;
     if (!rule->count.width)
         return array;
+    free(*array); /* of another key that is a choice, too, which the check refuses */
     *array = cloth_alloc(one ? 1 : n, rule->item, error);
     *(uint32_t *)member_of(base, &rule->count) = !*array ? 0 : one ? 1 : (uint32_t)n;
     return *array;

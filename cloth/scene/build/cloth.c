@@ -5,9 +5,6 @@
 
 /* ---- Moduli ---- */
 
-/* A material needs what the meshes have: triangles need stretch, edges without triangles need EA.
- * So no table of keys can ask for them. */
-
 /* True if the scene gives the material, by number, a key. */
 static bool has_key(const struct scene_tree *tree, uint32_t material, const char *key)
 {
@@ -39,7 +36,8 @@ static int check_element(const struct model_cloth *cloth, size_t n, const uint32
                            tree->model->materials[material].name);
 }
 
-/* Springs: each side of a triangle has a material. Else each triangle has one. */
+/* Triangles need stretch, edges without triangles need EA, so no table of keys can ask for them. By
+ * springs each side of a triangle has a material. Else each triangle has one. */
 static int check_moduli(const struct model_cloth *cloth, const struct scene_tree *tree, int node)
 {
     const struct mesh *mesh = &cloth->mesh;
@@ -47,7 +45,7 @@ static int check_moduli(const struct model_cloth *cloth, const struct scene_tree
     const uint32_t n_triangles = all_have(tree, cloth, "stretch") ? 0 : mesh->n_triangles;
     const uint32_t n_links = all_have(tree, cloth, "ea") ? 0 : mesh->n_bare_edges;
     int code = CLOTH_OK;
-    for (uint32_t t = 0; t < n_triangles; t++) {
+    for (uint32_t t = 0; t < n_triangles && !code; t++) {
         uint32_t corner[4];
         mesh_corners(mesh, t, corner);
         corner[3] = corner[0];

@@ -24,23 +24,18 @@ static bool meets_anything(const struct model *model, uint32_t cloth, bool surfa
 
 /* ---- Its default ---- */
 
-/* True if a cloth meets more than planes. If only vertices are put out, thin or sharp obstacles go
- * through a cloth, and cloths go through each other. */
-static bool has_surfaces(const struct model *model)
+/* True if a cloth meets more than planes: thin or sharp obstacles go through a cloth whose vertices
+ * alone are put out, and cloths through each other. Edges without triangles are in no certificate,
+ * which would let them through obstacles. */
+static bool wants_certificate(const struct model *model)
 {
-    bool has = false;
-    for (uint32_t c = 0; c < model->n_cloths; c++)
-        has = has || (model->cloths[c].mesh.n_triangles && meets_anything(model, c, true));
-    return has;
-}
-
-/* A certificate is of triangles. Obstacles would let edges that have none through. */
-static bool has_edges_to_stop(const struct model *model)
-{
-    bool has = false;
-    for (uint32_t c = 0; c < model->n_cloths; c++)
-        has = has || model->cloths[c].mesh.n_bare_edges;
-    return has && model->n_obstacles;
+    bool surfaces = false, edges = false;
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        const struct mesh *mesh = &model->cloths[c].mesh;
+        surfaces = surfaces || (mesh->n_triangles && meets_anything(model, c, true));
+        edges = edges || mesh->n_bare_edges;
+    }
+    return surfaces && !(edges && model->n_obstacles);
 }
 
 int scene_build_contact(struct scene_tree *tree)
@@ -49,8 +44,7 @@ int scene_build_contact(struct scene_tree *tree)
     if (scene_tree_at(tree, 1, "contact.mode"))
         return CLOTH_OK;
     model->contact.assumed = true;
-    if (model_is_implicit(model) && has_surfaces(model) && !has_edges_to_stop(model) &&
-        !model_has_maps(model))
+    if (model_is_implicit(model) && wants_certificate(model) && !model_has_maps(model))
         model->contact.mode = MODEL_CONTACT_BEST;
     return CLOTH_OK;
 }

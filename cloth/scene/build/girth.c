@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 /* The places of a body at time 0, n_vertices x 3, and then its triangles. */
-static int build_girth_take_body(struct girth_mesh *mesh, const struct contact_body *body,
-                                 struct cloth_error *error)
+static void build_girth_take_body(struct girth_mesh *mesh, const struct contact_body *body,
+                                  struct cloth_error *error)
 {
     const phys_vec *x = contact_body_vertices(body);
     const struct contact_facet *facet = contact_body_facets(body);
@@ -15,15 +15,12 @@ static int build_girth_take_body(struct girth_mesh *mesh, const struct contact_b
     uint32_t(*triangle)[3] = cloth_alloc(body->n_triangles, sizeof *triangle, error);
     *mesh = (struct girth_mesh){body->n_triangles, (const double(*)[3])place,
                                 (const uint32_t(*)[3])triangle};
-    if (!place || !triangle)
-        return error->code;
-    for (uint32_t v = 0; v < body->n_vertices; v++)
+    for (uint32_t v = 0; v < body->n_vertices && place; v++)
         for (int k = 0; k < 3; k++)
             place[v][k] = x[v][k];
-    for (uint32_t t = 0; t < body->n_triangles; t++)
+    for (uint32_t t = 0; t < body->n_triangles && triangle; t++)
         for (int k = 0; k < 3; k++)
             triangle[t][k] = facet[t].corner[k];
-    return CLOTH_OK;
 }
 
 static int compare_girths(struct girth_worst *worst, const struct model_cloth *cloth,
@@ -32,18 +29,19 @@ static int compare_girths(struct girth_worst *worst, const struct model_cloth *c
     const struct girth_mesh garment = {cloth->mesh.n_triangles,
                                        (const double(*)[3])cloth->mesh.position,
                                        (const uint32_t(*)[3])cloth->mesh.triangle};
+    const struct model_seams *seams = &cloth->seams;
     struct girth_mesh wearer;
-    struct girth_seam *seam = cloth_alloc(cloth->seams.n, sizeof *seam, error);
-    int code = build_girth_take_body(&wearer, body, error);
-    code = seam ? code : error->code;
-    for (uint32_t s = 0; s < cloth->seams.n && !code; s++)
-        seam[s] = (struct girth_seam){cloth->seams.seam[s].n_pairs,
-                                      (const uint32_t(*)[2])cloth->seams.seam[s].pair};
-    code = code ? code : girth_compare(worst, &garment, cloth->seams.n, seam, &wearer, error);
+    struct girth_seam *seam = cloth_alloc(seams->n, sizeof *seam, error);
+    build_girth_take_body(&wearer, body, error);
+    for (uint32_t s = 0; s < seams->n && seam; s++)
+        seam[s] =
+            (struct girth_seam){seams->seam[s].n_pairs, (const uint32_t(*)[2])seams->seam[s].pair};
+    if (!error->code)
+        girth_compare(worst, &garment, seams->n, seam, &wearer, error);
     free((void *)wearer.x);
     free((void *)wearer.triangle);
     free(seam);
-    return code;
+    return error->code;
 }
 
 static int warn_of_girth(uint32_t cloth, uint32_t obstacle, const struct scene_tree *tree, int node)

@@ -59,26 +59,33 @@ static int find_firsts(const struct model_seams *seams, enum model_seams_state s
 
 /* ---- Joints and welds ---- */
 
-/* Adds the joint or the weld of a seam. joins: of each of its pairs, whether it joins. */
+/* The pairs of a new joint or weld of the model; NULL: no memory. */
+static struct model_pairs *add_sewn(struct model *model, const struct model_sewing *sewing,
+                                    struct cloth_error *error)
+{
+    if (sewing->state == MODEL_SEAMS_WELDED) {
+        struct model_weld *weld =
+            scene_build_add(&model->welds, &model->n_welds, 1, sizeof *weld, error);
+        if (weld)
+            weld->tolerance = sewing->tolerance;
+        return weld ? &weld->pairs : NULL;
+    }
+    struct model_joint *joint =
+        scene_build_add(&model->joints, &model->n_joints, 1, sizeof *joint, error);
+    if (!joint)
+        return NULL;
+    model->n_pulled++;
+    joint->stiffness = sewing->stiffness;
+    joint->damping = sewing->damping;
+    return &joint->pairs;
+}
+
+/* joins: of each pair of the seam, whether it joins. */
 static int sew_seam(uint32_t cloth, uint32_t seam, const unsigned char *joins,
                     const struct scene_tree *tree, int node)
 {
-    struct model *model = tree->model;
-    const struct model_seam *of = model->cloths[cloth].seams.seam + seam;
-    const bool pulled = of->sewing.state == MODEL_SEAMS_PULLED;
-    struct model_joint *joint =
-        pulled ? scene_build_add(&model->joints, &model->n_joints, 1, sizeof *joint, tree->error)
-               : NULL;
-    struct model_weld *weld =
-        pulled ? NULL
-               : scene_build_add(&model->welds, &model->n_welds, 1, sizeof *weld, tree->error);
-    struct model_pairs *pairs = joint ? &joint->pairs : weld ? &weld->pairs : NULL;
-    if (joint) {
-        model->n_pulled++;
-        joint->stiffness = of->sewing.stiffness;
-        joint->damping = of->sewing.damping;
-    } else if (weld)
-        weld->tolerance = of->sewing.tolerance;
+    const struct model_seam *of = tree->model->cloths[cloth].seams.seam + seam;
+    struct model_pairs *pairs = add_sewn(tree->model, &of->sewing, tree->error);
     if (!pairs || scene_build_room(pairs, cloth, of->n_pairs, tree, node))
         return tree->error->code;
     pairs->seam = seam + 1;

@@ -12,10 +12,10 @@ enum { MAX_PATH = 600 };
 static bool settings_is_free(const char *path)
 {
     static const char *const keys[] = {"name", "phases", "output", "time.end"};
-    bool is = false;
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
-        is = is || !strcmp(path, keys[i]);
-    return is;
+        if (!strcmp(path, keys[i]))
+            return true;
+    return false;
 }
 
 /* A line is one value, whatever is in it. */

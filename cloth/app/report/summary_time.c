@@ -1,11 +1,10 @@
 /* All of it follows from the counters of the run; nothing is measured. The names of limits are
  * those of duite-trace (tools/trace/sums.c), so that a run and its trace speak of the same
  * things. */
-#include "cloth/app/report/summary_time.h"
+#include "cloth/app/report/summary.h"
 
 #include <inttypes.h>
 #include <math.h>
-#include <string.h>
 
 enum limit { WORK, PATH, MESSAGES, STARVED, RUNTIME, LIMITS };
 
@@ -17,35 +16,33 @@ static const struct {
                    [STARVED] = {"too few ready tasks", ""},
                    [RUNTIME] = {"runtime and main program", "the "}};
 
-/* Seconds in the tasks of each kind; NaN: there were none. */
+/* Kinds of tasks, each with its seconds in the report; NaN: there were none. */
 enum { KINDS = 9 };
-struct kind {
+#define AT(member) offsetof(struct flow_report, member)
+static const struct {
     const char *row, *name; /* in the table; in a sentence */
-    double seconds;
-};
+    size_t seconds;
+} KIND[KINDS] = {{"force", "forces", AT(seconds_force)},
+                 {"acceleration", "accelerations", AT(seconds_acceleration)},
+                 {"matrix", "the matrix", AT(seconds_matrix)},
+                 {"CG", "CG", AT(seconds_cg)},
+                 {"velocity", "velocities", AT(seconds_velocity)},
+                 {"position", "positions", AT(seconds_position)},
+                 {"collide", "contact", AT(seconds_collide)},
+                 {"correction", "velocity correction", AT(seconds_correction)},
+                 {"output", "output", AT(seconds_output)}};
 
-static void find_kinds(const struct flow_report *r, struct kind kinds[KINDS])
+static double seconds_of(const struct flow_report *report, size_t kind)
 {
-    const struct kind all[KINDS] = {{"force", "forces", r->seconds_force},
-                                    {"acceleration", "accelerations", r->seconds_acceleration},
-                                    {"matrix", "the matrix", r->seconds_matrix},
-                                    {"CG", "CG", r->seconds_cg},
-                                    {"velocity", "velocities", r->seconds_velocity},
-                                    {"position", "positions", r->seconds_position},
-                                    {"collide", "contact", r->seconds_collide},
-                                    {"correction", "velocity correction", r->seconds_correction},
-                                    {"output", "output", r->seconds_output}};
-    memcpy(kinds, all, sizeof all);
+    return *(const double *)((const char *)report + KIND[kind].seconds);
 }
 
 void summary_time_print(FILE *file, const struct flow_report *report)
 {
-    struct kind kinds[KINDS];
-    find_kinds(report, kinds);
     fprintf(file, "  seconds in tasks, over all workers\n");
     for (size_t i = 0; i < KINDS; i++)
-        if (!isnan(kinds[i].seconds))
-            fprintf(file, "    %-14s %12.4f\n", kinds[i].row, kinds[i].seconds);
+        if (!isnan(seconds_of(report, i)))
+            fprintf(file, "    %-14s %12.4f\n", KIND[i].row, seconds_of(report, i));
 }
 
 /* Shares of the workers' time, of which work, messages, starved and runtime add up to 1. The
@@ -61,9 +58,9 @@ static void find_shares(const struct summary *summary, double share[LIMITS])
     share[MESSAGES] = exposed / all;
     share[STARVED] = (counters->idle - exposed) / all;
     share[RUNTIME] = 1 - share[WORK] - share[MESSAGES] - share[STARVED];
-    const struct simulate_options *options = summary->options;
-    const bool whole = options->trace && !options->trace_first &&
-                       options->trace_end == UINT64_MAX && summary->phases->n == 1;
+    const duite_options *runtime = &summary->options->runtime;
+    const bool whole = runtime->trace && !runtime->trace_first &&
+                       runtime->trace_end == UINT64_MAX && summary->phases->n == 1;
     share[PATH] =
         whole && summary->critical_path > 0 ? summary->critical_path / report->wall_seconds : 0;
 }
@@ -83,19 +80,17 @@ static enum limit find_limit(const struct summary *summary, double share[LIMITS]
 /* The kind of task with most seconds, and its part of the seconds of all. */
 static void say_kind(char *text, size_t size, const struct flow_report *report)
 {
-    struct kind kinds[KINDS];
     size_t most = 0;
     double all = 0;
-    find_kinds(report, kinds);
     for (size_t i = 0; i < KINDS; i++) {
-        all += fmax(kinds[i].seconds, 0);
-        if (!(kinds[most].seconds >= kinds[i].seconds) && !isnan(kinds[i].seconds))
+        all += fmax(seconds_of(report, i), 0);
+        if (!(seconds_of(report, most) >= seconds_of(report, i)) && !isnan(seconds_of(report, i)))
             most = i;
     }
     *text = '\0';
     if (all > 0)
-        snprintf(text, size, ", %.0f %% of that in %s", 100 * kinds[most].seconds / all,
-                 kinds[most].name);
+        snprintf(text, size, ", %.0f %% of that in %s", 100 * seconds_of(report, most) / all,
+                 KIND[most].name);
 }
 
 /* Names repeated steps or solves if they are a quarter of all or more. */
@@ -168,12 +163,9 @@ void summary_limit_print(FILE *file, const struct summary *summary)
             repeats);
 }
 
-void summary_limit_add(struct output_report *json, const struct summary *summary)
+const char *summary_limit(const struct summary *summary)
 {
     double share[LIMITS];
     const enum limit limit = find_limit(summary, share);
-    if (limit < LIMITS)
-        output_report_text(json, "limited_by", LIMIT[limit].name);
-    else
-        output_report_null(json, "limited_by");
+    return limit < LIMITS ? LIMIT[limit].name : NULL;
 }

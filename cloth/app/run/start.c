@@ -146,16 +146,15 @@ static bool run_start_is_free(const struct untangle_count *left)
     return !(left->pairs + left->entered + left->near + left->layers);
 }
 
-static int run_start_check(const struct model *model, const struct contact_apart *apart,
-                           const double *position, struct intersections_found *found,
-                           struct cloth_error *error)
+static int look_at_start(const struct model *model, const struct contact_apart *apart,
+                         const double *position, struct intersections_found *found,
+                         struct cloth_error *error)
 {
     struct intersections *intersections = NULL;
-    int code =
-        intersections_of(&intersections, model, apart, "duite-cloth", !model->contact.self, error);
+    *found = (struct intersections_found){0};
+    int code = intersections_of(&intersections, model, apart, "duite-cloth", !model->contact.self,
+                                found, error);
     code = code ? code : intersections_frame(intersections, 0, 0, position, false, error);
-    if (!code)
-        *found = intersections_found(intersections);
     intersections_close(&intersections);
     return code;
 }
@@ -170,7 +169,7 @@ static int name_pairs(const struct model *model, const struct tangle *of, struct
     for (uint32_t v = 0; v < of->n; v++)
         for (size_t k = 0; k < 3; k++)
             position[3 * (size_t)v + k] = of->x[of->soup.same[v]][k];
-    const int code = run_start_check(model, &of->apart, position, &found, error);
+    const int code = look_at_start(model, &of->apart, position, &found, error);
     free(position);
     return code;
 }
@@ -224,11 +223,13 @@ int start_check(const struct model *model, const struct flow *flow,
                 const struct contact_apart *apart, const char *scene, struct cloth_error *error)
 {
     struct intersections_found found;
+    if (!model_promise(model).apart)
+        return CLOTH_OK;
     double *position = cloth_alloc(flow_vertices(flow), 3 * sizeof *position, error);
     if (!position)
         return CLOTH_E_MEMORY;
     flow_start(flow, position);
-    int code = run_start_check(model, apart, position, &found, error);
+    int code = look_at_start(model, apart, position, &found, error);
     if (!code && found.bad)
         code = cloth_fail(error, CLOTH_E_INPUT,
                           "%s: where the run starts %" PRIu64
@@ -238,5 +239,5 @@ int start_check(const struct model *model, const struct flow *flow,
                           scene, found.pairs, found.with_shapes, model_start_cure(model),
                           model_contact_cure(model));
     free(position);
-    return code;
+    return code ? code : start_welds(model, flow, apart, scene, error);
 }

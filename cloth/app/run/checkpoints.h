@@ -1,9 +1,26 @@
-#ifndef CLOTH_APP_RUN_RESTART_H
-#define CLOTH_APP_RUN_RESTART_H
+#ifndef CLOTH_APP_RUN_CHECKPOINTS_H
+#define CLOTH_APP_RUN_CHECKPOINTS_H
 
-#include "cloth/app/run/outputs.h"
+#include "cloth/app/run/phases.h"
 #include "cloth/output/checkpoint.h"
-#include "cloth/untangle/untangle.h"
+
+struct outputs;
+
+/* Writes checkpoints while the run goes on: a thread of its own, on rank 0 alone. One is written at
+ * a time. One that fails is said once, and the run goes on. */
+struct keeper;
+
+/* Its settings, files and seconds between two are those of the outputs, which outlive it. Before
+ * the runtime binds its threads to cores. *keeper: NULL before. Errors: of output_checkpoints_open;
+ * CLOTH_E_MEMORY; CLOTH_E_LIBRARY, no thread. */
+int keeper_open(struct keeper **keeper, const struct outputs *of, struct cloth_error *error);
+
+/* Nonzero once when a checkpoint is due; then 0 until restart_save and the next time. From any
+ * thread. */
+int keeper_due(struct keeper *keeper);
+
+/* Waits until the taken parts are on the disk; *keeper becomes NULL. */
+void keeper_close(struct keeper **keeper);
 
 /* Parts of a checkpoint beside the state of the flow: settings, which tell if the scene is the
  * same; the phase; results of earlier phases; memory of the outputs. All on rank 0; local
@@ -11,9 +28,8 @@
 
 /* The point that a run resumes from. */
 struct restart {
-    struct output_checkpoint checkpoint; /* bytes NULL: it starts anew */
+    struct output_checkpoint checkpoint; /* to be freed; bytes NULL: it starts anew */
     struct flow_resumed at;              /* when the flow is prepared */
-    struct untangle_result untangled;    /* of the run before */
 };
 
 /* Reads the newest checkpoint of a folder of frames that is whole, and puts the phases where it was
@@ -29,10 +45,8 @@ int restart_resume(struct restart *restart, struct flow *flow, struct cloth_erro
 /* Gives open outputs their memory back. Error: CLOTH_E_INPUT. */
 int restart_outputs(const struct restart *restart, struct outputs *to, struct cloth_error *error);
 
-/* Hands a checkpoint to the keeper of the outputs; has the form of flow_output.save, context = the
- * outputs. */
+/* Has the keeper of the outputs write a checkpoint, after a wait for one that is being written; has
+ * the form of flow_output.save, context = the outputs. From one thread at a time. */
 void restart_save(void *context, struct flow_checkpoint state);
-
-void restart_free(struct restart *restart);
 
 #endif

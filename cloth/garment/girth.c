@@ -29,29 +29,26 @@ static int compare_edges(const void *a, const void *b)
 }
 
 struct seams {
-    uint32_t n;
-    struct seam_edge *edge;
+    struct cloth_list edge; /* struct seam_edge, sorted */
     const struct girth_seam *seam;
 };
 
 static int list_seams(struct seams *seams, uint32_t n_seams, const struct girth_seam *seam,
                       struct cloth_error *error)
 {
-    size_t n = 0;
-    for (uint32_t s = 0; s < n_seams; s++)
-        n += 2 * (size_t)seam[s].n;
-    *seams = (struct seams){.edge = cloth_alloc(n, sizeof *seams->edge, error), .seam = seam};
-    if (!seams->edge)
-        return CLOTH_E_MEMORY;
+    int code = CLOTH_OK;
+    seams->seam = seam;
     for (uint32_t s = 0; s < n_seams; s++)
         for (uint32_t k = 0; k + 1 < seam[s].n; k++)
-            for (uint32_t side = 0; side < 2; side++) {
+            for (uint32_t side = 0; side < 2 && !code; side++) {
                 const uint32_t a = seam[s].pair[k][side], b = seam[s].pair[k + 1][side];
                 const uint64_t low = a < b ? a : b, high = a < b ? b : a;
-                seams->edge[seams->n++] = (struct seam_edge){low << 32 | high, s, side, k, b < a};
+                const struct seam_edge edge = {low << 32 | high, s, side, k, b < a};
+                code = cloth_list_put(&seams->edge, &edge, sizeof edge, error);
             }
-    qsort(seams->edge, seams->n, sizeof *seams->edge, compare_edges);
-    return CLOTH_OK;
+    if (seams->edge.n)
+        qsort(seams->edge.items, seams->edge.n, sizeof(struct seam_edge), compare_edges);
+    return code;
 }
 
 /* An open end of a cut on a seam. */
@@ -69,16 +66,16 @@ static int list_loose(struct cloth_list *list, const struct slice *slice, const 
             struct slice_end *end = &slice->segment[s].end[k];
             const struct seam_edge key = {.edge = end->edge};
             const struct seam_edge *edge =
-                end->open && seams->n
-                    ? bsearch(&key, seams->edge, seams->n, sizeof key, compare_edges)
+                end->open && seams->edge.n
+                    ? bsearch(&key, seams->edge.items, seams->edge.n, sizeof key, compare_edges)
                     : NULL;
             if (!edge)
                 continue;
-            struct loose *loose = cloth_list_add(list, sizeof *loose, 1, error);
-            if (!loose)
-                return CLOTH_E_MEMORY;
-            *loose = (struct loose){end, s, edge->seam, edge->side,
-                                    edge->k + (edge->backward ? 1 - end->part : end->part)};
+            const struct loose loose = {end, s, edge->seam, edge->side,
+                                        edge->k + (edge->backward ? 1 - end->part : end->part)};
+            const int code = cloth_list_put(list, &loose, sizeof loose, error);
+            if (code)
+                return code;
         }
     return CLOTH_OK;
 }
@@ -151,8 +148,7 @@ static int take_loop(struct loop *loop, const struct slice *slice, uint32_t set,
 }
 
 /* How much of each part of a body's slice is inside of a loop. */
-static void garment_girth_measure(const struct slice *body, const struct loop *loop,
-                                  double (*part)[2])
+static void measure_inside(const struct slice *body, const struct loop *loop, double (*part)[2])
 {
     for (uint32_t s = 0; s < body->n; s++) {
         const struct slice_segment *segment = &body->segment[s];
@@ -176,17 +172,18 @@ static int body_girth(double *girth, const struct slice *body, const struct loop
     int code = part && point ? CLOTH_OK : CLOTH_E_MEMORY;
     *girth = 0;
     if (!code)
-        garment_girth_measure(body, loop, part);
+        measure_inside(body, loop, part);
     for (uint32_t s = 0; s < body->n && !code; s++) {
         const double *of = part[cloth_sets_root(body->set, s)];
-        clear = clear && (of[1] <= LEAST * of[0] || of[1] >= MOST * of[0]);
-        for (int k = 0; k < 2 && of[1] >= MOST * of[0]; k++)
+        const bool inside = of[1] >= MOST * of[0];
+        clear = clear && (inside || of[1] <= LEAST * of[0]);
+        for (int k = 0; k < 2 && inside; k++)
             flatten(point[n++], &body->segment[s].end[k]);
     }
-    if (!code && clear && n > 2)
+    if (!code && clear && n > 2) {
         code = slice_hull(point, n, &n, error);
-    if (!code && clear && n > 2)
-        *girth = slice_around((const double(*)[2])point, n);
+        *girth = code ? 0 : slice_around((const double(*)[2])point, n);
+    }
     free(part);
     free(point);
     return code;
@@ -198,20 +195,9 @@ static int body_girth(double *girth, const struct slice *body, const struct loop
 static int slice_at(struct slice *slice, const struct girth_mesh *mesh, double y,
                     struct cloth_error *error)
 {
-    uint32_t n = 0;
-    for (uint32_t t = 0; t < mesh->n_triangles; t++)
-        for (int k = 0; k < 3; k++)
-            n = mesh->triangle[t][k] < n ? n : mesh->triangle[t][k] + 1;
-    double *height = cloth_alloc(n, sizeof *height, error);
-    *slice = (struct slice){0};
-    if (!height)
-        return CLOTH_E_MEMORY;
-    for (uint32_t v = 0; v < n; v++)
-        height[v] = mesh->x[v][1] - y;
-    const struct slice_mesh cut = {mesh->n_triangles, mesh->triangle, mesh->x, height};
-    const int code = slice_make(slice, &cut, error);
-    free(height);
-    return code;
+    static const double up[3] = {0, 1, 0};
+    const struct slice_mesh cut = {mesh->n_triangles, mesh->triangle, mesh->x};
+    return slice_make(slice, &cut, up, y, error);
 }
 
 struct levels {
@@ -220,8 +206,8 @@ struct levels {
     struct slice *body;
 };
 
-static int garment_girth_cut_body(struct levels *levels, const struct girth_mesh *garment,
-                                  const struct girth_mesh *body, struct cloth_error *error)
+static int cut_body(struct levels *levels, const struct girth_mesh *garment,
+                    const struct girth_mesh *body, struct cloth_error *error)
 {
     double low = INFINITY, high = -INFINITY;
     for (uint32_t t = 0; t < garment->n_triangles; t++)
@@ -243,9 +229,8 @@ static int garment_girth_cut_body(struct levels *levels, const struct girth_mesh
 }
 
 /* Compares a loop on a level with the body around this level. */
-static int garment_girth_compare(struct girth_worst *worst, const struct loop *loop,
-                                 const struct levels *levels, uint32_t level,
-                                 struct cloth_error *error)
+static int compare_loop(struct girth_worst *worst, const struct loop *loop,
+                        const struct levels *levels, uint32_t level, struct cloth_error *error)
 {
     double least = INFINITY;
     for (uint32_t l = level - WINDOW; l <= level + WINDOW; l++) {
@@ -273,7 +258,7 @@ static int compare_level(struct girth_worst *worst, const struct girth_mesh *gar
             continue;
         code = take_loop(&loop, &slice, s, error);
         if (!code && loop.girth > 0)
-            code = garment_girth_compare(worst, &loop, levels, level, error);
+            code = compare_loop(worst, &loop, levels, level, error);
         free(loop.hull);
     }
     slice_free(&slice);
@@ -288,12 +273,12 @@ int girth_compare(struct girth_worst *worst, const struct girth_mesh *garment, u
     struct seams seams = {0};
     *worst = (struct girth_worst){0};
     int code = list_seams(&seams, n_seams, seam, error);
-    code = code ? code : garment_girth_cut_body(&levels, garment, body, error);
+    code = code ? code : cut_body(&levels, garment, body, error);
     for (uint32_t l = WINDOW; l + WINDOW < levels.n && !code; l++)
         code = compare_level(worst, garment, &seams, &levels, l, error);
     for (uint32_t l = 0; l < levels.n; l++)
         slice_free(&levels.body[l]);
     free(levels.body);
-    free(seams.edge);
+    free(seams.edge.items);
     return code;
 }

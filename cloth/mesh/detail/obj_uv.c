@@ -1,9 +1,7 @@
 /* Each vertex has the uv of its first corner. Corners that differ from it are sorted, so that equal
  * ones of a vertex share a number, however many there are. */
-#include "cloth/mesh/detail/islands.h"
-
-#include "cloth/base/memory.h"
 #include "cloth/base/order.h"
+#include "cloth/mesh/detail/obj.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -35,7 +33,7 @@ static uint32_t count_without(const struct mesh *mesh, const uint32_t (*corner)[
     uint32_t without = 0;
     for (uint32_t f = 0; f < mesh->n_faces; f++) {
         uint32_t c = mesh->face_start[f];
-        while (c < mesh->face_start[f + 1] && corner[c][1] != MESH_NO_UV)
+        while (c < mesh->face_start[f + 1] && corner[c][1] != OBJ_NO_UV)
             c++;
         without += c < mesh->face_start[f + 1];
     }
@@ -58,10 +56,8 @@ static int take_first(struct mesh *mesh, const double (*uv)[2], const uint32_t (
         seen[v] = 1;
         if (to[v][0] == of[0] && to[v][1] == of[1])
             continue;
-        struct other *other = cloth_list_add(others, sizeof *other, 1, error);
-        if (other)
-            *other = (struct other){v, c, {of[0], of[1]}};
-        code = other ? CLOTH_OK : CLOTH_E_MEMORY;
+        const struct other other = {v, c, {of[0], of[1]}};
+        code = cloth_list_put(others, &other, sizeof other, error);
     }
     free(seen);
     return code;
@@ -84,8 +80,8 @@ static int number_triangles(struct mesh *mesh, struct cloth_error *error)
     return made ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
-static int islands_add_others(struct mesh *mesh, struct other *other, size_t n,
-                              struct cloth_error *error)
+static int obj_uv_add_others(struct mesh *mesh, struct other *other, size_t n,
+                             struct cloth_error *error)
 {
     const size_t n_vertices = mesh->n_vertices, n_corners = mesh->face_start[mesh->n_faces];
     double(*to)[2] = realloc(mesh->uv, (n_vertices + n) * sizeof *to);
@@ -103,8 +99,8 @@ static int islands_add_others(struct mesh *mesh, struct other *other, size_t n,
     return number_triangles(mesh, error);
 }
 
-int mesh_islands_make(struct mesh *mesh, const double (*uv)[2], const uint32_t (*corner)[2],
-                      struct cloth_error *error)
+int obj_uv_put(struct mesh *mesh, const double (*uv)[2], const uint32_t (*corner)[2],
+               struct cloth_error *error)
 {
     struct cloth_list others = {0};
     const uint32_t without = count_without(mesh, corner);
@@ -114,7 +110,7 @@ int mesh_islands_make(struct mesh *mesh, const double (*uv)[2], const uint32_t (
     }
     int code = take_first(mesh, uv, corner, &others, error);
     if (!code && others.n)
-        code = islands_add_others(mesh, others.items, others.n, error);
+        code = obj_uv_add_others(mesh, others.items, others.n, error);
     free(others.items);
     return code;
 }

@@ -24,9 +24,9 @@ struct cli_option {
     const char *value, *help;
     enum cli_kind kind;
     size_t to;         /* of the member */
-    const char *takes; /* of CLI_ABOVE_0 and CLI_OTHER: what it takes, for errors */
-    /* Of CLI_OTHER; to: the program's struct. Returns false for what it does not take, or says more
-     * by argp_error. */
+    const char *takes; /* values that are right, for errors; of CLI_ABOVE_0 and CLI_OTHER */
+    /* Reads CLI_OTHER into the program's struct. Returns false for a wrong value, or says more
+     * about it by argp_error. */
     bool (*read)(const char *text, void *to, struct argp_state *state);
     unsigned marks; /* added to the program's marks where the option is given */
 };

@@ -78,7 +78,7 @@ static enum limit find_limit(const struct summary *summary, double share[LIMITS]
 }
 
 /* The kind of task with most seconds, and its part of the seconds of all. */
-static void say_kind(char *text, size_t size, const struct flow_report *report)
+static void print_kind(FILE *file, const struct flow_report *report)
 {
     size_t most = 0;
     double all = 0;
@@ -87,80 +87,73 @@ static void say_kind(char *text, size_t size, const struct flow_report *report)
         if (!(seconds_of(report, most) >= seconds_of(report, i)) && !isnan(seconds_of(report, i)))
             most = i;
     }
-    *text = '\0';
     if (all > 0)
-        snprintf(text, size, ", %.0f %% of that in %s", 100 * seconds_of(report, most) / all,
-                 KIND[most].name);
+        fprintf(file, ", %.0f %% of that in %s", 100 * seconds_of(report, most) / all,
+                KIND[most].name);
 }
 
 /* Names repeated steps or solves if they are a quarter of all or more. */
-static void say_repeats(char *text, size_t size, const struct flow_report *report)
+static void print_repeats(FILE *file, const struct flow_report *report)
 {
     const double given_up = (double)(report->steps_halved + report->steps_retaken);
     const double begun = (double)report->steps + given_up;
     const double contact = (double)report->contact_solves;
     const double again = given_up / begun, solved_again = contact / (begun + contact);
-    *text = '\0';
     if (fmax(again, solved_again) < 0.25)
         return;
     if (again > solved_again)
-        snprintf(text, size, "; %.0f %% of the steps were given up and made again", 100 * again);
+        fprintf(file, "; %.0f %% of the steps were given up and made again", 100 * again);
     else
-        snprintf(text, size, "; %.0f %% of the solves were made again for contact",
-                 100 * solved_again);
+        fprintf(file, "; %.0f %% of the solves were made again for contact", 100 * solved_again);
 }
 
 /* Why there may have been too few tasks. */
-static void say_tasks(char *text, size_t size, const struct summary *summary)
+static void print_tasks(FILE *file, const struct summary *summary)
 {
+    const uint64_t blocks = summary->report->blocks;
     if (summary->threads > summary->cores)
-        snprintf(text, size, "%u workers on %u core%s", summary->threads, summary->cores,
-                 summary->cores == 1 ? "" : "s");
+        fprintf(file, ", with %u workers on %u core%s", summary->threads, summary->cores,
+                summary->cores == 1 ? "" : "s");
     else
-        snprintf(text, size, "%" PRIu64 " block%s for %" PRIu64 " worker%s",
-                 summary->report->blocks, summary->report->blocks == 1 ? "" : "s", summary->workers,
-                 summary->workers == 1 ? "" : "s");
+        fprintf(file, ", with %" PRIu64 " block%s for %" PRIu64 " worker%s", blocks,
+                blocks == 1 ? "" : "s", summary->workers, summary->workers == 1 ? "" : "s");
 }
 
-static void say_fact(char *text, size_t size, enum limit limit, const struct summary *summary,
-                     double percent)
+static void print_fact(FILE *file, enum limit limit, const struct summary *summary, double percent)
 {
-    char more[100] = "";
     switch (limit) {
     case WORK:
-        say_kind(more, sizeof more, summary->report);
-        snprintf(text, size, "the workers were busy for %.0f %% of the time%s", percent, more);
-        break;
+        fprintf(file, "the workers were busy for %.0f %% of the time", percent);
+        print_kind(file, summary->report);
+        return;
     case PATH:
-        snprintf(text, size, "tasks that wait for one another took %.0f %% of the time", percent);
-        break;
+        fprintf(file, "tasks that wait for one another took %.0f %% of the time", percent);
+        return;
     case MESSAGES:
-        snprintf(text, size, "the workers had no task and awaited messages for %.0f %% of the time",
-                 percent);
-        break;
+        fprintf(file, "the workers had no task and awaited messages for %.0f %% of the time",
+                percent);
+        return;
     case STARVED:
-        say_tasks(more, sizeof more, summary);
-        snprintf(text, size, "the workers had no task for %.0f %% of the time, with %s", percent,
-                 more);
-        break;
+        fprintf(file, "the workers had no task for %.0f %% of the time", percent);
+        print_tasks(file, summary);
+        return;
     default:
-        snprintf(text, size,
-                 "the workers were between tasks for %.0f %% of the time, with %" PRIu64 " tasks",
-                 percent, summary->report->counters.tasks);
+        fprintf(file,
+                "the workers were between tasks for %.0f %% of the time, with %" PRIu64 " tasks",
+                percent, summary->report->counters.tasks);
     }
 }
 
 void summary_limit_print(FILE *file, const struct summary *summary)
 {
     double share[LIMITS];
-    char fact[240], repeats[120];
     const enum limit limit = find_limit(summary, share);
     if (limit == LIMITS)
         return;
-    say_fact(fact, sizeof fact, limit, summary, 100 * share[limit]);
-    say_repeats(repeats, sizeof repeats, summary->report);
-    fprintf(file, "Limited by %s%s: %s%s.\n", LIMIT[limit].article, LIMIT[limit].name, fact,
-            repeats);
+    fprintf(file, "Limited by %s%s: ", LIMIT[limit].article, LIMIT[limit].name);
+    print_fact(file, limit, summary, 100 * share[limit]);
+    print_repeats(file, summary->report);
+    fputs(".\n", file);
 }
 
 const char *summary_limit(const struct summary *summary)

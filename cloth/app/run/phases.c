@@ -56,11 +56,9 @@ size_t phases_numbers(const struct phases *phases)
     return 6 * (size_t)phases->n_vertices;
 }
 
-/* The cloths of the phase of now. */
-static int start_at(struct phases *phases, double (*from)[6], struct cloth_error *error)
+int phases_start_at(struct model *model, double (*from)[6], struct cloth_error *error)
 {
     uint32_t first = 0;
-    struct model *model = phases_model(phases);
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const uint32_t n = model->cloths[c].mesh.n_vertices;
         double(*start)[6] = cloth_alloc(n, sizeof *start, error);
@@ -82,14 +80,14 @@ int phases_start(struct phases *phases, const double *numbers, struct cloth_erro
     if (!phases->start)
         return CLOTH_E_MEMORY;
     memcpy(phases->start, numbers, n * sizeof *numbers);
-    return start_at(phases, phases->start, error);
+    return phases_start_at(phases_model(phases), phases->start, error);
 }
 
 int phases_next(struct phases *phases, struct cloth_error *error)
 {
     phases->now++;
     return phases->keeps_start ? phases_start(phases, *phases->end, error)
-                               : start_at(phases, phases->end, error);
+                               : phases_start_at(phases_model(phases), phases->end, error);
 }
 
 /* ---- The report of all phases ---- */

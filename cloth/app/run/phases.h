@@ -80,6 +80,10 @@ int phases_next(struct phases *phases, struct cloth_error *error);
 size_t phases_numbers(const struct phases *phases);
 int phases_start(struct phases *phases, const double *numbers, struct cloth_error *error);
 
+/* Makes all cloths of a model start there: by vertex of all cloths, as model_cloth.start has it.
+ * Error: CLOTH_E_MEMORY. Local. */
+int phases_start_at(struct model *model, double (*from)[6], struct cloth_error *error);
+
 /* Adds the report of the phase that is over. Counts and seconds are added; peaks are the largest;
  * energies, the hash and other final values are those of this phase. Local. */
 void phases_add(struct phases *phases, const struct flow_report *report);

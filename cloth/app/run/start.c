@@ -2,6 +2,7 @@
 #include "cloth/app/run/start.h"
 
 #include "cloth/app/check/intersections.h"
+#include "cloth/app/run/phases.h"
 #include "cloth/base/memory.h"
 
 #include <inttypes.h>
@@ -87,24 +88,6 @@ static void say_result(const struct untangle_result *result)
 }
 
 /* ---- Results ---- */
-
-/* New starts for all cloths that have a vertex that moved. */
-static int put_starts(struct model *model, struct tangle *of, struct cloth_error *error)
-{
-    for (uint32_t c = 0; c < model->n_cloths; c++) {
-        struct model_cloth *cloth = model->cloths + c;
-        const uint32_t n = cloth->mesh.n_vertices, first = model_first(model, c);
-        double(*start)[6] = cloth_alloc(n, sizeof *start, error);
-        if (!start)
-            return CLOTH_E_MEMORY;
-        memcpy(start, of->start + first, n * sizeof *start);
-        for (uint32_t v = 0; v < n; v++)
-            for (int k = 0; k < 3; k++)
-                start[v][k] = of->x[of->soup.same[first + v]][k];
-        model_start_at(cloth, *start);
-    }
-    return CLOTH_OK;
-}
 
 /* A point of those that are untangled; those of bodies follow the cloths' vertices. */
 static void name_point(const struct model *model, uint32_t n, uint32_t point, char *text,
@@ -197,7 +180,10 @@ static int make_free(struct model *model, struct flow **flow, int ranks, bool sa
         return code;
     if (says)
         say_result(result);
-    code = put_starts(model, tangle, error);
+    for (uint32_t v = 0; v < tangle->n; v++)
+        for (int k = 0; k < 3; k++)
+            tangle->start[v][k] = tangle->x[tangle->soup.same[v]][k];
+    code = phases_start_at(model, tangle->start, error);
     flow_free(*flow);
     *flow = NULL;
     return code ? code : flow_prepare(flow, model, ranks, error);

@@ -52,7 +52,7 @@ void draw_lights_free(struct draw_lights *lights);
 
 /* --- sky.c: light that is worked out once for all pixels --- */
 
-/* What textures shaders find where: the maps of the sun and the sky; two of light; surfaces. */
+/* Units of textures: the maps of the sun and the sky; two of light; surfaces. */
 enum { DRAW_UNIT_SUNS, DRAW_UNIT_SKIES, DRAW_UNIT_FRONT, DRAW_UNIT_BACK, DRAW_UNIT_SURFACES };
 
 /* The light on both sides, a texel for each vertex of a mesh, or for each place of a square. */

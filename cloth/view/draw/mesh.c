@@ -74,8 +74,8 @@ static void upload_indices(const struct draw_mesh *mesh, const uint32_t *line)
     glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, (GLintptr)triangles, (GLsizeiptr)lines, line);
 }
 
-/* Adds the coarse triangles behind the others and the lines. What there is no memory for casts all
- * its triangles. */
+/* Adds the coarse triangles behind the others and the lines. A mesh that there is no memory for
+ * casts all its triangles. */
 static void make_coarse(struct draw_mesh *mesh)
 {
     const size_t bytes = (size_t)12 * mesh->n_triangles;

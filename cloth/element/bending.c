@@ -163,48 +163,13 @@ static bool hinges_has(const struct model *model, const struct model_cloth *clot
 }
 
 static void hinges_pack(const struct element_cloths *cloths, const struct element *element,
-                        const struct element_list *list, uint32_t e)
+                        const struct phys_elements *list, uint32_t e)
 {
     struct bend bend;
     bend_make(cloths, element, MODEL_HINGES, &bend);
-    list->number[0][e] = bend.stiffness;
-    list->number[1][e] = bend.damping;
-    list->number[2][e] = bend.rest.s;
-}
-
-static struct phys_hinges hinges_of(const struct element_list *list)
-{
-    return (struct phys_hinges){list->n, (const uint32_t(*)[4])list->corner, list->number[0],
-                                list->number[1], list->number[2]};
-}
-
-static void hinges_force(const struct element_list *list, const struct element_world *world,
-                         const struct phys_sight *sight, phys_vec *f)
-{
-    const struct phys_hinges hinges = hinges_of(list);
-    (void)world;
-    phys_hinges_force(&hinges, sight, f);
-}
-
-static void hinges_matrix(const struct element_list *list, size_t from, size_t to,
-                          const struct phys_step *step, const struct phys_sight *sight,
-                          const uint32_t *at, struct phys_pair *pair)
-{
-    const struct phys_hinges hinges = hinges_of(list);
-    phys_hinges_matrix(&hinges, from, to, step, sight, at, pair);
-}
-
-static void hinges_stiffness(const struct element_list *list, int full, double scale,
-                             const struct phys_sight *sight, phys_vec *y)
-{
-    const struct phys_hinges hinges = hinges_of(list);
-    phys_hinges_stiffness(&hinges, full, scale, sight, y);
-}
-
-static double hinges_energy(const struct element_list *list, const struct phys_sight *sight)
-{
-    const struct phys_hinges hinges = hinges_of(list);
-    return phys_hinges_energy(&hinges, sight);
+    list->number[PHYS_HINGE_STIFFNESS][e] = bend.stiffness;
+    list->number[PHYS_HINGE_DAMPING][e] = bend.damping;
+    list->number[PHYS_HINGE_REST][e] = bend.rest.s;
 }
 
 const struct element_kind element_hinges = {
@@ -216,10 +181,10 @@ const struct element_kind element_hinges = {
     .has = hinges_has,
     .check = bending_check,
     .pack = hinges_pack,
-    .force = hinges_force,
-    .matrix = hinges_matrix,
-    .stiffness = hinges_stiffness,
-    .energy = hinges_energy,
+    .force = phys_hinges_force,
+    .matrix = phys_hinges_matrix,
+    .stiffness = phys_hinges_stiffness,
+    .energy = phys_hinges_energy,
 };
 
 /* ---- Quadratic energies: the weights of each ---- */
@@ -281,49 +246,12 @@ int element_seams_check(const struct element_cloths *cloths, struct cloth_error 
 }
 
 static void quadratic_pack(const struct element_cloths *cloths, const struct element *element,
-                           const struct element_list *list, uint32_t e)
+                           const struct phys_elements *list, uint32_t e)
 {
     struct bend bend;
     bend_make(cloths, element, MODEL_QUADRATIC, &bend);
     for (int i = 0; i < 4; i++)
         list->vector[e][i] = sqrt(bend.stiffness) * bend.rest.weight[i];
-}
-
-static struct phys_quadratic quadratic_of(const struct element_list *list)
-{
-    return (struct phys_quadratic){list->n, (const uint32_t(*)[4])list->corner, list->vector};
-}
-
-static void quadratic_force(const struct element_list *list, const struct element_world *world,
-                            const struct phys_sight *sight, phys_vec *f)
-{
-    const struct phys_quadratic quadratic = quadratic_of(list);
-    (void)world;
-    phys_quadratic_force(&quadratic, sight, f);
-}
-
-static void quadratic_matrix(const struct element_list *list, size_t from, size_t to,
-                             const struct phys_step *step, const struct phys_sight *sight,
-                             const uint32_t *at, struct phys_pair *pair)
-{
-    const struct phys_quadratic quadratic = quadratic_of(list);
-    (void)sight;
-    (void)at; /* blocks are symmetric */
-    phys_quadratic_matrix(&quadratic, from, to, step->h, pair);
-}
-
-static void quadratic_stiffness(const struct element_list *list, int full, double scale,
-                                const struct phys_sight *sight, phys_vec *y)
-{
-    const struct phys_quadratic quadratic = quadratic_of(list);
-    (void)full;
-    phys_quadratic_stiffness(&quadratic, scale, sight, y);
-}
-
-static double quadratic_energy(const struct element_list *list, const struct phys_sight *sight)
-{
-    const struct phys_quadratic quadratic = quadratic_of(list);
-    return phys_quadratic_energy(&quadratic, sight);
 }
 
 const struct element_kind element_quadratic = {
@@ -335,8 +263,8 @@ const struct element_kind element_quadratic = {
     .has = quadratic_has,
     .check = quadratic_check,
     .pack = quadratic_pack,
-    .force = quadratic_force,
-    .matrix = quadratic_matrix,
-    .stiffness = quadratic_stiffness,
-    .energy = quadratic_energy,
+    .force = phys_quadratic_force,
+    .matrix = phys_quadratic_matrix,
+    .stiffness = phys_quadratic_stiffness,
+    .energy = phys_quadratic_energy,
 };

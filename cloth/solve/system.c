@@ -1,6 +1,8 @@
 /* Pairs are worked on one after the other: equal arrays give equal bits. */
 #include "cloth/solve/system.h"
 
+#include "cloth/base/order.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -63,10 +65,8 @@ struct entry {
 static int solve_system_compare(const void *va, const void *vb)
 {
     const struct entry *a = va, *b = vb;
-    for (int i = 0; i < 2; i++)
-        if (a->end[i] != b->end[i])
-            return a->end[i] < b->end[i] ? -1 : 1;
-    return (a->at > b->at) - (a->at < b->at);
+    const int order = cloth_compare_numbers(a->end, b->end, 2);
+    return order ? order : (a->at > b->at) - (a->at < b->at);
 }
 
 /* Moves the data of pairs, `bytes` each, to their new places. room: as large. */

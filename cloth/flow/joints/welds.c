@@ -27,11 +27,9 @@ static int list_pairs(struct cloth_list *list, const struct model *model, const 
     return code ? code : flow_pairs_once(list, model, "a weld", error);
 }
 
-static int welds_compare_names(const void *va, const void *vb)
+static int welds_compare_names(const void *a, const void *b)
 {
-    const uint32_t *a = va, *b = vb;
-    const int order = cloth_compare_u32(a[0], b[0]);
-    return order ? order : cloth_compare_u32(a[1], b[1]);
+    return cloth_compare_numbers(a, b, 2);
 }
 
 /* The root of each vertex, and the list of all other names. */
@@ -291,15 +289,7 @@ int flow_names_make(struct flow_names *names, const struct flow_welds *welds,
 
 uint32_t flow_names_from(const struct flow_names *names, uint32_t place)
 {
-    uint32_t low = 0, high = names->n;
-    while (low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (names->name[middle][0] < place)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    return cloth_first_from(names->name, 2, names->n, place);
 }
 
 /* ---- Springs ---- */
@@ -343,9 +333,7 @@ static void welds_find_joined(void *to, const struct flow_spring *s)
 
 static int compare_kinds(const struct candidate *a, const struct candidate *b)
 {
-    int order = cloth_compare_u32(a->a, b->a);
-    if (!order)
-        order = cloth_compare_u32(a->b, b->b);
+    int order = cloth_compare_numbers(a, b, 2);
     if (!order)
         order = (a->stretch > b->stretch) - (a->stretch < b->stretch);
     return order ? order : (a->length > b->length) - (a->length < b->length);

@@ -51,7 +51,7 @@ void flow_pins_slider(struct flow_pins *pins, uint32_t i, struct flow_slider *sl
 {
     const uint32_t *row = pins->table->sliding[i];
     const struct model_slider *is = pins->model->sliders + row[1] - 1;
-    phys_vec d = {is->direction[0], is->direction[1], is->direction[2], 0};
+    phys_vec d = PHYS_VEC(is->direction);
     slider->at = pins->table->position[row[0]];
     if (is->motion) {
         const struct phys_pose *pose = pose_of(pins, is->motion);
@@ -104,13 +104,12 @@ void flow_sliders_keep(const duite_call *call, const struct flow_table *t, doubl
 static int fork_moved(struct flow_state *state, const struct flow_kernel *kernel)
 {
     struct flow_step_args args = flow_attempt_args(state);
-    int code = DUITE_OK;
-    for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
+    for (; args.block < state->flow->tables.n_blocks; args.block++) {
         const struct flow_table *t = state->flow->tables.block + args.block;
         if (t->n_moved || t->n_sliding)
-            code = flow_fork_one(state, kernel, &args);
+            flow_fork_one(state, kernel, &args);
     }
-    return code;
+    return state->code;
 }
 
 FLOW_KERNEL(prescribe_velocity, FLOW_VELOCITY, struct flow_step_args,

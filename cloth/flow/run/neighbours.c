@@ -115,13 +115,9 @@ static void number_halo(const struct flow_source *source, struct flow_table *sha
     shape->halo_start[SOLVE_MAX_PATCHES] = shape->n_halo;
 }
 
-static int compare_needs(const void *va, const void *vb)
+static int compare_needs(const void *a, const void *b)
 {
-    const struct need *a = va, *b = vb;
-    int order = cloth_compare_u32(a->reader, b->reader);
-    if (!order)
-        order = cloth_compare_u32(a->other, b->other);
-    return order ? order : cloth_compare_u32(a->place, b->place);
+    return cloth_compare_numbers(a, b, 3);
 }
 
 /* Keeps each of the sorted needs once, and counts neighbours and ghosts. Returns how many are left.

@@ -91,7 +91,7 @@ static void begin_right_side(const struct making *m, const struct phys_sight *si
         phys_outside(t->n, t->load, t->drag, m->view.v, m->b);
         flow_varying_add(m->call, t, m->now, m->b);
         if (sight->x)
-            flow_elements_force_beside(m->call, t, m->now, sight, m->b);
+            flow_elements_force(m->call, t, m->now, true, sight, m->b);
     }
     for (uint32_t i = 0; i < t->n; i++)
         m->b[i] = m->h * m->b[i];

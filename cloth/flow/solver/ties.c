@@ -133,9 +133,8 @@ int flow_ties_pack(struct flow_state *state, uint32_t block)
 int flow_ties_show_basis(struct flow_state *state)
 {
     struct flow_block_args args = {0};
-    int code = DUITE_OK;
-    for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
+    for (; args.block < state->flow->tables.n_blocks; args.block++)
         if (is_tied(state, args.block))
-            code = flow_fork_one(state, &flow_kernel_tie_show_basis, &args);
-    return code;
+            flow_fork_one(state, &flow_kernel_tie_show_basis, &args);
+    return state->code;
 }

@@ -19,15 +19,9 @@ struct flow_side {
     const struct model_correction *correction;
 };
 
-static int compare_sides(const void *va, const void *vb)
+static int compare_sides(const void *a, const void *b)
 {
-    const struct flow_side *a = va, *b = vb;
-    int order = cloth_compare_u32(a->other, b->other);
-    if (!order)
-        order = cloth_compare_u32(a->here, b->here);
-    if (!order)
-        order = cloth_compare_u32(a->there, b->there);
-    return order ? order : cloth_compare_u32(a->spring, b->spring);
+    return cloth_compare_numbers(a, b, 4);
 }
 
 /* The sides of the group: counted from the shapes, then put where their block's part goes on. */
@@ -114,13 +108,11 @@ int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
 static void fill_rows(const struct flow_source *source, const struct flow_table *t,
                       const struct flow_layout *layout)
 {
-    const struct model *model = source->model;
     struct flow_cloths at = {0};
     for (uint32_t i = 0; i < t->n; i++) {
         const uint32_t v = source->blocks.vertex[t->first + i], halo = source->halo[t->first + i];
         struct flow_particle p;
-        flow_source_cloth(&at, model, v);
-        flow_particle_of(&source->particles, model, model->cloths + at.cloth, at.first, v, &p);
+        flow_particle_at(&source->particles, source->model, &at, v, &p);
         layout->vertex[i] = v;
         layout->mass[i] = p.mass;
         layout->drag[i] = p.drag;
@@ -150,16 +142,9 @@ static void fill_watched(const struct flow_source *source, const struct flow_tab
                          const struct flow_layout *layout)
 {
     const struct flow_watched *watched = &source->watched;
-    uint32_t low = 0, high = watched->n; /* the first at or after the block's first place */
-    while (t->n_watched && low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (watched->place[middle] < t->first)
-            low = middle + 1;
-        else
-            high = middle;
-    }
+    const uint32_t from = cloth_first_from(watched->place, 1, watched->n, t->first);
     for (uint32_t i = 0; i < t->n_watched; i++)
-        layout->watched[i] = watched->place[low + i] - t->first;
+        layout->watched[i] = watched->place[from + i] - t->first;
 }
 
 static void fill_varying(const struct flow_source *source, const struct flow_table *t,
@@ -167,12 +152,12 @@ static void fill_varying(const struct flow_source *source, const struct flow_tab
 {
     if (!t->n_varying)
         return;
-    const struct flow_varying *load =
-        source->particles.varying + flow_varying_from(source, t->first);
+    const struct flow_varying *all = source->particles.varying.items;
+    const struct flow_varying *load = all + flow_varying_from(source, t->first);
     for (uint32_t i = 0; i < t->n_varying; i++, load++) {
         layout->varying[i][0] = load->at - t->first;
         layout->varying[i][1] = load->curve;
-        layout->varying_force[i] = (phys_vec){load->force[0], load->force[1], load->force[2], 0};
+        layout->varying_force[i] = PHYS_VEC(load->force);
     }
 }
 

@@ -11,18 +11,14 @@ struct one_joint {
     phys_vec x[2], v[2];
 };
 
-/* The joint of tie i; NULL: it is none. */
-static const struct flow_tie *joint_of(const struct flow *flow, const struct flow_ties *ties,
-                                       uint32_t i)
-{
-    return ties->of[i] < flow->n_ties ? flow->tie + ties->of[i] : NULL;
-}
-
-static void see_joint(const struct flow *flow, const struct flow_ties *ties,
+/* Returns false if tie i is no joint. */
+static bool see_joint(const struct flow *flow, const struct flow_ties *ties,
                       const struct flow_view *view, uint32_t i, struct one_joint *one)
 {
     static const uint32_t end[1][2] = {{0, 0}};
-    const struct flow_tie *joint = joint_of(flow, ties, i);
+    if (ties->of[i] >= flow->n_ties)
+        return false;
+    const struct flow_tie *joint = flow->tie + ties->of[i];
     one->spring = (struct phys_springs){
         1, end, &joint->stiffness, &joint->damping, &joint->length, flow->model->full_slope};
     for (int side = 0; side < 2; side++)
@@ -36,6 +32,7 @@ static void see_joint(const struct flow *flow, const struct flow_ties *ties,
         if (view->v)
             one->v[side] += share * *flow_tie_v(ties, view, ties->corner[i][k]);
     }
+    return true;
 }
 
 /* Adds a spring's effect on its first point to the rows of the block, by their weights. */
@@ -52,9 +49,8 @@ void flow_ties_force(const struct flow *flow, const struct flow_view *view, phys
     for (uint32_t i = 0; i < ties.n; i++) {
         struct one_joint one;
         phys_vec add = {0};
-        if (!joint_of(flow, &ties, i))
+        if (!see_joint(flow, &ties, view, i, &one))
             continue;
-        see_joint(flow, &ties, view, i, &one);
         phys_springs_force_cut(&one.spring, one.x, one.v, one.x + 1, one.v + 1, &add);
         scatter(&ties, i, &add, f);
     }
@@ -68,9 +64,8 @@ void flow_ties_system(const struct flow *flow, const struct flow_view *view, dou
     for (uint32_t i = 0; i < ties.n; i++) {
         struct one_joint one;
         phys_vec add = {0};
-        if (!joint_of(flow, &ties, i))
+        if (!see_joint(flow, &ties, view, i, &one))
             continue;
-        see_joint(flow, &ties, view, i, &one);
         if (b)
             phys_springs_system_cut(&one.spring, h, push, one.x, one.v, one.x + 1, one.v + 1, &add,
                                     value + i);
@@ -98,9 +93,8 @@ double flow_ties_energy(const struct flow *flow, const struct flow_view *view)
     double sum = 0;
     for (uint32_t i = 0; i < ties.n; i++) {
         struct one_joint one;
-        if (!joint_of(flow, &ties, i))
+        if (!see_joint(flow, &ties, view, i, &one))
             continue;
-        see_joint(flow, &ties, view, i, &one);
         sum += share_of(&ties, i) * phys_energy_springs(&one.spring, one.x, one.x + 1);
     }
     return sum;

@@ -61,13 +61,12 @@ static int fork_level(struct flow_state *state, struct flow_step_args args)
 int flow_energies(struct flow_state *state, struct flow_step_args args, enum flow_field_id sums)
 {
     const bool apart = model_scheme(state->flow->model)->staggered;
-    const struct flow_as as[] = {{FLOW_FIELD_v, apart ? FLOW_FIELD_f : FLOW_FIELD_v},
-                                 {FLOW_FIELD_energies, sums},
-                                 {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}};
+    const enum flow_field_id speed = apart ? FLOW_FIELD_f : FLOW_FIELD_v;
     flow_set(state, sums, NULL);
     if (apart)
         fork_level(state, args);
-    return flow_fork_each_as(state, &flow_kernel_energy, &args, as);
+    return flow_fork_each_as(state, &flow_kernel_energy, &args,
+                             FLOW_AS({FLOW_FIELD_v, speed}, {FLOW_FIELD_energies, sums}));
 }
 
 /* True if energies are checked after the step under way. */

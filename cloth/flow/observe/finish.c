@@ -4,6 +4,7 @@
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/state/bodies.h"
 
+#include <endian.h>
 #include <math.h>
 #include <string.h>
 
@@ -70,23 +71,13 @@ struct part {
     uint32_t from, to;
 };
 
-/* A double as eight bytes, the lowest first; back. */
-static void put_double(unsigned char *bytes, double value)
+/* A double with its lowest byte first, or back. */
+static void turn_double(void *to, const void *from)
 {
     uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    for (int i = 0; i < 8; i++)
-        bytes[i] = (unsigned char)(bits >> (8 * i));
-}
-
-static double double_of(const unsigned char *bytes)
-{
-    uint64_t bits = 0;
-    double value;
-    for (int i = 8; i > 0; i--)
-        bits = bits << 8 | bytes[i - 1];
-    memcpy(&value, &bits, sizeof value);
-    return value;
+    memcpy(&bits, from, sizeof bits);
+    bits = htole64(bits);
+    memcpy(to, &bits, sizeof bits);
 }
 
 /* On rank 0: copies row i of a block, if its vertex v is in the part. */
@@ -121,7 +112,7 @@ static int collect_body(const duite_call *call, const struct collect_fields *on)
         duite_resize(call, FLOW_INDEX_OF(collect, gathered), FLOW_VERTEX_BYTES * (size_t)t->n);
     for (uint32_t i = 0; i < t->n && !code; i++)
         for (int c = 0; c < 3; c++, to += 8)
-            put_double(to, on->x[i][c]);
+            turn_double(to, (const double *)(on->x + i) + c);
     return code;
 }
 
@@ -129,10 +120,9 @@ static int collect_body(const duite_call *call, const struct collect_fields *on)
 static void collect_vector(struct flow_state *state, uint32_t n, const uint32_t *block,
                            enum flow_field_id vector, const struct part *part)
 {
-    const struct flow_as as[] = {{FLOW_FIELD_x, vector}, {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}};
     for (uint32_t k = 0; k < n; k++) {
         const struct flow_block_args args = {.block = block[k]};
-        flow_fork_one_as(state, &flow_kernel_collect, &args, as);
+        flow_fork_one_as(state, &flow_kernel_collect, &args, FLOW_AS({FLOW_FIELD_x, vector}));
     }
     for (uint32_t k = 0; k < n && !state->code; k++) {
         const duite_object gathered = state->block[block[k]].gathered;
@@ -164,12 +154,13 @@ static int collect_part(struct flow_state *state, enum flow_field_id vector,
 /* Vertices that no face or edge uses are at their start, at rest. */
 static void place_unused(struct flow_state *state, bool at_rest, const struct part *part)
 {
+    static const double rest = 0;
     const struct flow_unused *unused = &state->flow->unused;
     for (uint32_t i = 0; i < unused->n; i++) {
         const uint32_t v = unused->vertex[i];
         unsigned char *to = state->bytes + FLOW_VERTEX_BYTES * (size_t)(v - part->from);
         for (size_t c = 0; v >= part->from && v < part->to && c < 3; c++)
-            put_double(to + 8 * c, at_rest ? 0 : unused->position[i][c]);
+            turn_double(to + 8 * c, at_rest ? &rest : unused->position[i] + c);
     }
 }
 
@@ -182,7 +173,7 @@ static void keep_end(const struct flow_state *state, enum flow_field_id vector,
     const int first = vector == FLOW_FIELD_v ? 3 : 0;
     for (uint32_t v = part->from; end && v < part->to; v++)
         for (int c = 0; c < 3; c++, from += 8)
-            end[v][first + c] = double_of(from);
+            turn_double(end[v] + first + c, from);
 }
 
 static void hash_vectors(struct flow_state *state, enum flow_field_id vector, bool at_rest,

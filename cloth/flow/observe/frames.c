@@ -135,9 +135,8 @@ static void find_homes(struct flow_state *state)
 static void fork_vector(struct flow_state *state, struct frame_args args, enum frame_shows shows,
                         enum flow_field_id field)
 {
-    const struct flow_as as[] = {{FLOW_FIELD_x, field}, {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}};
     args.shows = shows;
-    flow_fork_at(state, 0, &flow_kernel_frame, &args, as);
+    flow_fork_at(state, 0, &flow_kernel_frame, &args, FLOW_AS({FLOW_FIELD_x, field}));
 }
 
 /* Forks a frame of the state at a tick, kept or not. */

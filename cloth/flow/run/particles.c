@@ -221,10 +221,8 @@ static int each_cloth(struct flow_particles *p, const struct model *model,
                       struct cloth_error *error)
 {
     int code = CLOTH_OK;
-    for (uint32_t c = 0, first = 0; c < model->n_cloths && !code; c++) {
-        code = make(p, first, model, model->cloths + c, error);
-        first += model->cloths[c].mesh.n_vertices;
-    }
+    for (uint32_t c = 0; c < model->n_cloths && !code; c++)
+        code = make(p, model_first(model, c), model, model->cloths + c, error);
     return code;
 }
 
@@ -253,11 +251,8 @@ static int particles_allocate(struct flow_particles *p, uint32_t n, bool loaded,
 
 static int find_used(struct flow_particles *p, const struct model *model, struct cloth_error *error)
 {
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < model->n_cloths; c++) {
-        mesh_used(&model->cloths[c].mesh, p->used + first);
-        first += model->cloths[c].mesh.n_vertices;
-    }
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        mesh_used(&model->cloths[c].mesh, p->used + model_first(model, c));
     return flow_joints_use(model, p->used, error);
 }
 
@@ -349,12 +344,10 @@ static double release(const struct flow_particles *p, const struct model *model,
 
 double flow_source_release(const struct flow_source *source)
 {
+    const struct model *model = source->model;
     double sum = 0;
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < source->model->n_cloths; c++) {
-        sum += release(&source->particles, source->model, source->model->cloths + c, first);
-        first += source->model->cloths[c].mesh.n_vertices;
-    }
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        sum += release(&source->particles, model, model->cloths + c, model_first(model, c));
     return sum;
 }
 

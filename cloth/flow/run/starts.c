@@ -98,11 +98,8 @@ int flow_starts_make(struct flow_particles *particles, uint32_t first,
 void flow_starts_take(const struct flow_particles *particles, const struct model *model,
                       double (*start)[6])
 {
-    uint32_t first = 0;
     if (particles->start)
         memcpy(start, particles->start, particles->n * sizeof *start);
-    for (uint32_t c = 0; c < model->n_cloths && !particles->start; c++) {
-        at_mesh(model->cloths + c, start + first);
-        first += model->cloths[c].mesh.n_vertices;
-    }
+    for (uint32_t c = 0; c < model->n_cloths && !particles->start; c++)
+        at_mesh(model->cloths + c, start + model_first(model, c));
 }

@@ -12,11 +12,8 @@
 struct flow_side {
     uint32_t other;       /* the neighbour plus one, 0 for inner springs */
     uint32_t here, there; /* places; inner: the lower is here */
-    uint32_t spring;      /* its number: springs that join the same rows keep their order */
-    double stiffness, damping, length;
-    unsigned char stretch;
-    uint32_t seam;
-    const struct model_correction *correction;
+    uint32_t number;      /* of the spring: those that join the same rows keep their order */
+    struct flow_spring spring;
 };
 
 static int compare_sides(const void *a, const void *b)
@@ -37,8 +34,7 @@ static void springs_sides_put_side(struct gatherer *gatherer, uint32_t block, ui
 {
     struct flow_source *source = gatherer->source;
     source->side[source->start[block - source->from]++] =
-        (struct flow_side){other,      here,      there,      gatherer->spring, s->stiffness,
-                           s->damping, s->length, s->stretch, s->seam,          s->correction};
+        (struct flow_side){other, here, there, gatherer->spring, *s};
 }
 
 static void gather_spring(void *to, const struct flow_spring *s)
@@ -223,13 +219,13 @@ static void fill_sides(const struct flow_source *source, const struct flow_table
         const bool free_there = source->particles.free[vertex[side[i].there]];
         layout->end[i][0] = here;
         layout->end[i][1] = there;
-        layout->stiffness[i] = side[i].stiffness;
-        layout->damping[i] = side[i].damping;
-        layout->length[i] = side[i].length;
-        layout->stretch[i] = side[i].stretch;
-        if (side[i].seam) {
+        layout->stiffness[i] = side[i].spring.stiffness;
+        layout->damping[i] = side[i].spring.damping;
+        layout->length[i] = side[i].spring.length;
+        layout->stretch[i] = side[i].spring.stretch;
+        if (side[i].spring.seam) {
             layout->pulled[pulled][0] = i;
-            layout->pulled[pulled++][1] = side[i].seam;
+            layout->pulled[pulled++][1] = side[i].spring.seam;
         }
         if (!first || free_here == free_there || (side[i].other && !free_here))
             continue; /* neither end is held, or the free row is the neighbour's */
@@ -248,14 +244,15 @@ static void fill_corrected(const struct flow_source *source, const struct flow_t
     struct flow_cut_edge *cut = layout->corrected_cut;
     uint32_t s = 0;
     for (uint32_t i = 0; i < t->n_inner + t->n_cut; i++) {
-        const struct model_correction *correction = side[i].correction;
+        const struct model_correction *correction = side[i].spring.correction;
+        const double length = side[i].spring.length;
         s += i > t->n_inner && side[i].other != side[i - 1].other;
         if (!correction)
             continue;
         const struct solve_edge edge = {.end = {layout->end[i][0], layout->end[i][1]},
-                                        .length = side[i].length,
-                                        .most = (1 + correction->at) * side[i].length,
-                                        .slack = correction->tolerance * side[i].length};
+                                        .length = length,
+                                        .most = (1 + correction->at) * length,
+                                        .slack = correction->tolerance * length};
         if (!side[i].other) {
             *inner++ = edge;
             continue;

@@ -107,12 +107,20 @@ size_t flow_kernel_objects(struct flow_state *state, const struct flow_kernel *k
     return list_objects(state, &places, block, NULL, state->refs);
 }
 
+/* rank NULL: where the runtime chooses. */
+static int fork_task(struct flow_state *state, const int *rank, const duite_kernel *task,
+                     const void *args, size_t n, const duite_object *objects)
+{
+    const duite_task_options options = {.at = rank};
+    return state->code
+               ? state->code
+               : flow_noted(state, duite_fork_with(state->rt, &options, task, args, n, objects));
+}
+
 int flow_fork_listed(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
                      size_t n)
 {
-    const duite_kernel *task = flow_task_of(state, kernel);
-    return state->code ? state->code
-                       : flow_noted(state, duite_fork(state->rt, task, args, n, state->refs));
+    return fork_task(state, NULL, flow_task_of(state, kernel), args, n, state->refs);
 }
 
 int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
@@ -191,42 +199,29 @@ int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *k
 {
     const uint32_t *block = args;
     const size_t n = flow_kernel_objects(state, kernel, *block, as);
-    const duite_kernel *task = flow_task_of(state, kernel);
-    return state->code
-               ? state->code
-               : flow_noted(state, duite_fork_at(state->rt, rank, task, args, n, state->refs));
+    return fork_task(state, &rank, flow_task_of(state, kernel), args, n, state->refs);
 }
 
-/* The objects of a fork that gives some, one after the other. Returns the first; *n: how many. */
-static duite_object *gather_given(const struct flow_state *state, const struct flow_kernel *kernel,
-                                  const void *args, const struct flow_given *given,
-                                  duite_object room[FLOW_MAX_PARAMETERS], size_t *n)
+static int fork_given(struct flow_state *state, const int *rank, const struct flow_kernel *kernel,
+                      const void *args, const struct flow_given *given)
 {
     const uint32_t *block = args;
+    duite_object room[FLOW_MAX_PARAMETERS];
     struct places places;
     forks_find_places(state, kernel, NULL, &places);
     duite_object *first = given->rest ? given->rest - places.n : room;
-    *n = given->n + list_objects(state, &places, block ? *block : 0, given->one, first);
-    return first;
+    const size_t n = list_objects(state, &places, block ? *block : 0, given->one, first);
+    return fork_task(state, rank, &kernel->task, args, n + given->n, first);
 }
 
 int flow_fork_given(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
                     const struct flow_given *given)
 {
-    duite_object room[FLOW_MAX_PARAMETERS];
-    size_t n;
-    const duite_object *first = gather_given(state, kernel, args, given, room, &n);
-    return state->code ? state->code
-                       : flow_noted(state, duite_fork(state->rt, &kernel->task, args, n, first));
+    return fork_given(state, NULL, kernel, args, given);
 }
 
 int flow_fork_given_at(struct flow_state *state, int rank, const struct flow_kernel *kernel,
                        const void *args, const struct flow_given *given)
 {
-    duite_object room[FLOW_MAX_PARAMETERS];
-    size_t n;
-    const duite_object *first = gather_given(state, kernel, args, given, room, &n);
-    return state->code
-               ? state->code
-               : flow_noted(state, duite_fork_at(state->rt, rank, &kernel->task, args, n, first));
+    return fork_given(state, &rank, kernel, args, given);
 }

@@ -288,7 +288,7 @@ FLOW_OBJECTS(FLOW_OBJECT_TYPE)
 struct flow_as {
     enum flow_field_id declared, given;
 };
-/* FLOW_AS(FLOW_FOR(kept_x, base_x), FLOW_FOR(kept_v, base_v)) */
+/* FLOW_AS(FLOW_FOR(kept_x, base_x), {FLOW_FIELD_kept_v, field}) */
 #define FLOW_FOR(declared, given)                                                                  \
     {                                                                                              \
         FLOW_FIELD_##declared, FLOW_FIELD_##given                                                  \

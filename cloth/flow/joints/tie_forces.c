@@ -51,7 +51,7 @@ void flow_ties_force(const struct flow *flow, const struct flow_view *view, phys
         phys_vec add = {0};
         if (!see_joint(flow, &ties, view, i, &one))
             continue;
-        phys_springs_force_cut(&one.spring, one.x, one.v, one.x + 1, one.v + 1, &add);
+        phys_springs_force(&one.spring, one.x, one.v, one.x + 1, one.v + 1, &add);
         scatter(&ties, i, &add, f);
     }
 }
@@ -67,8 +67,8 @@ void flow_ties_system(const struct flow *flow, const struct flow_view *view, dou
         if (!see_joint(flow, &ties, view, i, &one))
             continue;
         if (b)
-            phys_springs_system_cut(&one.spring, h, push, one.x, one.v, one.x + 1, one.v + 1, &add,
-                                    value + i);
+            phys_springs_system(&one.spring, h, push, one.x, one.v, one.x + 1, one.v + 1, &add,
+                                value + i);
         else
             phys_springs_matrix(&one.spring, h, one.x, one.x + 1, value + i);
         if (b)

@@ -7,11 +7,11 @@
 static void add_springs(const struct flow_table *t, const struct flow_view *view, phys_vec *f)
 {
     struct phys_springs springs = flow_table_inner(t);
-    phys_springs_force(&springs, view->x, view->v, f);
+    phys_springs_force(&springs, view->x, view->v, NULL, NULL, f);
     for (uint32_t s = 0; s < t->n_neighbours; s++) {
         springs = flow_table_cut(t, s);
-        phys_springs_force_cut(&springs, view->x, view->v, flow_rows_of(view->halo_x, s),
-                               flow_rows_of(view->halo_v, s), f);
+        phys_springs_force(&springs, view->x, view->v, flow_rows_of(view->halo_x, s),
+                           flow_rows_of(view->halo_v, s), f);
     }
 }
 

@@ -47,11 +47,9 @@ static void some_springs(const struct making *m, const struct phys_springs *spri
     const phys_vec *x = m->view.x, *x_other = inner ? x : flow_rows_of(m->view.halo_x, s);
     if (!m->b)
         phys_springs_matrix(springs, m->h, x, x_other, value);
-    else if (inner)
-        phys_springs_system(springs, m->h, m->push, x, m->view.v, m->b, value);
     else
-        phys_springs_system_cut(springs, m->h, m->push, x, m->view.v, x_other,
-                                flow_rows_of(m->view.halo_v, s), m->b, value);
+        phys_springs_system(springs, m->h, m->push, x, m->view.v, inner ? NULL : x_other,
+                            inner ? NULL : flow_rows_of(m->view.halo_v, s), m->b, value);
 }
 
 /* Springs from .. to - 1; in half storage so many at once that they stay in the nearest cache. */

@@ -51,7 +51,7 @@ static double force_error(double e)
     double max = 0;
     phys_vec x[N], f[N] = {{0}};
     memcpy(x, places, sizeof x);
-    phys_springs_force(&s, x, speeds, f);
+    phys_springs_force(&s, x, speeds, NULL, NULL, f);
     for (int i = 0; i < N; i++)
         for (int c = 0; c < 3; c++) {
             x[i][c] = places[i][c] + e;
@@ -83,7 +83,7 @@ UNIT_TEST(damping_acts_along_the_spring_only)
     const struct phys_springs s = {1, end, k, c, length, 0};
     const phys_vec x[2] = {{0}, {0, 2, 0, 0}}, v[2] = {{1, 3, -2, 0}, {5, 7, 9, 0}};
     phys_vec f[2] = {{0}};
-    phys_springs_force(&s, x, v, f);
+    phys_springs_force(&s, x, v, NULL, NULL, f);
     ck_assert_double_eq(f[0][0], 0);
     ck_assert_double_eq(f[0][1], 0.25 * (7 - 3));
     ck_assert_double_eq(f[0][2], 0);
@@ -119,8 +119,8 @@ UNIT_LOOP(matrix_is_the_slope_of_the_force, 0, 2)
                 memcpy(v[side], speeds, sizeof v[side]);
                 x[side][j][c] += side ? e : -e;
                 v[side][j][c] += side ? e : -e;
-                phys_springs_force(&still, x[side], speeds, f[side]);
-                phys_springs_force(&s, places, v[side], g[side]);
+                phys_springs_force(&still, x[side], speeds, NULL, NULL, f[side]);
+                phys_springs_force(&s, places, v[side], NULL, NULL, g[side]);
             }
             for (int i = 0; i < SPRINGS; i++) {
                 phys_vec p[N] = {{0}};
@@ -145,7 +145,7 @@ static void take_stiffness(const struct phys_springs *s, double h, const phys_ve
                            const phys_vec *v, phys_vec *y)
 {
     phys_vec value[SPRINGS];
-    phys_springs_system(s, h, 0, x, v, y, value);
+    phys_springs_system(s, h, 0, x, v, NULL, NULL, y, value);
 }
 
 UNIT_LOOP(stiffness_times_velocity_is_the_slope_of_the_force, 0, 2)
@@ -161,8 +161,8 @@ UNIT_LOOP(stiffness_times_velocity_is_the_slope_of_the_force, 0, 2)
         more[i] = places[i] + e * speeds[i];
         less[i] = places[i] - e * speeds[i];
     }
-    phys_springs_force(&s, more, speeds, f[0]);
-    phys_springs_force(&s, less, speeds, f[1]);
+    phys_springs_force(&s, more, speeds, NULL, NULL, f[0]);
+    phys_springs_force(&s, less, speeds, NULL, NULL, f[1]);
     take_stiffness(&s, 2, places, speeds, y);
     for (int i = 0; i < N; i++)
         for (int c = 0; c < 3; c++)
@@ -176,10 +176,10 @@ UNIT_LOOP(system_is_force_stiffness_and_matrix, 0, 3)
     struct phys_springs s = tangle(damping, _i ? longer : shorter);
     phys_vec f[N] = {{0}}, y[N] = {{0}}, b[N] = {{0}}, value[SPRINGS], both[SPRINGS];
     s.full = _i == 2;
-    phys_springs_force(&s, places, speeds, f);
+    phys_springs_force(&s, places, speeds, NULL, NULL, f);
     phys_springs_matrix(&s, h, places, places, value);
     take_stiffness(&s, h, places, speeds, y);
-    phys_springs_system(&s, h, push, places, speeds, b, both);
+    phys_springs_system(&s, h, push, places, speeds, NULL, NULL, b, both);
     ck_assert_mem_eq(both, value, sizeof value);
     for (int i = 0; i < N; i++)
         for (int c = 0; c < 4; c++)
@@ -232,7 +232,7 @@ UNIT_TEST(ends_at_one_place_pull_nowhere)
     const struct phys_springs s = {1, end, k, c, length, 0};
     const phys_vec x[2] = {{0.5, 0, 0, 0}, {0.5, 0, 0, 0}}, v[2] = {{0}, {1, 1, 1, 0}};
     phys_vec f[2] = {{0}}, value;
-    phys_springs_force(&s, x, v, f);
+    phys_springs_force(&s, x, v, NULL, NULL, f);
     phys_springs_matrix(&s, 0.1, x, x, &value);
     for (int i = 0; i < 4; i++) {
         ck_assert_double_eq(f[0][i], 0);
@@ -250,18 +250,18 @@ UNIT_TEST(cut_springs_are_exact_opposites)
         const double *rest = i ? more : length;
         const struct phys_springs here = {1, one, k, c, rest, 0}, there = {1, other, k, c, rest, 0};
         phys_vec f[2] = {{0}}, g[2] = {{0}}, whole[2] = {{0}};
-        phys_springs_force(&here, places, speeds, whole);
-        phys_springs_force_cut(&here, places, speeds, places, speeds, f);
-        phys_springs_force_cut(&there, places, speeds, places, speeds, f);
+        phys_springs_force(&here, places, speeds, NULL, NULL, whole);
+        phys_springs_force(&here, places, speeds, places, speeds, f);
+        phys_springs_force(&there, places, speeds, places, speeds, f);
         phys_vec value[3];
-        phys_springs_system_cut(&here, 0.3, 0.3, places, speeds, places, speeds, g, value);
-        phys_springs_system_cut(&there, 0.3, 0.3, places, speeds, places, speeds, g, value + 1);
+        phys_springs_system(&here, 0.3, 0.3, places, speeds, places, speeds, g, value);
+        phys_springs_system(&there, 0.3, 0.3, places, speeds, places, speeds, g, value + 1);
         for (int d = 0; d < 3; d++) {
             ck_assert(f[0][d] != 0 && f[0][d] == -f[1][d] && f[0][d] == whole[0][d]);
             ck_assert(g[0][d] != 0 && g[0][d] == -g[1][d]);
         }
         phys_vec whole_g[2] = {{0}};
-        phys_springs_system(&here, 0.3, 0.3, places, speeds, whole_g, value + 2);
+        phys_springs_system(&here, 0.3, 0.3, places, speeds, NULL, NULL, whole_g, value + 2);
         ck_assert_mem_eq(whole_g, g, sizeof g);
         for (int d = 0; d < 3; d++)
             ck_assert(value[0][d] == -value[1][d] && value[0][d] == value[2][d]);
@@ -279,7 +279,7 @@ UNIT_LOOP(internal_forces_keep_momentum, 0, 2)
 {
     const struct phys_springs s = tangle(damping, _i ? longer : shorter);
     phys_vec f[N] = {{0}}, sum = {0}, torque = {0};
-    phys_springs_force(&s, places, speeds, f);
+    phys_springs_force(&s, places, speeds, NULL, NULL, f);
     for (int i = 0; i < N; i++) {
         phys_vec t;
         cross(places + i, f + i, &t);
@@ -308,7 +308,7 @@ UNIT_TEST(rigid_motion_gives_no_force)
         cross(&spin, x + i, v + i);
     }
     const struct phys_springs s = tangle(damping, rest);
-    phys_springs_force(&s, x, v, f);
+    phys_springs_force(&s, x, v, NULL, NULL, f);
     for (int i = 0; i < N; i++)
         for (int c = 0; c < 3; c++)
             ck_assert_double_eq_tol(f[i][c], 0, 2e-12);

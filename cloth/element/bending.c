@@ -137,21 +137,71 @@ static void bend_make(const struct element_cloths *cloths, const struct element 
     }
 }
 
+/* ---- Checks ---- */
+
+static bool quadratic_has(const struct model *model, const struct model_cloth *cloth)
+{
+    const struct model_material *bends = element_bending_of(model, cloth);
+    return bends && bends->bending == MODEL_QUADRATIC;
+}
+
+/* True if s is not that of a flat edge. */
+static bool is_bent(double s)
+{
+    const double flat = 1e-6;
+    return !(fabs(s) <= flat);
+}
+
 static int bending_check(const struct element_cloths *cloths, uint32_t c, struct cloth_error *error)
 {
     const struct model_cloth *cloth = cloths->model->cloths + c;
+    const bool flat = quadratic_has(cloths->model, cloth);
     for (uint32_t e = 0; e < cloths->edges[c].n; e++) {
         const struct mesh_edge *edge = cloths->edges[c].edge + e;
         const uint32_t corner[4] = {edge->a, edge->b, edge->opposite[0], edge->opposite[1]};
         struct phys_bend_rest rest;
-        if (element_is_hinge(edge) && bend_rest(cloths, c, edge->triangle, corner, &rest))
+        if (!element_is_hinge(edge))
+            continue;
+        if (bend_rest(cloths, c, edge->triangle, corner, &rest))
             return model_fail(
                 cloth->mesh_place, error,
                 "mesh: a triangle at the edge between vertices %u and %u of cloth "
                 "'%.60s' (counted from 1) has no area at rest; an area above 0 is expected",
                 edge->a + 1, edge->b + 1, cloth->name);
+        if (flat && is_bent(rest.s))
+            return model_fail(
+                cloth->mesh_place, error,
+                "mesh: cloth '%.60s' is not flat at the edge between vertices %u and %u "
+                "(counted from 1), as bending: {model: quadratic} of material "
+                "'%.60s' expects; take model: hinge, or rest: uv",
+                cloth->name, edge->a + 1, edge->b + 1,
+                element_bending_of(cloths->model, cloth)->name);
     }
     return CLOTH_OK;
+}
+
+int element_seams_check(const struct element_cloths *cloths, struct cloth_error *error)
+{
+    const struct model *model = cloths->model;
+    int code = CLOTH_OK;
+    for (uint32_t s = 0; s < cloths->n_seams && !code; s++) {
+        const struct element_side *one = cloths->seam[s].side, *two = one + 1;
+        const struct model_cloth *cloth = model->cloths + one->cloth;
+        struct phys_bend_rest rest;
+        const bool failed = seam_rest(cloths, cloths->seam + s, &rest);
+        const bool bent = quadratic_has(model, cloth) &&
+                          quadratic_has(model, model->cloths + two->cloth) && is_bent(rest.s);
+        if (failed || bent)
+            code = model_fail(cloth->mesh_place, error,
+                              "mesh: where welds bring cloth '%.60s' to cloth '%.60s', at the edge "
+                              "between vertices %u and %u (counted from 1), %s",
+                              cloth->name, model->cloths[two->cloth].name, one->corner[0] + 1,
+                              one->corner[1] + 1,
+                              failed ? "a triangle has no area at rest; an area above 0 is expected"
+                                     : "they are not flat at rest, as bending: {model: quadratic} "
+                                       "expects; take model: hinge, or rest: uv");
+    }
+    return code;
 }
 
 /* ---- Hinges: stiffness, damping and rest shape of each ---- */
@@ -189,62 +239,6 @@ const struct element_kind element_hinges = {
 
 /* ---- Quadratic energies: the weights of each ---- */
 
-static bool quadratic_has(const struct model *model, const struct model_cloth *cloth)
-{
-    const struct model_material *bends = element_bending_of(model, cloth);
-    return bends && bends->bending == MODEL_QUADRATIC;
-}
-
-static int quadratic_check(const struct element_cloths *cloths, uint32_t c,
-                           struct cloth_error *error)
-{
-    const double flat = 1e-6;
-    const struct model_cloth *cloth = cloths->model->cloths + c;
-    const int code = bending_check(cloths, c, error);
-    for (uint32_t e = 0; e < cloths->edges[c].n && !code; e++) {
-        const struct mesh_edge *edge = cloths->edges[c].edge + e;
-        const uint32_t corner[4] = {edge->a, edge->b, edge->opposite[0], edge->opposite[1]};
-        struct phys_bend_rest rest;
-        if (!element_is_hinge(edge) || bend_rest(cloths, c, edge->triangle, corner, &rest))
-            continue;
-        if (!(fabs(rest.s) <= flat))
-            return model_fail(
-                cloth->mesh_place, error,
-                "mesh: cloth '%.60s' is not flat at the edge between vertices %u and %u "
-                "(counted from 1), as bending: {model: quadratic} of material "
-                "'%.60s' expects; take model: hinge, or rest: uv",
-                cloth->name, edge->a + 1, edge->b + 1,
-                element_bending_of(cloths->model, cloth)->name);
-    }
-    return code;
-}
-
-int element_seams_check(const struct element_cloths *cloths, struct cloth_error *error)
-{
-    const double flat = 1e-6;
-    const struct model *model = cloths->model;
-    int code = CLOTH_OK;
-    for (uint32_t s = 0; s < cloths->n_seams && !code; s++) {
-        const struct element_side *one = cloths->seam[s].side, *two = one + 1;
-        const struct model_cloth *cloth = model->cloths + one->cloth;
-        struct phys_bend_rest rest;
-        const bool failed = seam_rest(cloths, cloths->seam + s, &rest);
-        const bool bent = quadratic_has(model, cloth) &&
-                          quadratic_has(model, model->cloths + two->cloth) &&
-                          !(fabs(rest.s) <= flat);
-        if (failed || bent)
-            code = model_fail(cloth->mesh_place, error,
-                              "mesh: where welds bring cloth '%.60s' to cloth '%.60s', at the edge "
-                              "between vertices %u and %u (counted from 1), %s",
-                              cloth->name, model->cloths[two->cloth].name, one->corner[0] + 1,
-                              one->corner[1] + 1,
-                              failed ? "a triangle has no area at rest; an area above 0 is expected"
-                                     : "they are not flat at rest, as bending: {model: quadratic} "
-                                       "expects; take model: hinge, or rest: uv");
-    }
-    return code;
-}
-
 static void quadratic_pack(const struct element_cloths *cloths, const struct element *element,
                            const struct phys_elements *list, uint32_t e)
 {
@@ -261,7 +255,7 @@ const struct element_kind element_quadratic = {
     .pairs = PHYS_BEND_PAIRS,
     .vectors = 1,
     .has = quadratic_has,
-    .check = quadratic_check,
+    .check = bending_check,
     .pack = quadratic_pack,
     .force = phys_quadratic_force,
     .matrix = phys_quadratic_matrix,

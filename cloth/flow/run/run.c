@@ -46,9 +46,9 @@ static int keep_unused(struct flow *flow, const struct flow_particles *particles
     unused->position = cloth_alloc(particles->unused.n, sizeof *unused->position, error);
     if (!unused->vertex || !unused->position)
         return CLOTH_E_MEMORY;
-    uint32_t first = 0;
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct mesh *mesh = &model->cloths[c].mesh;
+        const uint32_t first = model_first(model, c);
         for (uint32_t v = 0; v < mesh->n_vertices; v++) {
             if (particles->used[first + v])
                 continue;
@@ -56,7 +56,6 @@ static int keep_unused(struct flow *flow, const struct flow_particles *particles
             memcpy(unused->position[unused->n++], mesh->position + 3 * (size_t)v,
                    sizeof *unused->position);
         }
-        first += mesh->n_vertices;
     }
     return CLOTH_OK;
 }

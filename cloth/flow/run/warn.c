@@ -1,8 +1,8 @@
 /* Warnings about a model. Each kind has its place in flow->warning, and says one thing at
  * most, the first. */
 #include "cloth/flow/integrators/integrator.h"
+#include "cloth/flow/pins/sliders.h"
 #include "cloth/flow/run/setup.h"
-#include "cloth/flow/state/state.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -86,14 +86,14 @@ static double find_deepest(const struct flow *flow, const struct contact_shape *
 static void warn_of_inside(struct flow *flow)
 {
     const struct model *model = flow->model;
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < model->n_cloths; first += model->cloths[c++].mesh.n_vertices)
+    for (uint32_t c = 0; c < model->n_cloths; c++)
         for (uint32_t i = 0; i < model->n_obstacles && !flow->warning[FLOW_WARN_INSIDE][0]; i++) {
             const struct model_cloth *cloth = model->cloths + c;
             uint32_t deepest = 0;
             if (!model_meets(model, c, model->n_cloths + i))
                 continue;
-            const double gap = find_deepest(flow, model->obstacles + i, cloth, first, &deepest);
+            const double gap =
+                find_deepest(flow, model->obstacles + i, cloth, model_first(model, c), &deepest);
             if (gap < -DEEP)
                 flow_warn_say(flow, FLOW_WARN_INSIDE, cloth->place,
                               "cloth '%.60s' starts inside obstacles[%u], a %s: vertex %u is %g m "
@@ -125,35 +125,17 @@ static void warn_of_windings(struct flow *flow, const struct model_cloth *cloth,
                       name_of(cloth), n, first->a + 1, first->b + 1);
 }
 
-/* The place of a vertex that follows an obstacle, at a time, s; x: its start. */
-static void follow_obstacle(const struct flow *flow, uint32_t motion, double time, phys_vec *x)
-{
-    const struct model *model = flow->model;
-    if (motion > model->n_motions) {
-        flow_anchor_place(model, flow->source.particles.anchor + (motion - model->n_motions - 1),
-                          time, x);
-        return;
-    }
-    const struct model_motion *m = model->motions + motion - 1;
-    struct phys_pose begin, pose;
-    if (!m->n)
-        return; /* the obstacle stands still */
-    phys_pose_at(m->n, model->keys + m->first, m->about, 0, &begin);
-    phys_pose_at(m->n, model->keys + m->first, m->about, time, &pose);
-    phys_pose_back(&begin, x, x);
-    phys_pose_point(&pose, x, x);
-}
-
 /* The distance of two ends of an edge that follow obstacles at a time, m. */
 static double length_at(const struct flow *flow, uint32_t first, const struct model_cloth *cloth,
                         const struct mesh_edge *edge, double time)
 {
     const struct flow_particles *p = &flow->source.particles;
     const uint32_t end[2] = {edge->a, edge->b};
-    phys_vec x[2];
+    struct flow_pins pins = {.model = flow->model, .anchor = p->anchor, .time = time};
+    phys_vec x[2], start;
     for (int k = 0; k < 2; k++) {
-        flow_start_place(p, cloth, first, end[k], x + k);
-        follow_obstacle(flow, p->motion[flow_root(&p->welds, first + end[k])], time, x + k);
+        flow_start_place(p, cloth, first, end[k], &start);
+        flow_pins_place(&pins, p->motion[flow_root(&p->welds, first + end[k])], &start, x + k);
     }
     const phys_vec way = x[1] - x[0];
     return sqrt(phys_dot(&way, &way));
@@ -206,8 +188,7 @@ static void run_warn_of_edges(struct flow *flow)
 {
     const struct model *model = flow->model;
     const bool attached = flow->source.particles.attached != NULL;
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < model->n_cloths; first += model->cloths[c++].mesh.n_vertices) {
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct model_cloth *cloth = model->cloths + c;
         const struct mesh_edges *edges = flow->source.elements.edges + c;
         struct mesh_edges found = {0};
@@ -218,7 +199,7 @@ static void run_warn_of_edges(struct flow *flow)
             edges = &found;
         warn_of_windings(flow, cloth, edges);
         if (attached)
-            warn_of_follow(flow, cloth, first, edges);
+            warn_of_follow(flow, cloth, model_first(model, c), edges);
         mesh_edges_free(&found);
     }
 }

@@ -172,8 +172,8 @@ static void fill_neighbour(struct flow_source *source, const struct need *need)
             at.joins[s - 1] |= joins_of(source, one);
             *at.ghost++ = source->halo[one->place];
         }
-        *(at.ghost_start += s) = shape->n_ghosts;
-        at.ghost_start++;
+        at.ghost_start[s] = shape->n_ghosts;
+        at.ghost_start += s + 1;
         at.neighbour += s;
         at.joins += s;
         first += shape->n_ghosts;

@@ -122,11 +122,11 @@ static void strain_find_edges(const struct element_strains *strains, double *str
 void element_strains_find(const struct element_strains *strains, const double *position,
                           double *strain, double (*stress)[3])
 {
-    const struct phys_triangles triangles = {.n = strains->n_triangles,
-                                             .corner = (const uint32_t(*)[4])strains->corner,
-                                             .gradient = strains->gradient,
-                                             .area = strains->area,
-                                             .membrane = strains->membrane};
+    const struct phys_elements triangles = {.n = strains->n_triangles,
+                                            .corner = strains->corner,
+                                            .vector = strains->gradient,
+                                            .number = {[PHYS_TRIANGLE_AREA] = strains->area},
+                                            .material = strains->membrane};
     const struct phys_sight sight = {.n = strains->n_vertices, .x = strains->x};
     for (size_t v = 0; v < strains->n_vertices; v++)
         strains->x[v] = (phys_vec){position[3 * v], position[3 * v + 1], position[3 * v + 2], 0};

@@ -12,7 +12,7 @@ struct element_strains {
     uint32_t n_vertices, n_triangles, n_edges;
     uint32_t (*corner)[4]; /* n_triangles: vertices, then the number of the material */
     phys_vec *gradient;    /* n_triangles, */
-    double *area;          /* and as struct phys_triangles has them; 0: of no area at rest */
+    double *area;          /* and as cloth/physics/triangle.h has them; 0: of no area at rest */
     uint32_t (*edge)[2];   /* n_edges: vertices */
     double *length;        /* n_edges: at rest, m */
     struct phys_membrane *membrane; /* of each material; of springs all 0 */

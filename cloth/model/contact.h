@@ -57,9 +57,8 @@ struct model_contact {
 
 struct model;
 
-/* What the steps of a model promise. The second does not ask if there is anything to touch. */
+/* What the steps of a model promise. */
 struct model_promise model_promise(const struct model *model);
-struct model_promise model_promise_of_mode(const struct model *model);
 /* True if frames have the force of contact. True if a probe reports it; on the rank that has the
  * probes. */
 bool model_shows_contact(const struct model *model);

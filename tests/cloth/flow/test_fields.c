@@ -93,9 +93,10 @@ UNIT_LOOP(all_is_freed, 0, KINDS)
 UNIT_TEST(every_field_has_a_run)
 {
     static const char *const others[] = {
-        "filter",        "probe_force",        "probe_values",   "pieces",      "saved",
-        "groups",        "body_skins",         "body_fans",      "body_points", "body_boxes",
-        "contact_force", "kept_contact_force", "obstacle_force", "maps"};
+        "filter",     "probe_force",   "probe_values",       "pieces",
+        "groups",     "body_skins",    "body_fans",          "body_points",
+        "body_boxes", "contact_force", "kept_contact_force", "obstacle_force",
+        "maps"};
     bool exists[FLOW_FIELDS_OF_ALL] = {false};
     for (int kind = 0; kind < KINDS; kind++) {
         struct session s;

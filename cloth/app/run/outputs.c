@@ -157,14 +157,14 @@ static int show_scene(struct outputs *to, const struct phases *phases, const str
 static int open_check(struct outputs *to, const struct phases *phases,
                       const struct contact_apart *apart, struct cloth_error *error)
 {
+    const struct intersections_setup of = {.program = "duite-cloth",
+                                           .apart = apart,
+                                           .begin = phases->total.simulated_seconds,
+                                           .found = &to->found};
     intersections_close(&to->intersections);
-    if (!to->options->check_intersections)
-        return CLOTH_OK;
-    const int code = intersections_of(&to->intersections, phases_model(phases), apart,
-                                      "duite-cloth", false, &to->found, error);
-    if (!code)
-        intersections_begin(to->intersections, phases->total.simulated_seconds);
-    return code;
+    return to->options->check_intersections
+               ? intersections_of(&to->intersections, phases_model(phases), of, error)
+               : CLOTH_OK;
 }
 
 int outputs_open(struct outputs *to, const struct simulate_options *options,

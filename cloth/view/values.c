@@ -67,10 +67,8 @@ static int view_values_find_forces(const struct view_values *values, uint64_t fr
 {
     const uint32_t n = values->cache->mesh.n_vertices;
     uint64_t n_frames = 0;
-    int code = output_forces_count(values->folder, n, &n_frames, error);
+    const int code = output_forces_read(values->folder, n, frame, values->force, &n_frames, error);
     const bool there = frame < n_frames;
-    if (!code && there)
-        code = output_forces_read(values->folder, n, frame, values->force, error);
     for (size_t v = 0; v < n && !code; v++) {
         const double *f = values->force + 3 * v;
         value[v] = there ? sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) : (double)NAN;
@@ -80,51 +78,9 @@ static int view_values_find_forces(const struct view_values *values, uint64_t fr
 
 /* ---- Strain and stress ---- */
 
-static int take_strains(struct element_strains *strains, uint32_t n_vertices,
-                        const struct output_rest *rest, struct cloth_error *error)
-{
-    const size_t vector = sizeof(phys_vec);
-    *strains = (struct element_strains){
-        .n_vertices = n_vertices, .n_triangles = rest->n_triangles, .n_edges = rest->n_edges};
-    strains->corner = cloth_alloc(rest->n_triangles, sizeof *strains->corner, error);
-    strains->gradient = aligned_alloc(vector, ((size_t)rest->n_triangles + 1) * vector);
-    strains->area = cloth_alloc(rest->n_triangles, sizeof *strains->area, error);
-    strains->edge = cloth_alloc(rest->n_edges, sizeof *strains->edge, error);
-    strains->length = cloth_alloc(rest->n_edges, sizeof *strains->length, error);
-    strains->membrane =
-        aligned_alloc(vector, ((size_t)rest->n_materials + 1) * sizeof *strains->membrane);
-    strains->has_stress = cloth_alloc(rest->n_materials, sizeof *strains->has_stress, error);
-    strains->x = aligned_alloc(vector, ((size_t)n_vertices + 1) * vector);
-    return strains->corner && strains->gradient && strains->area && strains->edge &&
-                   strains->length && strains->membrane && strains->has_stress && strains->x
-               ? CLOTH_OK
-               : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the strains of %u triangles",
-                            rest->n_triangles);
-}
-
-static void copy_strains(struct element_strains *strains, const struct output_rest *rest)
-{
-    for (uint32_t t = 0; t < rest->n_triangles; t++) {
-        const double *g = rest->gradient[t];
-        memcpy(strains->corner[t], rest->corner[t], sizeof *rest->corner);
-        strains->gradient[t] = (phys_vec){g[0], g[1], g[2], g[3]};
-        strains->area[t] = rest->area[t];
-    }
-    for (uint32_t e = 0; e < rest->n_edges; e++) {
-        memcpy(strains->edge[e], rest->edge[e], sizeof *rest->edge);
-        strains->length[e] = rest->length[e];
-    }
-    for (uint32_t m = 0; m < rest->n_materials; m++) {
-        const double *c = rest->modulus[m];
-        strains->membrane[m] = (struct phys_membrane){.modulus = {c[0], c[1], c[2], c[3]}};
-        strains->has_stress[m] = rest->has_stress[m];
-    }
-}
-
 /* Takes the shapes at rest of the frame. */
 static int make_strains(struct view_values *values, uint64_t frame, struct cloth_error *error)
 {
-    struct output_rest rest = {0};
     const uint64_t since = output_colours_rest_since(values->colours, frame);
     if (since == values->since && since != UINT64_MAX)
         return CLOTH_OK;
@@ -134,17 +90,13 @@ static int make_strains(struct view_values *values, uint64_t frame, struct cloth
     values->cell = NULL;
     values->stress = NULL;
     values->since = UINT64_MAX;
-    int code = output_colours_rest_at(values->colours, frame, &rest, error);
-    const size_t n = (size_t)rest.n_triangles + rest.n_edges;
-    if (!code)
-        code = take_strains(&values->strains, values->cache->mesh.n_vertices, &rest, error);
+    int code = output_colours_rest_at(values->colours, frame, &values->strains, error);
+    const size_t n = (size_t)values->strains.n_triangles + values->strains.n_edges;
     if (!code) {
-        copy_strains(&values->strains, &rest);
         values->cell = cloth_alloc(n, sizeof *values->cell, error);
         values->stress = cloth_alloc(n, sizeof *values->stress, error);
         code = values->cell && values->stress ? CLOTH_OK : CLOTH_E_MEMORY;
     }
-    output_rest_free(&rest);
     values->since = code ? UINT64_MAX : since;
     return code;
 }
@@ -236,8 +188,8 @@ int view_values_frames(struct view_values *values, enum view_colour by, uint64_t
 {
     *n_frames = values->cache->n_frames;
     return by == VIEW_COLOUR_CONTACT
-               ? output_forces_count(values->folder, values->cache->mesh.n_vertices, n_frames,
-                                     error)
+               ? output_forces_read(values->folder, values->cache->mesh.n_vertices, 0, NULL,
+                                    n_frames, error)
                : CLOTH_OK;
 }
 

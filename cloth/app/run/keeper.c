@@ -15,7 +15,6 @@
 struct keeper {
     struct output_checkpoints *checkpoints;
     struct output_settler *settler;
-    struct output_hdf5 *hdf5;
     char *folder;
     double seconds, next; /* s: between two; when the next one is due */
     struct output_part part[OUTPUT_CHECKPOINT_PARTS];
@@ -52,8 +51,6 @@ static void keeper_warn(struct keeper *keeper, const char *why)
 static void write_one(struct keeper *keeper)
 {
     struct cloth_error error = {0};
-    if (keeper->hdf5) /* frames in flight; one that cannot be written is not waited for */
-        output_hdf5_wait(keeper->hdf5);
     if (!keeper->part[1].bytes || !keeper->part[2].bytes)
         cloth_fail(&error, CLOTH_E_MEMORY, "no memory for a checkpoint");
     else if (!output_settler_wait(keeper->settler, &error) &&
@@ -109,7 +106,7 @@ static void keeper_drop(struct keeper *keeper)
 }
 
 int keeper_open(struct keeper **keeper, const char *folder, double seconds, const char *settings,
-                struct output_settler *settler, struct output_hdf5 *hdf5, struct cloth_error *error)
+                struct output_settler *settler, struct cloth_error *error)
 {
     *keeper = NULL;
     struct keeper *made = calloc(1, sizeof *made);
@@ -117,7 +114,6 @@ int keeper_open(struct keeper **keeper, const char *folder, double seconds, cons
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for checkpoints");
     made->seconds = seconds;
     made->settler = settler;
-    made->hdf5 = hdf5;
     made->next = keeper_now() + seconds;
     made->part[0] = (struct output_part){settings, strlen(settings)};
     made->folder = strdup(folder);

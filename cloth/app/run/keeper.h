@@ -3,7 +3,6 @@
 
 #include "cloth/base/error.h"
 #include "cloth/output/checkpoint.h"
-#include "cloth/output/hdf5.h"
 #include "cloth/output/settle.h"
 
 /* Writes checkpoints while the run goes on: a thread of its own, on rank 0 alone. One is written at
@@ -11,11 +10,10 @@
 struct keeper;
 
 /* seconds: between the begins of two. settings: the first part of each; settler: of the frames of
- * the folder; hdf5: those in HDF5, NULL: none. All outlive the keeper. Before the runtime binds its
- * threads to cores. Errors: of output_checkpoints_open; CLOTH_E_LIBRARY, no thread. */
+ * the folder. Both outlive the keeper. Before the runtime binds its threads to cores. Errors: of
+ * output_checkpoints_open; CLOTH_E_LIBRARY, no thread. */
 int keeper_open(struct keeper **keeper, const char *folder, double seconds, const char *settings,
-                struct output_settler *settler, struct output_hdf5 *hdf5,
-                struct cloth_error *error);
+                struct output_settler *settler, struct cloth_error *error);
 
 /* Nonzero once when a checkpoint is due; then 0 until keeper_take and the next time. From any
  * thread. */

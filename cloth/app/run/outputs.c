@@ -101,7 +101,9 @@ static int open_output(struct outputs *to, const struct phases *phases, const st
     setup->settler = to->settler;
     code = code ? code : output_open(&to->frames, setup, error);
     code = code ? code : outputs_open_colours(to, phases, flow, n_frames, error);
-    code = code ? code : outputs_hdf5_open(&to->hdf5, model, to->options->output, n_frames, error);
+    code = code ? code
+                : outputs_hdf5_open(&to->hdf5, model, to->options->output, n_frames, to->settler,
+                                    error);
     code = code ? code : open_forces(to, model, flow, n_frames, error);
     return code ? code : open_probes(to, flow, stays ? &stays->rows : NULL, error);
 }
@@ -126,7 +128,7 @@ static int open_keeper(struct outputs *to, const struct phases *phases, bool res
         return CLOTH_OK;
     to->settings = phases_settings(phases, error);
     return to->settings ? keeper_open(&to->keeper, options->output, options->checkpoint,
-                                      to->settings, to->settler, to->hdf5.frames, error)
+                                      to->settings, to->settler, error)
                         : error->code;
 }
 

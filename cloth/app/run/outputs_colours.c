@@ -9,33 +9,13 @@
 
 double outputs_colours_bytes(const struct model *model, uint64_t n_vertices)
 {
-    struct output_rest rest = {.n_materials = model->n_materials};
+    struct element_strains rest = {.n_materials = model->n_materials};
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         rest.n_triangles += model->cloths[c].mesh.n_triangles;
         rest.n_edges += model->cloths[c].mesh.n_bare_edges;
     }
     const uint64_t blocks = n_vertices / model->grain + 1;
     return (double)output_colours_bytes((uint32_t)n_vertices, (uint32_t)blocks, &rest);
-}
-
-static void outputs_colours_copy(const struct element_strains *strains,
-                                 const struct output_rest *rest)
-{
-    for (uint32_t t = 0; t < rest->n_triangles; t++) {
-        memcpy(rest->corner[t], strains->corner[t], sizeof *rest->corner);
-        for (int i = 0; i < 4; i++)
-            rest->gradient[t][i] = strains->gradient[t][i];
-        rest->area[t] = strains->area[t];
-    }
-    for (uint32_t e = 0; e < rest->n_edges; e++) {
-        memcpy(rest->edge[e], strains->edge[e], sizeof *rest->edge);
-        rest->length[e] = strains->length[e];
-    }
-    for (uint32_t m = 0; m < rest->n_materials; m++) {
-        for (int i = 0; i < 4; i++)
-            rest->modulus[m][i] = strains->membrane[m].modulus[i];
-        rest->has_stress[m] = strains->has_stress[m];
-    }
 }
 
 /* Goes on without the file that was not written. */
@@ -57,21 +37,14 @@ static int outputs_colours_go_on(struct output_colours **colours, int code,
 int outputs_colours_rest(struct output_colours **colours, const struct model *model, uint64_t frame,
                          struct cloth_error *error)
 {
-    struct element_strains strains = {0};
-    struct output_rest rest = {.n_materials = model->n_materials};
+    struct element_strains rest;
     if (!*colours)
         return CLOTH_OK;
-    int code = element_strains_make(&strains, model, error);
-    rest.n_triangles = strains.n_triangles;
-    rest.n_edges = strains.n_edges;
-    code = code ? code : output_rest_make(&rest, error);
-    if (!code) {
-        outputs_colours_copy(&strains, &rest);
+    int code = element_strains_make(&rest, model, error);
+    if (!code)
         code = outputs_colours_go_on(colours, output_colours_rest(*colours, frame, &rest, error),
                                      error);
-    }
-    output_rest_free(&rest);
-    element_strains_free(&strains);
+    element_strains_free(&rest);
     return code;
 }
 

@@ -1,5 +1,5 @@
-/* Strain and stress follow from positions, so the thread that writes finds them, and no rank but
- * this one needs to. */
+/* Strain and stress follow from positions, so the settler finds them, and no rank but this one
+ * needs to. */
 #include "cloth/app/run/outputs_hdf5.h"
 
 #include "cloth/base/memory.h"
@@ -61,7 +61,8 @@ static uint32_t (*corners_of(const struct element_strains *strains, struct cloth
 }
 
 int outputs_hdf5_open(struct outputs_hdf5 *to, const struct model *model, const char *folder,
-                      const uint64_t *n_frames, struct cloth_error *error)
+                      const uint64_t *n_frames, struct output_settler *settler,
+                      struct cloth_error *error)
 {
     if (!model->hdf5.every)
         return output_hdf5_forget(folder, n_frames, error);
@@ -76,6 +77,7 @@ int outputs_hdf5_open(struct outputs_hdf5 *to, const struct model *model, const 
         return error->code;
     setup.folder = folder;
     setup.n_frames = n_frames;
+    setup.settler = settler;
     setup.triangle = (const uint32_t(*)[3])triangle;
     setup.edge = (const uint32_t(*)[2])to->strains.edge;
     setup.context = to;

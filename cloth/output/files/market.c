@@ -1,5 +1,6 @@
 /* Columns are written one after the other, rows ascending; pairs of equal ends are one entry. */
 #include "cloth/output/files/files.h"
+#include "cloth/output/output.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -148,37 +149,23 @@ static int fill_array(FILE *file, const void *what)
     return ferror(file);
 }
 
-static int write(const char *folder, const char *name, int (*fill)(FILE *file, const void *what),
-                 const void *what, struct cloth_error *error)
-{
-    char *path = output_path(folder, name, ".mtx");
-    if (!path)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory to write %s.mtx", name);
-    const int code = output_write_file(path, fill, what, error);
-    free(path);
-    return code;
-}
-
 int output_system(const char *folder, const struct solve_system *s, struct cloth_error *error)
 {
+    static const char *const name[] = {"rhs", "solution", "mass", "position"};
+    const struct array array[] = {
+        {"S b; kg m/s", s->n, s->free, s->b, 3},
+        {"dv, as the step found it; m/s", s->n, s->free, s->dv, 3},
+        {"mass of each unknown, 0 where held; kg", s->n, s->free, s->mass, 1},
+        {"positions after the step; m", s->n, NULL, s->x, 3}};
     struct sums sums;
-    const struct array rhs = {"S b; kg m/s", s->n, s->free, s->b, 3};
-    const struct array solution = {"dv, as the step found it; m/s", s->n, s->free, s->dv, 3};
-    const struct array mass = {"mass of each unknown, 0 where held; kg", s->n, s->free, s->mass, 1};
-    const struct array position = {"positions after the step; m", s->n, NULL, s->x, 3};
     int code = CLOTH_OK;
     if (sums_make(&sums, s))
         code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for the matrix of %u vertices", s->n);
     if (!code)
-        code = write(folder, "matrix", fill_matrix, &sums, error);
-    if (!code)
-        code = write(folder, "rhs", fill_array, &rhs, error);
-    if (!code)
-        code = write(folder, "solution", fill_array, &solution, error);
-    if (!code)
-        code = write(folder, "mass", fill_array, &mass, error);
-    if (!code)
-        code = write(folder, "position", fill_array, &position, error);
+        code = output_write_file(output_path(folder, "matrix.mtx").text, fill_matrix, &sums, error);
+    for (size_t i = 0; i < sizeof array / sizeof *array && !code; i++)
+        code = output_write_file(output_path(folder, "%s.mtx", name[i]).text, fill_array, array + i,
+                                 error);
     sums_free(&sums);
     return code;
 }

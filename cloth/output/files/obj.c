@@ -1,6 +1,6 @@
 /* The OBJ of a folder: vertices in the order of the input meshes, cloth after cloth, so that vertex
  * i of the file is point i of the cache; faces are the input's polygons. */
-#include "cloth/output/files/files.h"
+#include "cloth/output/files/scene.h"
 
 #include <ctype.h>
 #include <stdlib.h>

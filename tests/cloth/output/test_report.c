@@ -104,7 +104,7 @@ UNIT_TEST(does_not_replace_a_device)
 
 UNIT_TEST(says_what_is_in_the_way)
 {
-    ck_assert_int_eq(output_report_write(report, sample.folder, &error), CLOTH_E_IO);
+    ck_assert_int_eq(output_report_write(report, sample.folder, &error), CLOTH_E_INPUT);
     unit_says(error.text, "Is a directory");
     error.code = 0;
     sample_write(path, "old", 3);

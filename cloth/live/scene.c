@@ -121,50 +121,42 @@ static double *take_points(const unsigned char **from, size_t n, size_t size,
     return x;
 }
 
-static int live_scene_take_mesh(const struct live_message *scene, const unsigned char **from,
-                                struct mesh *mesh, struct cloth_error *error)
+/* size: of the numbers of places. */
+static int take_mesh(const unsigned char **from, uint32_t n_vertices, size_t size, uint32_t n_edges,
+                     uint32_t n_triangles, struct mesh *mesh, struct cloth_error *error)
 {
-    double *place = take_points(from, scene->n_vertices, sizeof(float), error);
-    uint32_t *edge = take_numbers(from, 2 * (size_t)scene->n_edges, error);
-    uint32_t *triangle = take_numbers(from, 3 * (size_t)scene->n_triangles, error);
-    int code = edge && triangle && place ? 0 : CLOTH_E_MEMORY;
-    if (!code)
-        code = mesh_inline(mesh, scene->n_vertices, place, scene->n_edges, edge, scene->n_triangles,
-                           triangle, error);
+    double *place = take_points(from, n_vertices, size, error);
+    uint32_t *edge = take_numbers(from, 2 * (size_t)n_edges, error);
+    uint32_t *triangle = take_numbers(from, 3 * (size_t)n_triangles, error);
+    const int code = place && edge && triangle ? mesh_inline(mesh, n_vertices, place, n_edges, edge,
+                                                             n_triangles, triangle, error)
+                                               : CLOTH_E_MEMORY;
+    free(place);
     free(edge);
     free(triangle);
-    free(place);
     return code;
 }
 
-static int live_scene_take_body(const unsigned char **from, struct contact_bodies *bodies,
-                                struct cloth_error *error)
+static int take_body(const unsigned char **from, struct contact_bodies *bodies,
+                     struct cloth_error *error)
 {
     const uint32_t n = cloth_get_u32(*from), n_triangles = cloth_get_u32(*from + 4);
     struct mesh mesh = {0};
     bool turned;
     *from += BODY_COUNTS;
-    double *place = take_points(from, n, sizeof(double), error);
-    uint32_t *triangle = take_numbers(from, 3 * (size_t)n_triangles, error);
-    int code = place && triangle ? 0 : CLOTH_E_MEMORY;
-    if (!code)
-        code = mesh_inline(&mesh, n, place, 0, NULL, n_triangles, triangle, error);
+    int code = take_mesh(from, n, sizeof(double), 0, n_triangles, &mesh, error);
     if (!code)
         code = contact_bodies_add(bodies, &mesh, &turned, error);
     mesh_free(&mesh);
-    free(place);
-    free(triangle);
     return code;
 }
 
 static int take_text(const unsigned char *from, size_t n, struct output_cache *cache,
                      struct cloth_error *error)
 {
-    char *text = cloth_alloc(n + 1, 1, error);
-    if (!text)
-        return CLOTH_E_MEMORY;
-    memcpy(text, from, n);
-    const int code = output_cache_scene(cache, text, "the scene of the live view", error);
+    char *text = strndup((const char *)from, n);
+    const int code = text ? output_cache_scene(cache, text, "the scene of the live view", error)
+                          : cloth_fail(error, CLOTH_E_MEMORY, "no memory for a scene's text");
     free(text);
     return code;
 }
@@ -173,23 +165,16 @@ static int live_scene_take_parts(const struct live_message *scene, struct output
                                  struct cloth_error *error)
 {
     const unsigned char *from = scene->rest;
-    int code = live_scene_take_mesh(scene, &from, &cache->mesh, error);
+    int code = take_mesh(&from, scene->n_vertices, sizeof(float), scene->n_edges,
+                         scene->n_triangles, &cache->mesh, error);
     for (uint32_t i = 0; i < scene->n_bodies && !code; i++)
-        code = live_scene_take_body(&from, &cache->bodies, error);
+        code = take_body(&from, &cache->bodies, error);
     if (!code)
         code = take_text(from, scene->n_rest - (size_t)(from - scene->rest), cache, error);
     if (!code && cache->n_bodies != scene->n_bodies)
         code = cloth_fail(error, CLOTH_E_INPUT, "%u bodies came, but the scene has %u",
                           scene->n_bodies, cache->n_bodies);
     return code;
-}
-
-/* Says first where an error comes from. */
-static int name_error(int code, const struct cloth_error *inner, struct cloth_error *error)
-{
-    return code
-               ? cloth_fail(error, code, "a scene of the live view cannot be used: %s", inner->text)
-               : 0;
 }
 
 int live_scene_open(const struct live_message *scene, struct output_cache *cache,
@@ -206,7 +191,8 @@ int live_scene_open(const struct live_message *scene, struct output_cache *cache
     }
     if (code)
         output_cache_close(cache);
-    return name_error(code, &inner, error);
+    return code ? cloth_fail(error, code, "a scene of the live view cannot be used: %s", inner.text)
+                : 0;
 }
 
 /* Counts vertices of the bodies that change their shape. */

@@ -16,13 +16,13 @@ enum { SHUT = 100 };            /* ms between two looks while the door is shut *
 
 /* ---- News of the run ---- */
 
-/* Takes over messages of the run. */
-static void take_news(struct live_publisher *p)
+/* Takes over messages of the run. True: it has ended. */
+static bool take_news(struct live_publisher *p)
 {
     uint64_t wakes;
     const bool woken = read(p->wake, &wakes, sizeof wakes) > 0;
     if (!woken)
-        return;
+        return false;
     pthread_mutex_lock(&p->lock);
     if (zmq_msg_size(&p->scene.message)) {
         zmq_msg_move(&p->scene_message, &p->scene.message);
@@ -33,7 +33,9 @@ static void take_news(struct live_publisher *p)
         p->frames = p->frame.number + 1;
         p->is_sealed = false;
     }
+    const bool ends = p->ends;
     pthread_mutex_unlock(&p->lock);
+    return ends;
 }
 
 /* The frame's message gets its header when the first viewer asks. */
@@ -194,14 +196,6 @@ static void end_all(struct live_publisher *p)
     }
 }
 
-static bool has_ended(struct live_publisher *p)
-{
-    pthread_mutex_lock(&p->lock);
-    const bool ends = p->ends;
-    pthread_mutex_unlock(&p->lock);
-    return ends;
-}
-
 void *live_serve(void *context)
 {
     struct live_publisher *p = context;
@@ -214,11 +208,11 @@ void *live_serve(void *context)
         if (zmq_poll(item, 3, ending ? 10 : p->door.is_shut ? SHUT : -1) < 0 && errno != EINTR)
             break;
         live_connections_look(p, cloth_seconds());
-        take_news(p);
+        const bool ends = take_news(p);
         take_requests(p);
         for (int i = 0; i < LIVE_VIEWERS; i++)
             answer_viewer(p, p->viewer + i);
-        if (!ending && has_ended(p))
+        if (!ending && ends)
             ended = cloth_seconds();
         if (ended > 0 && (!is_behind(p, ended) || cloth_seconds() - ended > GRACE))
             break;

@@ -19,7 +19,7 @@ static const char MAGIC[8] = "duiteCP", FOLDER[] = "checkpoints";
 enum { VERSION = 1, NAME = 64 };
 static const uint64_t LAST = UINT64_MAX / 2; /* no run comes from there to the end of numbers */
 static const uint64_t ORDER = 0x0102030405060708; /* of bytes */
-enum { FOUND = OUTPUT_CHECKPOINTS_KEPT + 1 };     /* a run that is killed may leave one more */
+enum { FOUND = OUTPUT_CHECKPOINTS_KEPT + 2 }; /* the newest; one more of a run that was killed */
 
 struct header {
     char magic[8];
@@ -189,18 +189,16 @@ static void checkpoint_pass_on(const struct output_checkpoints *checkpoints, uin
         unlink(gone.text);
 }
 
-/* The newest is complete: the oldest goes, and before it one that should have gone earlier. */
+/* The newest is complete: older ones go, the oldest first. */
 static void checkpoint_keep(struct output_checkpoints *checkpoints)
 {
     uint64_t *kept = checkpoints->kept;
-    const uint64_t oldest = kept[OUTPUT_CHECKPOINTS_KEPT - 1], left = kept[FOUND - 1];
-    memmove(kept + 1, kept, (OUTPUT_CHECKPOINTS_KEPT - 1) * sizeof *kept);
-    kept[0] = checkpoints->next++;
-    kept[FOUND - 1] = 0;
-    if (left)
-        checkpoint_pass_on(checkpoints, left);
-    if (oldest)
-        checkpoint_pass_on(checkpoints, oldest);
+    insert(kept, FOUND, checkpoints->next++);
+    for (int i = FOUND - 1; i >= OUTPUT_CHECKPOINTS_KEPT; i--) {
+        if (kept[i])
+            checkpoint_pass_on(checkpoints, kept[i]);
+        kept[i] = 0;
+    }
 }
 
 int output_checkpoints_write(struct output_checkpoints *checkpoints,

@@ -73,7 +73,7 @@ int output_colours_load(struct output_colours_read **colours, const char *folder
     if (!made)
         return CLOTH_E_MEMORY;
     made->n_vertices = n_vertices;
-    made->path = output_path(folder, output_colours_name);
+    made->path = output_path(folder, "%s", output_colours_name);
     made->bytes = output_read_file(made->path.text, &made->size);
     if (!made->bytes)
         return cloth_fail(error, CLOTH_E_INPUT,

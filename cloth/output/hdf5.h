@@ -41,7 +41,7 @@ struct output_state {
 };
 
 struct output_hdf5_setup {
-    const char *folder;                      /* of frames; it is there */
+    const char *folder;                      /* of frames; it is there, and outlives this */
     uint32_t n_points, n_triangles, n_edges; /* cells are the triangles, then the edges */
     const uint32_t (*triangle)[3];           /* read by output_hdf5_open only */
     const uint32_t (*edge)[2];               /* as that */

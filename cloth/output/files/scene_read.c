@@ -21,8 +21,11 @@ static void *scene_grow(struct output_json *json, void *items, size_t n, size_t 
     return grown;
 }
 
-static void take_named(struct output_json *json, const char *name, size_t n, double *value)
+/* A key with numbers, and the character before it. */
+static void take_named(struct output_json *json, char before, const char *name, size_t n,
+                       double *value)
 {
+    output_json_expect(json, before);
     output_json_expect_key(json, name);
     output_json_numbers(json, n, value);
 }
@@ -54,6 +57,7 @@ static void scene_take_body(struct output_cache *cache, struct output_json *json
     const uint32_t k = cache->n_bodies;
     snprintf(name, sizeof name, OUTPUT_BODY_OBJ, k);
     shape->body = ++cache->n_bodies;
+    output_json_expect(json, '{');
     output_json_expect_key(json, "obj");
     if (!output_json_word(json, name))
         output_json_fail(json, "the file of the next body: \"body-K.obj\", K from 0");
@@ -82,11 +86,9 @@ static void take_shape(struct output_cache *cache, struct output_json *json,
     }
     const struct contact_kind *kind = contact_kinds[shape->kind];
     double *value = shape->value;
-    output_json_expect(json, '{');
     for (const struct contact_parameter *p = kind->parameter; p->name; p++) {
-        if (p != kind->parameter)
-            output_json_expect(json, ',');
-        take_named(json, p->name, contact_role_size(p->role), value);
+        const char before = p == kind->parameter ? '{' : ',';
+        take_named(json, before, p->name, contact_role_size(p->role), value);
         check_role(json, p, value);
         value += contact_role_size(p->role);
     }
@@ -98,12 +100,9 @@ static void take_shape(struct output_cache *cache, struct output_json *json,
 static void take_key(struct output_json *json, struct phys_key *key)
 {
     const struct contact_parameter rotation = {"rotate", CONTACT_ROTATION};
-    output_json_expect(json, '{');
-    take_named(json, "time", 1, &key->time);
-    output_json_expect(json, ',');
-    take_named(json, "translate", 3, key->translate);
-    output_json_expect(json, ',');
-    take_named(json, "rotate", 4, key->rotate);
+    take_named(json, '{', "time", 1, &key->time);
+    take_named(json, ',', "translate", 3, key->translate);
+    take_named(json, ',', "rotate", 4, key->rotate);
     check_role(json, &rotation, key->rotate);
     output_json_expect(json, '}');
 }
@@ -111,7 +110,7 @@ static void take_key(struct output_json *json, struct phys_key *key)
 static void take_motion(struct output_cache *cache, struct output_json *json,
                         struct contact_shape *shape)
 {
-    take_named(json, "about", 3, shape->about);
+    take_named(json, ',', "about", 3, shape->about);
     output_json_expect(json, ',');
     output_json_expect_key(json, "keys");
     shape->first = cache->n_keys;
@@ -139,9 +138,10 @@ static void take_obstacles(struct output_cache *cache, struct output_json *json)
         cache->obstacles = shapes;
         struct contact_shape *shape = shapes + cache->n_obstacles++;
         take_shape(cache, json, shape);
-        if (output_json_take(json, ','))
+        if (!output_json_take(json, '}')) {
             take_motion(cache, json, shape);
-        output_json_expect(json, '}');
+            output_json_expect(json, '}');
+        }
     }
 }
 
@@ -254,8 +254,7 @@ static void take_sewn(struct output_cache *cache, struct output_json *json)
 
 static void take_scene(struct output_cache *cache, struct output_json *json)
 {
-    output_json_expect(json, '{');
-    take_named(json, "fps", 1, &cache->fps);
+    take_named(json, '{', "fps", 1, &cache->fps);
     output_json_expect(json, ',');
     if (!output_json_key(json, "obstacles"))
         output_json_fail(json, output_json_key(json, "planes")

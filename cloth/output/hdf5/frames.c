@@ -9,7 +9,6 @@
 
 struct output_hdf5 {
     struct output_hdf5_setup setup;
-    char *folder; /* of frames */
     struct output_grid grid;
     struct output_indexes *indexes;
     struct output_member member;
@@ -50,14 +49,14 @@ static int fill_bytes(FILE *file, const void *what)
 /* Under another name until it is whole. */
 static int put_file(const struct output_hdf5 *frames, const char *name, struct cloth_error *error)
 {
-    const struct output_path path = output_path(frames->folder, "%s", name);
-    const struct output_path part = output_path(frames->folder, "%s.part", name);
+    const struct output_path path = output_path(frames->setup.folder, "%s", name);
+    const struct output_path part = output_path(frames->setup.folder, "%s.part", name);
     int code = output_write_file(part.text, fill_bytes, &frames->bytes, error);
     if (!code && rename(part.text, path.text) != 0) {
         code = output_fail(error, "write", path.text);
         unlink(part.text);
     }
-    output_sync_folder(output_path(frames->folder, "hdf5").text);
+    output_sync_folder(output_path(frames->setup.folder, "hdf5").text);
     return code;
 }
 
@@ -74,7 +73,7 @@ static int hdf5_frames_write_frame(struct output_hdf5 *frames, struct output_sta
         code = put_file(frames, name, error);
     if (!code)
         code = output_indexes_add(frames->indexes, setup, &frames->grid, name, state->time, error);
-    output_sync_folder(frames->folder);
+    output_sync_folder(frames->setup.folder);
     return code;
 }
 
@@ -137,7 +136,6 @@ static void hdf5_frames_free(struct output_hdf5 *frames)
     }
     output_grid_free(&frames->grid);
     free(frames->bytes.items);
-    free(frames->folder);
     free(frames);
 }
 
@@ -146,14 +144,12 @@ static int open_all(struct output_hdf5 *frames, struct cloth_error *error)
     const char *lacks = output_hdf5_lacks(frames->setup.level);
     if (lacks)
         return cloth_fail(error, CLOTH_E_INPUT, "%s", lacks);
-    if (!frames->folder)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the frames of HDF5");
     int code = output_grid_make(&frames->grid, &frames->setup, error);
     if (!code)
         code = take_states(frames, error);
     return code ? code
-                : output_indexes_open(&frames->indexes, frames->folder, frames->setup.n_frames,
-                                      error);
+                : output_indexes_open(&frames->indexes, frames->setup.folder,
+                                      frames->setup.n_frames, error);
 }
 
 int output_hdf5_open(struct output_hdf5 **frames, const struct output_hdf5_setup *setup,
@@ -165,7 +161,6 @@ int output_hdf5_open(struct output_hdf5 **frames, const struct output_hdf5_setup
     if (!made)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the frames of HDF5");
     made->setup = *setup;
-    made->folder = strdup(setup->folder);
     made->member = (struct output_member){.settle = hdf5_settle, .context = made};
     if (open_all(made, &own)) {
         output_hdf5_close(&made, NULL);

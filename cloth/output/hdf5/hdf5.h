@@ -69,10 +69,10 @@ char *output_index_entry(int index, const struct output_hdf5_setup *setup,
                          const struct output_grid *grid, const char *frame, double time);
 
 struct output_indexes;
-/* Removes what an earlier run left, but for the frames below *n_frames, NULL: all; then begins new
- * indexes, or goes on with their entries of those frames. In any case output_indexes_close follows.
- * Errors: output_refuse; CLOTH_E_INPUT: an index is not one of ours, or is not whole, or a frame
- * that it names is gone. */
+/* The folder outlives them. Removes what an earlier run left, but for the frames below *n_frames,
+ * NULL: all; then begins new indexes, or goes on with their entries of those frames. In any case
+ * output_indexes_close follows. Errors: output_refuse; CLOTH_E_INPUT: an index is not one of ours,
+ * or is not whole, or a frame that it names is gone. */
 int output_indexes_open(struct output_indexes **indexes, const char *folder,
                         const uint64_t *n_frames, struct cloth_error *error);
 /* Names a frame in both. One that fails leaves the others. Error: CLOTH_E_IO. */

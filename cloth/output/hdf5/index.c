@@ -22,7 +22,7 @@ struct index {
 };
 
 struct output_indexes {
-    char *folder;
+    const char *folder;
     struct index of[OUTPUT_INDEXES];
 };
 
@@ -283,9 +283,8 @@ static int indexes_make(struct output_indexes **indexes, const char *folder,
             .path = output_path(frames.text, "%s.part", index->form->name), .file = -1};
         index->spare = output_path(frames.text, "%s.spare", index->form->name);
     }
-    made->folder = strdup(folder);
-    return made->folder ? CLOTH_OK
-                        : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the frames of HDF5");
+    made->folder = folder;
+    return CLOTH_OK;
 }
 
 static int indexes_open(struct output_indexes *indexes, const uint64_t *n_frames,
@@ -335,8 +334,6 @@ int output_indexes_close(struct output_indexes **indexes, struct cloth_error *er
         const int failed = index_close(gone->of + i, error);
         code = code ? code : failed;
     }
-    if (gone)
-        free(gone->folder);
     free(gone);
     return code;
 }

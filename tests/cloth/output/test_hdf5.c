@@ -387,3 +387,32 @@ UNIT_TEST(goes_on_without_a_frame)
     ck_assert_ptr_null(strstr(text, "000001"));
     unit_says(text, "000002");
 }
+
+static int has_room_for_one(void *context, uint32_t n, struct cloth_error *error)
+{
+    (void)context;
+    return n > 1 ? cloth_fail(error, CLOTH_E_IO, "no room") : CLOTH_OK;
+}
+
+/* Frames that the settler writes; also where it fails for another file, and settles nothing more.
+ */
+UNIT_LOOP(by_the_settler, 0, 2)
+{
+    struct output_hdf5 *frames;
+    struct output_settler *settler;
+    struct output_member other = {.settle = has_room_for_one};
+    struct output_hdf5_setup setup = setup_of(true, 1, 0);
+    UNIT_FINE(output_settler_open(&settler, &error));
+    output_member_add(&other, settler, 0);
+    setup.settler = settler;
+    UNIT_FINE(output_hdf5_open(&frames, &setup, &error));
+    for (uint32_t i = 0; i < 7; i++) {
+        if (_i)
+            output_member_wrote(&other, i + 1, NULL);
+        give(frames, i);
+    }
+    ck_assert_int_eq(output_settler_close(&settler, NULL), _i ? CLOTH_E_IO : CLOTH_OK);
+    UNIT_FINE(output_hdf5_close(&frames, &error));
+    for (uint64_t frame = 0; frame < 7; frame++)
+        check_frame(frame, true);
+}

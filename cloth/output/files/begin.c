@@ -1,7 +1,7 @@
 /* All files are written beside their names first. Then the cache of an earlier run goes first and
  * the new one comes last: so cache and mesh always belong together. scene.json comes before
- * cloth.obj, which is not ours without it. A file that a run reads is known by what it is, not by
- * its path. */
+ * cloth.obj: a cloth.obj without it is the user's. A file that a run reads is known by its inode,
+ * not by its path. */
 #include "cloth/output/files/files.h"
 #include "cloth/output/files/pc2.h"
 #include "cloth/output/files/scene.h"
@@ -81,7 +81,7 @@ static struct begin_file begin_file(const struct begin *begin, uint32_t i)
 
 /* ---- Files that may be replaced ---- */
 
-/* Whether the file at a path can be replaced, and is no input. */
+/* A folder in the way, or a file that the run reads, is refused. */
 static int check_replaceable(const struct begin *begin, const char *path, struct cloth_error *error)
 {
     struct stat status, input;

@@ -1,5 +1,4 @@
-/* Nothing here leaves half a file under its final name: a file is filled, synced and only then
- * renamed by its caller. */
+/* No half file stands under a final name: a file is filled, synced and only then renamed. */
 #include "cloth/output/files/files.h"
 
 #include "cloth/base/file.h"

@@ -56,7 +56,7 @@ unsigned char *output_read_file(const char *path, size_t *n);
 /* Reads n bytes at an offset. False where there are fewer. */
 bool output_read_at(int file, void *bytes, size_t n, uint64_t offset);
 
-/* Whether a file is there and begins with these bytes, as those of an earlier run do. */
+/* True if a file is there and begins with these bytes, as those of an earlier run do. */
 bool output_begins(const char *path, const void *bytes, size_t n);
 
 /* Removes a file of an earlier run, which begins with these bytes. Another one stays, and is an
@@ -101,8 +101,8 @@ int output_file_open(struct output_file *file, int flags, const char *verb,
  * has fewer it is refused, CLOTH_E_INPUT, before anything changes. Further errors: CLOTH_E_IO. */
 int output_file_keep_lines(struct output_file *file, uint64_t n_lines, struct cloth_error *error);
 
-/* Whether the open file is still the one at the path: nobody reads what is written to a file that
- * another run, or the user, took away. Error: CLOTH_E_IO. */
+/* Fails unless the open file is still the one at the path: another run, or the user, may have taken
+ * it away, and its readers with it. Error: CLOTH_E_IO. */
 int output_file_check(const struct output_file *file, struct cloth_error *error);
 
 /* Cuts the file to so many bytes, which a resumed run keeps. Error: CLOTH_E_IO. */

@@ -40,7 +40,7 @@ bool output_json_word(struct output_json *json, const char *word);
 double output_json_double(struct output_json *json);
 /* One number alone; several in brackets. */
 void output_json_numbers(struct output_json *json, size_t n, double *value);
-/* Whether a list has an item number i, from 0. Takes the bracket or comma before it, or the bracket
+/* True if a list has an item number i, from 0. Takes the bracket or comma before it, or the bracket
  * that ends the list. */
 bool output_json_item(struct output_json *json, size_t i);
 /* Fails with "expected WHAT". */

@@ -59,7 +59,7 @@ int output_image(const struct output_hdf5_setup *setup, const struct output_grid
 /* ---- The two indexes of a folder: texts that are whole at any moment ---- */
 
 enum { OUTPUT_SERIES, OUTPUT_XMF, OUTPUT_INDEXES };
-/* What begins the text, each entry, and ends it. */
+/* The begin of the text, that of each entry, and the end of the text. */
 struct output_index_form {
     const char *name, *begin, *entry, *end;
 };

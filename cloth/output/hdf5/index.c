@@ -184,8 +184,8 @@ static int index_close(struct index *index, struct cloth_error *error)
 
 /* ---- Files that an earlier run left ---- */
 
-/* Whether a file of the folder hdf5 has a name that frames get, and whose: UINT64_MAX, nobody's,
- * of one that was under way. */
+/* True if a file of the folder hdf5 has a frame's name; *frame: its number, UINT64_MAX if it was
+ * under way. */
 static bool is_frame(const char *name, uint64_t *frame)
 {
     static const char BEGIN[] = "frame-";

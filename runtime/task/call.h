@@ -13,7 +13,7 @@ const struct data_failure *task_body_failure(const struct duite_call_private *bo
 /* Why nothing runs any more, or NULL. */
 static inline const struct data_failure *task_given_up(struct task_graph *graph)
 {
-    return __builtin_expect(task_has_given_up(graph), 0) ? &task_lost_failure : NULL;
+    return task_has_given_up(graph) ? &task_lost_failure : NULL;
 }
 
 /* A body's call, and the state behind the calls that it makes. One frame may serve many bodies, one

@@ -1,7 +1,7 @@
 /* The index that readers see is a whole text at any moment, also after a run was killed. The kernel
  * may stop a write between two pages, so the visible file is never written. Two files take turns:
- * the hidden one gets the entries that it lacks and the end of the text, then the two change names.
- * So an entry costs no copy of those before it. */
+ * the hidden one gets the entries that it lacks and the end of the text, then the two exchange
+ * names. So an entry costs no copy of those before it. */
 #include "cloth/output/hdf5/hdf5.h"
 
 #include "cloth/base/file.h"
@@ -16,7 +16,6 @@
 struct index {
     const struct output_index_form *form;
     struct output_file shown, hidden; /* size: the bytes of the text that it has */
-    struct output_path spare;         /* a second name while the two change theirs */
     struct cloth_list text;           /* bytes: all but its end */
     uint32_t n;                       /* entries */
 };
@@ -53,26 +52,20 @@ static int write_hidden(struct index *index)
     return output_sync(to->file);
 }
 
-/* The two change names. Where a file system gives a file one name only, the shown one is lost, and
- * the next hidden one begins anew. 0, or -1 with errno set, and the shown one stays. */
+/* The two exchange their names. Where a file system cannot do that, the shown one is lost, and the
+ * next hidden one begins anew. 0, or -1 with errno set, and the shown one stays. */
 static int swap(struct index *index)
 {
     const char *shown = index->shown.path.text, *hidden = index->hidden.path.text;
-    const bool is_kept = link(shown, index->spare.text) == 0;
-    if (rename(hidden, shown) != 0) {
-        const int reason = errno;
-        if (is_kept)
-            unlink(index->spare.text);
-        errno = reason;
+    const int before = index->shown.file;
+    const bool is_kept =
+        before >= 0 && renameat2(AT_FDCWD, hidden, AT_FDCWD, shown, RENAME_EXCHANGE) == 0;
+    if (!is_kept && rename(hidden, shown) != 0)
         return -1;
-    }
-    int before = index->shown.file;
-    if (!(is_kept && rename(index->spare.text, hidden) == 0) && before >= 0) {
+    if (!is_kept && before >= 0)
         close(before);
-        before = -1;
-    }
     index->shown.file = index->hidden.file;
-    index->hidden.file = before;
+    index->hidden.file = is_kept ? before : -1;
     index->hidden.size = index->shown.size;
     index->shown.size = index->text.n;
     return 0;
@@ -255,7 +248,6 @@ static int clear(const struct output_indexes *indexes, const uint64_t *n_frames,
         const struct index *index = indexes->of + i;
         code = n_frames ? CLOTH_OK : remove_file(index->shown.path.text, error);
         code = code ? code : remove_file(index->hidden.path.text, error);
-        code = code ? code : remove_file(index->spare.text, error);
     }
     if (code || n_frames)
         return code;
@@ -271,7 +263,6 @@ static int clear(const struct output_indexes *indexes, const uint64_t *n_frames,
 static int indexes_make(struct output_indexes **indexes, const char *folder,
                         struct cloth_error *error)
 {
-    const struct output_path frames = output_path(folder, "hdf5");
     struct output_indexes *made = *indexes = cloth_alloc(1, sizeof *made, error);
     if (!made)
         return CLOTH_E_MEMORY;
@@ -280,8 +271,7 @@ static int indexes_make(struct output_indexes **indexes, const char *folder,
         index->form = output_index_forms + i;
         index->shown = output_file(folder, index->form->name);
         index->hidden = (struct output_file){
-            .path = output_path(frames.text, "%s.part", index->form->name), .file = -1};
-        index->spare = output_path(frames.text, "%s.spare", index->form->name);
+            .path = output_path(folder, "hdf5/%s.part", index->form->name), .file = -1};
     }
     made->folder = folder;
     return CLOTH_OK;

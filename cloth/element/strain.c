@@ -29,19 +29,6 @@ int element_strains_room(struct element_strains *strains, struct cloth_error *er
     return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for the strains of %zu triangles", n);
 }
 
-static int strain_take(struct element_strains *strains, const struct model *model,
-                       struct cloth_error *error)
-{
-    for (uint32_t c = 0; c < model->n_cloths; c++) {
-        const struct mesh *mesh = &model->cloths[c].mesh;
-        strains->n_vertices += mesh->n_vertices;
-        strains->n_triangles += mesh->n_triangles;
-        strains->n_edges += mesh->n_bare_edges;
-    }
-    strains->n_materials = model->n_materials;
-    return element_strains_room(strains, error);
-}
-
 static void add_triangle(struct element_strains *strains, const struct element_cloths *cloths,
                          const struct element *element, uint32_t t)
 {
@@ -90,7 +77,14 @@ int element_strains_make(struct element_strains *strains, const struct model *mo
 {
     struct element_cloths cloths;
     *strains = (struct element_strains){0};
-    int code = strain_take(strains, model, error);
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        const struct mesh *mesh = &model->cloths[c].mesh;
+        strains->n_vertices += mesh->n_vertices;
+        strains->n_triangles += mesh->n_triangles;
+        strains->n_edges += mesh->n_bare_edges;
+    }
+    strains->n_materials = model->n_materials;
+    int code = element_strains_room(strains, error);
     if (code)
         return code;
     code = element_cloths_make(&cloths, model, error);

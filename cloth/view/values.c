@@ -1,40 +1,21 @@
 /* Shapes at rest are those that count in the frame that was asked for last. */
-#include "cloth/view/values.h"
+#include "cloth/view/colours.h"
 
 #include "cloth/base/memory.h"
-#include "cloth/element/strain.h"
-#include "cloth/output/colours.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-struct view_values {
-    struct output_cache *cache;
-    const char *folder;
-    struct output_colours_read *colours; /* NULL until it is asked for */
-    struct element_strains strains;
-    uint64_t since;             /* from which frame on they count; UINT64_MAX: there are none */
-    double *cell, (*stress)[3]; /* of each triangle and edge */
-    double *weight;             /* of each vertex */
-    int32_t *number;            /* as this; */
-    double *force;              /* x 3 */
-};
-
-int view_values_open(struct view_values **values, struct output_cache *cache, const char *folder,
+int view_values_open(struct view_values *values, struct output_cache *cache, const char *folder,
                      struct cloth_error *error)
 {
     const size_t n = cache->mesh.n_vertices;
-    struct view_values *made = *values = cloth_alloc(1, sizeof *made, error);
-    if (!made)
-        return CLOTH_E_MEMORY;
-    made->cache = cache;
-    made->folder = folder;
-    made->since = UINT64_MAX;
-    made->weight = cloth_alloc(n, sizeof *made->weight, error);
-    made->number = cloth_alloc(n, sizeof *made->number, error);
-    made->force = cloth_alloc(3 * n, sizeof *made->force, error);
-    return made->weight && made->number && made->force ? CLOTH_OK : CLOTH_E_MEMORY;
+    *values = (struct view_values){.cache = cache, .folder = folder, .since = UINT64_MAX};
+    values->weight = cloth_alloc(n, sizeof *values->weight, error);
+    values->number = cloth_alloc(n, sizeof *values->number, error);
+    values->force = cloth_alloc(3 * n, sizeof *values->force, error);
+    return error->code;
 }
 
 static int view_values_open_colours(struct view_values *values, struct cloth_error *error)
@@ -195,8 +176,6 @@ int view_values_frames(struct view_values *values, enum view_colour by, uint64_t
 
 void view_values_close(struct view_values *values)
 {
-    if (!values)
-        return;
     output_colours_unload(values->colours);
     element_strains_free(&values->strains);
     free(values->cell);
@@ -204,5 +183,4 @@ void view_values_close(struct view_values *values)
     free(values->weight);
     free(values->number);
     free(values->force);
-    free(values);
 }

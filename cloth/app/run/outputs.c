@@ -92,7 +92,9 @@ static int open_output(struct outputs *to, const struct phases *phases, const st
     setup->settler = to->settler;
     code = code ? code : output_open(&to->frames, setup, error);
     code = code ? code : outputs_open_colours(to, phases, flow, n_frames, error);
-    code = code ? code : outputs_hdf5_open(&to->hdf5, model, to->options->output, n_frames, error);
+    code = code ? code
+                : outputs_hdf5_open(&to->hdf5, model, to->options->output, n_frames, to->settler,
+                                    error);
     code = code ? code : open_forces(to, model, flow, n_frames, error);
     return code ? code : open_probes(to, flow, resumed ? &rows : NULL, error);
 }

@@ -70,18 +70,6 @@ task_frame_call(struct task_frame *frame, struct task *task, const void *args,
  * outputs are poisoned. task_finish then ends the task. */
 bool task_run_body(struct task_frame *frame, struct task *task);
 
-/* Calls a body with a frame of its own. */
-__attribute__((always_inline)) static inline const struct data_failure *
-task_call_body(struct task_graph *graph, struct worker *worker, struct task *task, const void *args,
-               const duite_param *param, struct task_scope **scope, const duite_call *template)
-{
-    struct task_frame frame;
-    task_frame_init(&frame, graph, worker, template);
-    if (task->later)
-        frame.call.round = task_later_round(task);
-    return task_frame_call(&frame, task, args, param, scope);
-}
-
 #pragma GCC visibility pop
 
 #endif

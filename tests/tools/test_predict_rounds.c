@@ -152,6 +152,17 @@ static void make_objects(duite *rt)
         ck_assert(!duite_fork(rt, &CHANGE, NULL, 1, &now.name[i]));
 }
 
+/* The rows that mappings see of a record. */
+static void expect_tasks(const struct plan_record *record)
+{
+    struct plan_source source;
+    struct plan_round round = {0};
+    ck_assert(plan_record_source(record, NULL, &source) && plan_lower(&round, &source));
+    ck_assert(plan_tasks_find(&expected, &round));
+    plan_round_free(&round);
+    plan_source_free(&source);
+}
+
 static duite *trace_one(const char *trace)
 {
     duite_options options = duite_options_default();
@@ -164,7 +175,7 @@ static duite *trace_one(const char *trace)
     ck_assert_msg(!duite_start(&rt, &options), "%s", duite_message());
     make_objects(rt);
     ck_assert_msg(!duite_graph_new(rt, build, NULL, &graph), "%s", duite_message());
-    ck_assert_int_eq(plan_record_tasks(now.record, &expected), DUITE_OK);
+    expect_tasks(now.record);
     ck_assert_int_eq(duite_replay(rt, graph, 2), DUITE_OK);
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
     ck_assert_int_eq(duite_trace_end(rt), DUITE_OK);

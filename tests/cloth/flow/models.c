@@ -98,8 +98,7 @@ void setup_chain(struct setup *s, uint32_t links, double x, double y, double mas
 
 void setup_masses(const struct setup *s, double *mass)
 {
-    for (uint32_t t = 0; t < s->cloth.mesh.n_triangles; t++)
-        mesh_add_cell_mass_of(&s->cloth.mesh, t, s->material.density, mass);
+    mesh_add_mass(&s->cloth.mesh, s->material.density, true, mass);
 }
 
 void setup_pin(struct setup *s, uint32_t n, const uint32_t *vertices)

@@ -1,7 +1,7 @@
 /* Blocks: each used vertex has one place, no block is empty, sizes are even, neighbours are near,
  * and nothing but the graph and the grain counts. */
 #include "cloth/mesh/blocks.h"
-#include "cloth/mesh/detail/pieces.h"
+#include "cloth/mesh/detail/graph.h"
 #include "cloth/mesh/lattice.h"
 #include "tests/cloth/mesh/tools.h"
 

@@ -26,11 +26,11 @@ int32_t delegation_value(duite *rt, duite_object number);
 /* Waits; the tasks so far, of all ranks, that ran on another rank. */
 uint64_t delegation_count(duite *rt);
 
-/* Lets `fork` fork for each of TASKS objects what does MIX's work on it, also several times; all
- * that they touch lives on one rank, and they read 7. Cases ask whether all values are those of
- * fork order: `start` and `each` times its number in an object, `last` times its number in what all
- * overwrite, and `each` times the sum of the numbers in what they contribute to; and whether bodies
- * ran on other ranks if and only if they may. */
+/* Cases that ask whether all values are those of fork order. `fork` forks what does MIX's work on
+ * one of TASKS objects, once or several times; all objects live on one rank, and what is read is 7.
+ * An object then holds `start` and `each` times its number. What all overwrite holds `last` times
+ * the last number, and what they contribute to `each` times the sum of the numbers. Bodies run on
+ * other ranks if and only if they may. */
 struct delegation_values {
     void (*fork)(duite *rt, int32_t number, const duite_object object[4]);
     int32_t start, each, last;

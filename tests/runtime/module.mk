@@ -1,5 +1,5 @@
 LEAK_TESTS += tests/runtime/random_programs
-TSAN_TESTS += tests/runtime/test_containers tests/runtime/test_place tests/runtime/test_reduce
+TSAN_TESTS += tests/runtime/test_place
 LEAK_SH += tests/runtime/test_ranks.sh
 ASAN_SH += tests/runtime/test_random.sh tests/runtime/test_memcheck.sh tests/runtime/test_stuck.sh \
     tests/runtime/test_exit.sh tests/runtime/test_steals.sh tests/runtime/test_migrate.sh
@@ -32,12 +32,11 @@ tests_runtime_overrun_LDADD = $(CORE_LIBS)
 
 if HAVE_CHECK
 LEAK_TESTS += tests/runtime/test_window tests/runtime/test_memo tests/runtime/test_memo_ahead tests/runtime/test_late \
-    tests/runtime/test_laws tests/runtime/test_sched tests/runtime/test_sched_knowing tests/runtime/test_sched_told \
+    tests/runtime/test_laws tests/runtime/test_sched tests/runtime/test_sched_told \
     tests/runtime/test_makespan tests/runtime/test_check tests/runtime/test_busy tests/runtime/test_environment tests/runtime/test_nested_tasks \
-    tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_sums \
-    tests/runtime/test_lines
+    tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_lines
 TSAN_TESTS += tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_comm tests/runtime/test_settle \
-    tests/runtime/test_balance tests/runtime/test_monitor tests/runtime/test_passes tests/runtime/test_passes_random
+    tests/runtime/test_balance tests/runtime/test_monitor tests/runtime/test_passes
 PLAIN_TESTS += tests/runtime/test_stack
 MEMO_FILES = tests/runtime/repeated.c tests/runtime/repeated.h tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_memo_ahead_SOURCES = tests/runtime/test_memo_ahead.c $(MEMO_FILES)
@@ -65,8 +64,6 @@ tests_runtime_test_sched_SOURCES = tests/runtime/test_sched.c tests/negative/mis
 tests_runtime_test_sched_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_sched_told_SOURCES = tests/runtime/test_sched_told.c tests/runtime/passive.h tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_sched_told_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_sched_knowing_SOURCES = tests/runtime/test_sched_knowing.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_test_sched_knowing_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_makespan_SOURCES = tests/runtime/test_makespan.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_makespan_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_monitor_LDADD = $(DUITE_TEST_LIBS)
@@ -77,15 +74,9 @@ tests_runtime_test_graphs_refused_SOURCES = tests/runtime/test_graphs_refused.c 
     tests/runtime/graphs_fixture.c tests/runtime/graphs_fixture.h
 tests_runtime_test_graphs_refused_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graphs_change_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_passes_SOURCES = tests/runtime/test_passes.c tests/runtime/rounds.c tests/runtime/rounds.h
+tests_runtime_test_passes_SOURCES = tests/runtime/test_passes.c tests/runtime/rounds_run.c tests/runtime/rounds_run.h
 tests_runtime_test_passes_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_passes_random_SOURCES = tests/runtime/test_passes_random.c tests/runtime/rounds.c tests/runtime/rounds.h \
-    tests/runtime/rounds_run.c tests/runtime/rounds_run.h
-tests_runtime_test_passes_random_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_graph_sums_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_lines_LDADD = $(DUITE_TEST_LIBS)
 endif
 
-tests_runtime_test_containers_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_place_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_reduce_LDADD = $(DUITE_TEST_LIBS)

@@ -1,7 +1,7 @@
 #ifndef TESTS_RUNTIME_ROUNDS_RUN_H
 #define TESTS_RUNTIME_ROUNDS_RUN_H
 
-#include "tests/runtime/rounds.h"
+#include "runtime/plan/passes.h"
 
 #include <duite_policy.h>
 
@@ -10,7 +10,15 @@
  * in random order, rounds overlapping, and each task must find there what it found in the
  * reference. */
 
-enum { ROUNDS = 3, MAX_RANKS = 16, PLACES = 1024, QUEUE = 256, PHASES = 64 };
+enum {
+    ROUNDS = 3,
+    ROUNDS_MAX = 64,       /* forks, and objects */
+    ROUNDS_ACCESSES = 256, /* of all forks */
+    MAX_RANKS = 16,
+    PLACES = 1024,
+    QUEUE = 256,
+    PHASES = 64
+};
 
 struct reference {
     const struct plan_source *source;

@@ -1,192 +1,224 @@
-/* Each pass of the compiler of recorded graphs, on rounds made by hand, against its output worked
- * out by hand. */
+/* The passes of the compiler of recorded graphs on random rounds. Values are numbers that tell what
+ * they were made of. A reference runs the forks one after the other; the parts that the passes
+ * leave for all ranks run against each other, rounds overlapping, in random order. Every task must
+ * find what it finds in the reference, whatever the order. */
 #include "runtime/base/rank_set.h"
-#include "tests/runtime/rounds.h"
+#include "runtime/task/owner.h"
+#include "tests/runtime/rounds_run.h"
 #include "tests/support/unit.h"
 
-/* ---- Lower ---- */
+#include <duite_policy.h>
 
-static void lowered(const char *objects, const char *forks, uint32_t flag, const char *expected)
-{
-    struct rounds_made made;
-    UNIT_OWNED(plan_round_free) struct plan_round round = {0};
-    rounds_make(&made, objects, forks);
-    made.source.flag = flag;
-    ck_assert(plan_lower(&round, &made.source));
-    ck_assert_str_eq(rounds_nodes(&round), expected);
-}
+#include <check.h>
+#include <stdlib.h>
 
-UNIT_TEST(lower_forks)
-{
-    lowered("8 8", "w0; r0 u1; =0; ;", PLAN_NONE, "task(w0) task(r0 u1) set(w0) task()");
-    lowered("8 8", "w0; r1;", 1, "task(w0) task(r1) flag(r1)");
-    lowered("8", "", PLAN_NONE, "");
-}
+enum { OBJECTS = 8, FORKS = 14, FEW_RANKS = 5, GARBAGE = 0xbad };
 
-/* The first other access ends contributions, another law does, and the round. */
-UNIT_TEST(lower_sums)
-{
-    lowered("8 8", "c0; c0; r0;", PLAN_NONE, "task(w2) task(w3) sum(u0 r2 r3 | 1+2) task(r0)");
-    lowered("8", "c0; C0;", PLAN_NONE, "task(w1) sum(u0 r1) task(w2) sum(u0 r2)");
-    lowered("8 8", "c1; c0; c1;", PLAN_NONE,
-            "task(w2) task(w3) task(w4) sum(u0 r3) sum(u1 r2 r4 | 1+2)");
-}
+/* ---- Random rounds ---- */
 
-/* Six leaves: (1 2)(3 4) and (5 6), folded from the right. */
-UNIT_TEST(lower_trees)
-{
-    lowered("8", "c0; c0; c0; c0; c0; c0;", PLAN_NONE,
-            "task(w1) task(w2) task(w3) task(w4) task(w5) task(w6) "
-            "sum(u0 r1 r2 r3 r4 r5 r6 | 1+2 3+4 1+3 5+6 1+5)");
-    lowered("8", "c0; c0; c0;", PLAN_NONE, "task(w1) task(w2) task(w3) sum(u0 r1 r2 r3 | 1+2 1+3)");
-}
-
-/* ---- Edges ---- */
-
-static void edged(const char *objects, const char *forks, uint32_t flag, const char *expected)
-{
-    struct rounds_made made;
-    UNIT_OWNED(plan_round_free) struct plan_round round = {0};
-    rounds_make(&made, objects, forks);
-    made.source.flag = flag;
-    ck_assert(plan_lower(&round, &made.source) && plan_edges(&round));
-    ck_assert_str_eq(rounds_edges(&round), expected);
-}
-
-UNIT_TEST(edges_within_and_between)
-{
-    edged("8", "w0; r0; r0;", PLAN_NONE, "0>1 0>2 2~>0 1~>0");
-    edged("8 8", "w0; w0; r0;", PLAN_NONE, "0>1 1>2 2~>0");
-    edged("8 8", "u0; u1;", PLAN_NONE, "0~>0 1~>1");
-    edged("8 8", "r0; r1;", PLAN_NONE, "0~>0 1~>1");
-}
-
-/* Two uses of one place by two nodes give one edge; the deciding node joins all roots. */
-UNIT_TEST(edges_of_flags)
-{
-    edged("8 8", "w0 w1; r0 r1;", PLAN_NONE, "0>1 1~>0");
-    edged("8 8", "w0; w1;", 0, "0>2 1>2 2~>0 1~>1 2~>1");
-}
-
-/* ---- Assign, messages, part ---- */
-
-struct assigned {
-    struct rounds_made made;
-    struct plan_round round;
-    struct plan_assignment assignment;
-    struct plan_messages messages;
+struct rounds_made {
+    struct plan_source source;
+    struct plan_source_fork fork[ROUNDS_MAX];
+    struct plan_access access[ROUNDS_ACCESSES];
+    size_t bytes[ROUNDS_MAX];
 };
 
-static void assign(struct assigned *s, const char *objects, const char *forks, const int *home,
-                   int n_ranks)
+static void made_begin(struct rounds_made *made, size_t objects, uint64_t *random)
 {
-    rounds_make(&s->made, objects, forks);
-    s->round = (struct plan_round){0};
-    ck_assert(plan_lower(&s->round, &s->made.source));
-    ck_assert(plan_assign(&s->assignment, &s->round, home, n_ranks));
-    ck_assert(plan_messages_find(&s->messages, &s->assignment, PLAN_ALL));
+    *made = (struct rounds_made){.source = {.flag = PLAN_NONE,
+                                            .n_objects = objects,
+                                            .fork = made->fork,
+                                            .access = made->access,
+                                            .bytes = made->bytes}};
+    for (size_t i = 0; i < objects; i++)
+        made->bytes[i] = draw(random, 2) ? 8 : 4096;
 }
 
-static void assigned_free(struct assigned *s)
+/* A fork without accesses, which then come one by one; made_own says what it runs for. */
+static struct plan_source_fork *made_fork(struct rounds_made *made)
 {
-    plan_messages_free(&s->messages);
-    plan_assignment_free(&s->assignment);
-    plan_round_free(&s->round);
+    ck_assert_uint_lt(made->source.n_forks, ROUNDS_MAX);
+    struct plan_source_fork *fork = made->fork + made->source.n_forks++;
+    *fork = (struct plan_source_fork){
+        .first = made->source.n_accesses, .owner = PLAN_NONE, .rank = PLAN_BY_OWNER};
+    return fork;
 }
 
-static void part_is(const struct assigned *s, int rank, const char *expected)
+static void made_access(struct rounds_made *made, uint32_t object, duite_mode mode, int law)
 {
-    UNIT_OWNED(plan_messages_free) struct plan_messages messages;
-    UNIT_OWNED(plan_round_free) struct plan_round part = {0};
-    ck_assert(plan_messages_find(&messages, &s->assignment, rank) && plan_part(&part, &messages));
-    ck_assert_str_eq(rounds_nodes(&part), expected);
+    static const duite_law laws[2];
+    ck_assert_uint_lt(made->source.n_accesses, ROUNDS_ACCESSES);
+    made->fork[made->source.n_forks - 1].n++;
+    made->access[made->source.n_accesses++] =
+        (struct plan_access){object, mode, mode == DUITE_CW ? laws + law : NULL};
 }
 
-/* A halo: each rank reads what the other one wrote in the round before. Version 2 and 3 leave. */
-UNIT_TEST(exchange)
+static void made_own(struct rounds_made *made)
 {
-    UNIT_OWNED(assigned_free) struct assigned s;
-    assign(&s, "8 8 8 8", "r0 r1 w2; r0 r1 w3; r2 w0; r3 w1;", (const int[]){0, 1, 0, 1}, 2);
-    ck_assert_str_eq(rounds_ranks(&s.assignment), "0 1 0 1");
-    ck_assert_str_eq(rounds_needs(&s.assignment), "0:01 1:01 4:0 5:1");
-    ck_assert_str_eq(rounds_phases(&s.messages), "1 1 1 1");
-    ck_assert_str_eq(rounds_messages(&s.messages), "0>1 in 0: v0; 1>0 in 0: v1");
-    part_is(&s, 0, "receive from 1 in 0(w4) send to 1 in 0(r0) task(r0 r4 w2) task(r2 w0)");
-    part_is(&s, 1, "receive from 0 in 0(w4) send to 0 in 0(r1) task(r4 r1 w3) task(r3 w1)");
+    struct plan_source_fork *fork = &made->fork[made->source.n_forks - 1];
+    duite_mode mode[DUITE_MAX_ACCESS] = {DUITE_NONE};
+    ck_assert_uint_lt(fork->n, DUITE_MAX_ACCESS);
+    for (uint32_t k = 0; k < fork->n; k++)
+        mode[k] = made->access[fork->first + k].mode;
+    const uint32_t own = task_owner(mode, DUITE_NONE, fork->n);
+    fork->owner = own == TASK_NOBODY ? PLAN_NONE : made->access[fork->first + own].object;
 }
 
-/* A replicated task and a set run where they are read; one that nobody reads at home, or, if it is
- * overwritten, nowhere. */
-UNIT_TEST(assign_where_read)
+static void random_access(struct rounds_made *made, uint64_t *random, uint32_t object)
 {
-    UNIT_OWNED(assigned_free) struct assigned s;
-    assign(&s, "8 8 8", "R w0; r0 w1; @2 r0; =2; =2;", (const int[]){0, 1, 1}, 3);
-    ck_assert_str_eq(rounds_ranks(&s.assignment), "12 1 2 - 1");
-    ck_assert_str_eq(rounds_messages(&s.messages), "");
+    static const duite_mode modes[] = {DUITE_R, DUITE_R, DUITE_W, DUITE_RW, DUITE_CW, DUITE_CW};
+    const struct plan_source_fork *fork = &made->fork[made->source.n_forks - 1];
+    duite_mode mode = modes[draw(random, 6)];
+    if (mode == DUITE_CW && fork->replicated)
+        mode = DUITE_R;
+    made_access(made, object, fork->sets ? DUITE_W : mode, draw(random, 8) == 0);
 }
 
-/* A small sum is added by all who read it, a large one at the home. */
-UNIT_TEST(assign_sums)
+static void random_fork(struct rounds_made *made, uint64_t *random, int n_ranks)
 {
-    struct assigned s;
-    assign(&s, "8 8 8", "r1 c0; r2 c0; r0 u1; r0 u2;", (const int[]){0, 0, 1}, 2);
-    ck_assert_str_eq(rounds_ranks(&s.assignment), "0 1 01 0 1");
-    ck_assert_str_eq(rounds_phases(&s.messages), "0 0 1 1 1");
-    ck_assert_str_eq(rounds_messages(&s.messages), "0>1 in 0: p0; 1>0 in 0: p1");
-    part_is(&s, 0,
-            "receive from 1 in 0(w3) task(r1 w4) send to 1 in 0(r4) sum(u0 u4 u3 | 1+2) "
-            "task(r0 u1)");
-    assigned_free(&s);
-    assign(&s, "4096 8 8", "r1 c0; r2 c0; r0 u1; r0 u2;", (const int[]){0, 0, 1}, 2);
-    ck_assert_str_eq(rounds_ranks(&s.assignment), "0 1 0 0 1");
-    ck_assert_str_eq(rounds_phases(&s.messages), "0 0 1 1 2");
-    ck_assert_str_eq(rounds_messages(&s.messages), "1>0 in 0: p1; 0>1 in 1: v3");
-    assigned_free(&s);
+    uint32_t n = 1 + (uint32_t)draw(random, 3), first = (uint32_t)draw(random, 1000);
+    struct plan_source_fork *fork = made_fork(made);
+    uint64_t kind = draw(random, 8);
+    uint32_t objects = (uint32_t)made->source.n_objects;
+    fork->sets = kind == 0;
+    fork->replicated = kind == 1 || kind == 2;
+    if (kind == 3)
+        fork->rank = (int)draw(random, (uint64_t)n_ranks);
+    for (uint32_t k = 0; k < (fork->sets ? 1 : n) && k < objects; k++)
+        random_access(made, random, (first + k) % objects);
+    made_own(made);
 }
 
-/* Five ranks have a leaf each, and all add up: in three rounds each sends one message to the rank
- * 1, 2 and 4 places before it. Halves combine on the way; what the other one has is not sent again.
- */
-UNIT_TEST(sums_by_rounds)
+static void random_round(struct rounds_made *made, uint64_t *random, int n_ranks)
 {
-    UNIT_OWNED(assigned_free) struct assigned s;
-    assign(&s, "8 8 8 8 8 8",
-           "r1 c0; r2 c0; r3 c0; r4 c0; r5 c0; r0 u1; r0 u2; r0 u3; r0 u4; r0 u5;",
-           (const int[]){0, 0, 1, 2, 3, 4}, 5);
-    ck_assert_str_eq(rounds_phases(&s.messages), "0 0 0 0 0 3 3 3 3 3 3");
-    ck_assert_str_eq(rounds_messages(&s.messages),
-                     "1>0 in 0: 1+1; 2>1 in 0: 2+1; 3>2 in 0: 3+1; 4>3 in 0: 4+1; 0>4 in 0: 0+1; "
-                     "2>0 in 1: 2+2; 3>1 in 1: 3+1 4+1; 4>2 in 1: 0+1 4+1; 0>3 in 1: 0+2; "
-                     "1>4 in 1: 1+1 2+1; "
-                     "4>0 in 2: 4+1; 0>1 in 2: 0+4; 1>2 in 2: 1+1; 2>3 in 2: 2+2; 3>4 in 2: 3+1");
-    part_is(&s, 0,
-            "receive from 1 in 0(w6) receive from 2 in 1(w7) receive from 4 in 2(w8) "
-            "task(r1 w9) send to 4 in 0(r9) partial(u9 u6 | 0+1) send to 3 in 1(r9) "
-            "partial(u9 u7 | 0+1) send to 1 in 2(r9) sum(u0 u9 u8 | 1+2) task(r0 u1)");
+    const size_t objects = 2 + draw(random, OBJECTS - 1), forks = 1 + draw(random, FORKS);
+    made_begin(made, objects, random);
+    for (size_t i = 0; i < forks; i++)
+        random_fork(made, random, n_ranks);
+    if (draw(random, 3) == 0)
+        made->source.flag = (uint32_t)draw(random, objects);
 }
 
-/* What one of five ranks makes and all read goes on from those that have it; the value of the round
- * before does, too. */
-UNIT_TEST(values_by_rounds)
+/* Sums of many ranks: contributions in random order, then tasks on some ranks that read the sum. A
+ * large one is made at one rank, from which its value goes to the others. */
+static void wide_sum(struct rounds_made *made, uint64_t *random, uint32_t sum)
 {
-    struct assigned s;
-    assign(&s, "8 8 8 8 8 8", "w0; r0 u1; r0 u2; r0 u3; r0 u4; r0 u5;",
-           (const int[]){2, 0, 1, 2, 3, 4}, 5);
-    ck_assert_str_eq(rounds_phases(&s.messages), "0 3 3 0 3 3");
-    ck_assert_str_eq(rounds_messages(&s.messages),
-                     "2>1 in 0: v6; 2>0 in 1: v6; 1>4 in 1: v6; 2>3 in 2: v6");
-    part_is(&s, 1, "receive from 2 in 0(w6) send to 4 in 1(r6) task(r6 u2)");
-    assigned_free(&s);
-    assign(&s, "8 8 8 8 8 8", "r0 u1; r0 u2; r0 u3; r0 u4; r0 u5; w0;",
-           (const int[]){2, 0, 1, 2, 3, 4}, 5);
-    ck_assert_str_eq(rounds_messages(&s.messages),
-                     "2>1 in 0: v0; 2>0 in 1: v0; 1>4 in 1: v0; 2>3 in 2: v0");
-    assigned_free(&s);
+    const uint64_t leaves = 1 + draw(random, 18), readers = 1 + draw(random, 12);
+    const uint32_t objects = (uint32_t)made->source.n_objects;
+    for (uint64_t i = 0; i < leaves + readers; i++) {
+        const uint32_t other = 2 + (uint32_t)draw(random, objects - 2);
+        const bool reads = i >= leaves;
+        made_fork(made);
+        made_access(made, reads ? sum : other, DUITE_R, 0);
+        made_access(made, reads ? other : sum, reads ? DUITE_RW : DUITE_CW, 0);
+        made_own(made);
+    }
 }
 
-/* A rank combines what it has alone before it sends. */
+static void wide_round(struct rounds_made *made, uint64_t *random)
+{
+    made_begin(made, 6 + draw(random, 15), random);
+    const uint64_t sums = 1 + draw(random, 2);
+    for (uint64_t i = 0; i < sums; i++)
+        wide_sum(made, random, (uint32_t)draw(random, 2));
+}
+
+/* ---- What passes promise of their output alone ---- */
+
+static bool same_edge(const struct plan_round_edge *a, const struct plan_round_edge *b)
+{
+    return a->from == b->from && a->to == b->to && a->cyclic == b->cyclic;
+}
+
+/* Edges within a round lead to later nodes, in order, each once; one that goes to the next round
+ * goes back to a node that `from` waited for, or to itself. */
+static void check_edges(const struct plan_round *round)
+{
+    size_t n = round->n_nodes;
+    bool *after = calloc(n * n + 1, sizeof *after); /* [a * n + b]: b runs after a */
+    uint32_t last = 0;
+    for (size_t i = 0; i < n; i++)
+        after[i * n + i] = true;
+    for (size_t i = 0; i < round->n_edges; i++) {
+        const struct plan_round_edge *edge = &round->edge[i];
+        for (size_t k = 0; k < i; k++)
+            ck_assert(!same_edge(edge, &round->edge[k]));
+        if (edge->cyclic)
+            continue;
+        ck_assert_uint_lt(edge->from, edge->to);
+        ck_assert_uint_ge(edge->to, last);
+        last = edge->to;
+        for (size_t a = 0; a < n; a++)
+            after[a * n + edge->to] |= after[a * n + edge->from];
+    }
+    for (size_t i = 0; i < round->n_edges; i++)
+        if (round->edge[i].cyclic)
+            ck_assert(after[round->edge[i].to * n + round->edge[i].from]);
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b < n; b++)
+            if (after[a * n + b] && round->node[a].kind == PLAN_RECEIVE &&
+                round->node[b].kind == PLAN_SEND)
+                ck_assert_uint_lt(round->node[a].phase, round->node[b].phase);
+    free(after);
+}
+
+/* The ranks that run a node need what it reads; a node of one rank runs there alone. */
+static void check_assignment(const struct plan_assignment *a)
+{
+    for (size_t n = 0; n < a->round->n_nodes; n++) {
+        const struct plan_round_node *node = &a->round->node[n];
+        for (int rank = 0; rank < a->n_ranks; rank++) {
+            if (a->at[n] != PLAN_MANY)
+                ck_assert_int_eq(plan_runs(a, n, rank), a->at[n] == rank);
+            for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++)
+                if (a->reads[i] != PLAN_NONE && plan_runs(a, n, rank))
+                    ck_assert(base_ranks_has(plan_needs_set(a, a->reads[i]), rank));
+        }
+        if (node->kind == PLAN_TASK)
+            ck_assert(!plan_is_dead(a, n));
+    }
+}
+
+/* On more ranks, where sets take several words, the first ones run and need the same. The others
+ * are all alike, and have nothing but what a flag needs. */
+static void check_more_ranks(const struct plan_assignment *a, const int *home)
+{
+    enum { MORE = 150 };
+    UNIT_OWNED(plan_assignment_free) struct plan_assignment more;
+    const bool flagged = a->round->source->flag != PLAN_NONE;
+    ck_assert(plan_assign(&more, a->round, home, a->n_ranks + MORE));
+    for (int rank = 0; rank < more.n_ranks; rank++) {
+        const struct plan_assignment *like = rank < a->n_ranks ? a : &more;
+        const int as = rank < a->n_ranks ? rank : a->n_ranks;
+        const bool some = rank < a->n_ranks || flagged;
+        for (size_t n = 0; n < a->round->n_nodes; n++)
+            ck_assert_int_eq(plan_runs(&more, n, rank), some && plan_runs(like, n, as));
+        for (size_t v = 0; v < a->n_versions; v++)
+            ck_assert_int_eq(base_ranks_has(plan_needs_set(&more, v), rank),
+                             some && base_ranks_has(plan_needs_set(like, v), as));
+    }
+}
+
+/* One message at most from a rank to another in a phase, and items in order. */
+static void check_messages(const struct plan_messages *m)
+{
+    size_t items = 0;
+    for (size_t i = 0; i < m->n_messages; i++) {
+        const struct plan_message *message = &m->message[i];
+        ck_assert_int_ne(message->from, message->to);
+        for (size_t k = 0; k < i; k++)
+            ck_assert(m->message[k].from != message->from || m->message[k].to != message->to ||
+                      m->message[k].phase != message->phase);
+        for (size_t k = message->first; k; k = m->item[k - 1].next, items++)
+            ck_assert_uint_le(m->item[k - 1].made, message->ready);
+    }
+    ck_assert_uint_eq(items, m->n_items);
+    for (size_t i = 1; i < m->n_items; i++)
+        ck_assert_uint_ge(m->item[i].made, m->item[i - 1].made);
+}
+
 /* Values of up to four ranks, or of half of them, go directly. */
-UNIT_TEST(values_by_rounds_of_many)
+UNIT_TEST(values_of_many_go_from_rank_to_rank)
 {
     static const struct {
         int n_ranks, readers;
@@ -203,39 +235,122 @@ UNIT_TEST(values_by_rounds_of_many)
     }
 }
 
-UNIT_TEST(part_of_pieces)
+/* ---- One random round ---- */
+
+/* The number of tasks that a round runs on all ranks. */
+static size_t tasks_of(const struct plan_assignment *a)
 {
-    UNIT_OWNED(assigned_free) struct assigned s;
-    assign(&s, "4096 8 8", "r1 c0; r1 c0; r2 c0; r2 c0; r2 c0; r0 u1;", (const int[]){0, 0, 1}, 2);
-    ck_assert_uint_eq(s.messages.n_pieces, 3);
-    ck_assert_str_eq(rounds_messages(&s.messages), "1>0 in 0: p1 p2");
-    part_is(&s, 1,
-            "task(r2 w3) task(r2 w4) task(r2 w5) partial(u3 u4 | 0+1) send to 0 in 0(r3 r5)");
-    part_is(&s, 0,
-            "receive from 1 in 0(w3 w4) task(r1 w5) task(r1 w6) partial(u5 u6 | 0+1) "
-            "sum(u0 u5 u3 u4 | 1+2 1+3) task(r0 u1)");
+    size_t tasks = 0;
+    for (size_t n = 0; n < a->round->n_nodes; n++)
+        for (int rank = 0; rank < a->n_ranks; rank++)
+            tasks += (a->round->node[n].kind == PLAN_TASK || a->round->node[n].kind == PLAN_SET) &&
+                     plan_runs(a, n, rank);
+    return tasks;
 }
 
-/* What is overwritten before its message can go is copied aside; what is written on from a message
- * is brought home first. */
-UNIT_TEST(part_copies)
+static void run_parts(struct run *run, const struct plan_round *round, const int *home)
 {
-    struct assigned s;
-    assign(&s, "8 8 8", "w0; @1 r0 w1; u0; @1 r0 w2; w0;", (const int[]){0, 1, 1}, 2);
-    ck_assert_str_eq(rounds_messages(&s.messages), "0>1 in 0: v3 v5");
-    part_is(&s, 0, "task(w0) copy(r0 w3) task(u0) send to 1 in 0(r3 r0) task(w0)");
-    part_is(&s, 1, "receive from 0 in 0(w3 w4) task(r3 w1) task(r4 w2)");
-    assigned_free(&s);
-    assign(&s, "8 8", "w0; @1 u0; r0 w1;", (const int[]){0, 0}, 2);
-    part_is(&s, 1, "receive from 0 in 0(w2) copy(r2 w0) task(u0) send to 0 in 1(r0)");
-    assigned_free(&s);
+    UNIT_OWNED(plan_assignment_free) struct plan_assignment a;
+    struct plan_messages all, own;
+    ck_assert(plan_assign(&a, round, home, run->n_ranks));
+    ck_assert(plan_messages_find(&all, &a, PLAN_ALL));
+    check_assignment(&a);
+    if (!(run->random % 32))
+        check_more_ranks(&a, home);
+    check_messages(&all);
+    size_t items = 0, expected = ROUNDS * tasks_of(&a);
+    for (int r = 0; r < run->n_ranks; r++) {
+        struct rank *rank = &run->rank[r];
+        ck_assert(plan_messages_find(&own, &a, r) && plan_part(&rank->part, &own));
+        ck_assert(plan_edges(&rank->part));
+        check_messages(&own);
+        check_edges(&rank->part);
+        items += own.n_items;
+        for (size_t i = 0; i < PLACES; i++)
+            rank->value[i] = GARBAGE;
+        for (uint32_t i = 0; i < round->n_objects; i++)
+            if (plan_is_there(&a, i, r))
+                rank->value[i] = initial(i);
+        plan_messages_free(&own);
+    }
+    ck_assert_uint_eq(items, 2 * all.n_items);
+    run_all(run, ROUNDS);
+    ck_assert_uint_eq(run->tasks, expected);
+    for (int r = 0; r < run->n_ranks; r++) {
+        for (uint32_t i = 0; i < round->n_objects; i++)
+            if (plan_is_there(&a, i, r))
+                ck_assert_uint_eq(run->rank[r].value[i], run->reference->value[i]);
+        plan_round_free(&run->rank[r].part);
+    }
+    plan_messages_free(&all);
 }
 
-/* What waits for a message goes in a later phase, so that no two messages wait for each other. */
-UNIT_TEST(phases)
+/* One rank: the round is run as it was lowered. */
+static void run_whole(struct run *run, const struct plan_source *source)
 {
-    UNIT_OWNED(assigned_free) struct assigned s;
-    assign(&s, "8 8 8", "w0; @1 r0 w1; @2 r1 w2; @0 r2;", (const int[]){0, 1, 2}, 3);
-    ck_assert_str_eq(rounds_phases(&s.messages), "0 1 2 3");
-    ck_assert_str_eq(rounds_messages(&s.messages), "0>1 in 0: v3; 1>2 in 1: v4; 2>0 in 2: v5");
+    struct rank *rank = &run->rank[0];
+    run->n_ranks = 1;
+    rank->part = (struct plan_round){0};
+    ck_assert(plan_lower(&rank->part, source) && plan_edges(&rank->part));
+    check_edges(&rank->part);
+    for (uint32_t i = 0; i < source->n_objects; i++)
+        rank->value[i] = initial(i);
+    run_all(run, ROUNDS);
+    ck_assert_uint_eq(run->tasks, ROUNDS * source->n_forks);
+    plan_round_free(&rank->part);
+}
+
+static void queues_begin(struct run *run)
+{
+    for (int from = 0; from < MAX_RANKS; from++)
+        for (int to = 0; to < MAX_RANKS; to++)
+            for (size_t phase = 0; phase < PHASES; phase++)
+                run->queue[from][to][phase].first = run->queue[from][to][phase].last =
+                    run->queue[from][to][phase].messages = 0;
+}
+
+static void random_passes(struct run *run, uint64_t seed, bool wide)
+{
+    struct rounds_made made;
+    UNIT_OWNED(plan_round_free) struct plan_round round = {0};
+    static struct reference reference;
+    uint64_t random = seed;
+    int n_ranks = 1 + (int)draw(&random, wide ? MAX_RANKS : FEW_RANKS), home[ROUNDS_MAX];
+    if (wide)
+        wide_round(&made, &random);
+    else
+        random_round(&made, &random, n_ranks);
+    for (size_t i = 0; i < made.source.n_objects; i++)
+        home[i] = (int)draw(&random, (uint64_t)n_ranks);
+    reference_run(&reference, &made.source);
+    run->reference = &reference;
+    run->random = random;
+    run->tasks = 0;
+    queues_begin(run);
+    run_whole(run, &made.source);
+    run->tasks = 0;
+    run->n_ranks = n_ranks;
+    for (int r = 0; r < n_ranks; r++)
+        run->rank[r].part = (struct plan_round){0};
+    ck_assert(plan_lower(&round, &made.source));
+    run_parts(run, &round, home);
+}
+
+UNIT_TEST(random_rounds)
+{
+    struct run *run = calloc(1, sizeof *run);
+    ck_assert_ptr_nonnull(run);
+    for (int from = 0; from < MAX_RANKS; from++)
+        for (int to = 0; to < MAX_RANKS; to++) {
+            run->queue[from][to] = calloc(PHASES, sizeof *run->queue[from][to]);
+            ck_assert_ptr_nonnull(run->queue[from][to]);
+        }
+    for (uint64_t seed = 1; seed <= (unit_quick() ? 300 : 3000); seed++)
+        random_passes(run, seed, false);
+    for (uint64_t seed = 1; seed <= (unit_quick() ? 100 : 1000); seed++)
+        random_passes(run, seed, true);
+    for (int from = 0; from < MAX_RANKS; from++)
+        for (int to = 0; to < MAX_RANKS; to++)
+            free(run->queue[from][to]);
+    free(run);
 }

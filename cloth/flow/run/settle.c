@@ -173,15 +173,17 @@ static int settle_step(struct flow_state *state)
 {
     struct flow_verdict verdict;
     double status[FLOW_STATUS];
-    const int code = await_step(state, status, &verdict);
+    int code = await_step(state, status, &verdict);
     if (code)
         return code;
     const bool refused = flow_verdict_refuses(&verdict), second = flow_implicit_is_second(state);
     const bool gained =
         !refused && flow_energy_gained(state, is_disturbed(state, status)) && can_lose(state);
     flow_implicit_settle(state, !refused && !gained, status);
-    flow_contact_settled(state, !refused && !gained);
+    code = flow_contact_settled(state, status, !refused && !gained);
     state->attempt.forked = false;
+    if (code)
+        return code;
     if (!refused && !gained)
         return accept_step(state, status, &verdict);
     state->settled_forces = false;

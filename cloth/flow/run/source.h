@@ -281,7 +281,8 @@ struct flow_skins {
                             * contact_skin_source has it; */
     unsigned char *shared; /* and which of those edges others have, too */
     uint32_t
-        *joined; /* by place: one of those that pulled seams join it with; NULL: there are none */
+        *joined;  /* by place: one of those that pulled seams join it with; NULL: there are none */
+    double *area; /* by place: a third of its triangles' areas at rest, m^2 */
 };
 
 /* The sides of a block's springs, while its table is due. */

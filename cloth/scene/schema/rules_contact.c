@@ -136,6 +136,15 @@ const struct scene_rule scene_contact_keys[] = {
      "into 4 thicknesses. By `certified` it is at least 2.1e-6 of the largest coordinate, so "
      "that frames, which are in float, keep apart what is a tenth of it apart.",
      .needs = NEEDS_MET},
+    {"pressure", SCENE_NUMBER, "Pa", "5000", .range = SCENE_POSITIVE,
+     INTO(struct model_contact, pressure),
+     .about = "by which the thickness of cloth without room is half of it",
+     .more = "Cloth has no room where obstacles, or what else it touches, leave less than its "
+     "thickness. There it pushes with a force that does not depend on time.h: this pressure "
+     "times thickness / gap - 1 times its area ([physics.md](physics.md#certified-contact)). "
+     "Fabrics lose a third to a half of their thickness by the 4.9 kPa of KES-C. "
+     "`contact_pinches` of the report counts such contacts.",
+     .needs = NEEDS_CERTIFIED},
     {"friction", SCENE_NUMBER, .fallback = "0", .range = SCENE_COEFFICIENT,
      INTO(struct model_contact, friction),
      .about = "coefficient of materials and obstacles that give none; sides a and b: sqrt(a b)",

@@ -379,15 +379,20 @@ static double release(const struct flow_particles *p, const struct model *model,
     return sum;
 }
 
+/* Rounding moves what is at rest by less, m/s, and nothing slower is seen. */
+static const double ROUNDS = 1e-6;
+
 double flow_source_release(const struct flow_source *source)
 {
-    double sum = 0;
+    double sum = 0, mass = 0;
     uint32_t first = 0;
+    for (uint32_t v = 0; v < source->particles.n; v++)
+        mass += source->particles.mass[v];
     for (uint32_t c = 0; c < source->model->n_cloths; c++) {
         sum += release(&source->particles, source->model, source->model->cloths + c, first);
         first += source->model->cloths[c].mesh.n_vertices;
     }
-    return sum;
+    return fmax(sum, 0.5 * mass * ROUNDS * ROUNDS);
 }
 
 void flow_particles_free(struct flow_particles *particles)

@@ -186,11 +186,11 @@ static int note_failing(struct flow_state *state, uint64_t fails)
 
 /* ---- The begin of a step ---- */
 
-/* again: this step was looked at before. */
-static int look_at_step(struct flow_state *state, bool again, struct flow_seen *seen)
+/* again: this step was looked at before. shorter: as in flow_contact_look. */
+static int look_at_step(struct flow_state *state, bool again, bool shorter, struct flow_seen *seen)
 {
     struct flow_report *report = state->report;
-    const int code = flow_contact_look(state, seen);
+    const int code = flow_contact_look(state, shorter, seen);
     report->contact_pairs += seen->passes;
     report->contact_queries += state->contact.meetings.n;
     report->contact_queries_again += again ? state->contact.meetings.n : 0;
@@ -210,7 +210,7 @@ static int start_certified(struct flow_state *state)
     if (!code)
         code = flow_contact_cut_none(state);
     if (!code)
-        code = look_at_step(state, false, &seen);
+        code = look_at_step(state, false, false, &seen);
     if (!code && seen.fails) {
         char cure[128];
         snprintf(cure, sizeof cure, ": %s", model_start_cure(state->flow->model));
@@ -276,7 +276,7 @@ static int cut_failing(struct flow_state *state, struct flow_seen *seen)
             state->contact.cut_run = cut.run;
         if (!flow_attempt_is_last(state) && (double)cut.halved > TOO_MANY * (double)seen->contacts)
             state->contact.failed = true;
-        code = look_at_step(state, true, seen);
+        code = look_at_step(state, true, false, seen);
     }
     state->contact.failed = state->contact.failed || seen->fails;
     return !code && seen->fails ? note_failing(state, seen->fails) : code;
@@ -298,7 +298,11 @@ static int settle_certified(struct flow_state *state)
         code = duite_get(state->rt, state->run.status[parity], status);
         if (code || !is_solved(status))
             return code;
-        code = look_at_step(state, solve > 1, &seen);
+        code = look_at_step(state, solve > 1, !flow_attempt_is_last(state), &seen);
+        if (!code && seen.hopeless) {
+            state->contact.failed = true;
+            return DUITE_OK;
+        }
         if (code || solve == MAX_SOLVES || !((double)seen.fails > FEW * (double)seen.contacts))
             break;
         code = make_again(state, status);

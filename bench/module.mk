@@ -17,7 +17,7 @@ bench_libbench_a_SOURCES = bench/bench.h bench/instructions.c bench/instructions
 	bench/contact/bench.c bench/contact/blender.c bench/contact/certify.c bench/contact/contact.h bench/contact/detect.c bench/contact/instructions.c \
 	bench/contact/maps.c \
 	bench/contact/plans.c bench/contact/scene.c bench/contact/shapes.c bench/contact/shapes.h bench/contact/solid.c bench/contact/state.c \
-	cloth/app/check/intersections.c cloth/app/check/intersections.h cloth/app/check/intersections_open.c cloth/app/check/intersections_state.h \
+	cloth/app/check/intersections.c cloth/app/check/intersections.h \
 	bench/garments/bench.c bench/garments/correction.c bench/garments/scenes.c bench/garments/worn.c bench/garments/garments.h \
 	bench/output/bench.c bench/output/folder.h bench/output/output.h bench/output/run.c bench/output/viewer.c bench/output/viewer.h \
 	bench/physics/bench.c bench/physics/ours.c bench/physics/physics.h \

@@ -31,10 +31,12 @@ static int look(const struct model *model, int frames, const char *path, double 
     const size_t n = 3 * (size_t)model->cloths->mesh.n_vertices;
     struct cloth_error error = {0};
     struct intersections *all = NULL;
+    struct intersections_found found = {0};
     double *position = calloc(n + 1, sizeof *position);
     FILE *file = fopen(path, "rb");
-    int code = position ? intersections_of(&all, model, &model->contact.apart, NULL, false, &error)
-                        : CLOTH_E_MEMORY;
+    int code =
+        position ? intersections_of(&all, model, &model->contact.apart, NULL, false, &found, &error)
+                 : CLOTH_E_MEMORY;
     for (int i = 0; i < frames && !code; i++) {
         if (!file || fread(position, sizeof *position, n, file) != n)
             code = cloth_fail(&error, CLOTH_E_IO, "Blender's frames cannot be read");
@@ -42,10 +44,8 @@ static int look(const struct model *model, int frames, const char *path, double 
             code =
                 intersections_frame(all, (uint64_t)i, (i + 1) / model->fps, position, true, &error);
     }
-    if (!code) {
-        const struct intersections_found found = intersections_found(all);
+    if (!code)
         *most = (double)(found.pairs + found.with_shapes);
-    }
     intersections_close(&all);
     if (file)
         fclose(file);

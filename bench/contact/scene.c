@@ -101,15 +101,14 @@ static int look(const struct film *film, const struct model *model, double *most
 {
     struct cloth_error error = {0};
     struct intersections *all = NULL;
-    int code = intersections_of(&all, model, &model->contact.apart, NULL, false, &error);
+    struct intersections_found found = {0};
+    int code = intersections_of(&all, model, &model->contact.apart, NULL, false, &found, &error);
     for (size_t i = 0; i < film->n && !code; i++)
         for (int written = 0; written < 2 && !code; written++)
             code = intersections_frame(all, i, film->frame[i].time, film->frame[i].position,
                                        written, &error);
-    if (!code) {
-        const struct intersections_found found = intersections_found(all);
+    if (!code)
         *most = (double)(found.pairs + found.with_shapes);
-    }
     intersections_close(&all);
     return code ? serve_fail("%s", error.text) : 0;
 }

@@ -97,7 +97,7 @@ static int draw(void *context, struct serve_request *request, double *value)
     double bright = 0;
     int code = begin(session, request);
     if (!code)
-        view_show_shadows(session->show, shadows);
+        session->show->plain = !shadows;
     for (int i = 0; i < 2 && !code; i++)
         code = draw_once(session, value, &bright);
     return code ? code : check(shadows, bright);

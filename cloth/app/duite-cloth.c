@@ -102,15 +102,15 @@ static const struct argp_option OPTIONS[] = {
     {0}};
 
 struct command {
-    struct simulate_options run;
-    char **texts; /* of the sets made here, two for each set */
-    size_t n_texts;
-    bool talks; /* this rank prints */
-    bool done;  /* nothing is to be run: help, version, keys */
+    struct simulate_options run; /* sets that name an option own their texts */
+    bool talks;                  /* this rank prints */
+    bool done;                   /* nothing is to be run: help, version, keys */
 };
 
-static int cloth_cli_whole_number(struct argp_state *state, const char *option, const char *text,
-                                  uint64_t min, uint64_t max, uint64_t *value)
+/* ---- Values ---- */
+
+static error_t parse_whole(struct argp_state *state, const char *option, const char *text,
+                           uint64_t min, uint64_t max, uint64_t *value)
 {
     char *end;
     errno = 0;
@@ -122,41 +122,29 @@ static int cloth_cli_whole_number(struct argp_state *state, const char *option, 
     return EINVAL;
 }
 
-/* Refuses an option that names an unknown policy. */
-static int chosen(struct argp_state *state, const char *option, const char *name,
-                  const void *policy)
+static error_t parse_name(struct argp_state *state, const char *option, const char *value,
+                          const char **name)
 {
-    if (policy)
+    *name = value;
+    if (*value)
         return 0;
-    argp_failure(state, 0, 0, "--%s %s: %s", option, name, duite_message());
+    argp_failure(state, 0, 0, "%s: an empty name", option);
     return EINVAL;
 }
 
-static int choose_scheduler(struct argp_state *state, struct simulate_options *run,
-                            const char *name)
+/* Refuses an option that names an unknown policy. */
+static error_t parse_policy(struct argp_state *state, const char *option, const char *value,
+                            const char **name, const void *policy)
 {
-    run->scheduler_name = name;
-    run->scheduler = duite_scheduler_find(name);
-    return chosen(state, "scheduler", name, run->scheduler);
+    *name = value;
+    if (policy)
+        return 0;
+    argp_failure(state, 0, 0, "--%s %s: %s", option, value, duite_message());
+    return EINVAL;
 }
 
-static int choose_mapping(struct argp_state *state, struct simulate_options *run, const char *name)
+static error_t add_set(struct simulate_options *run, const char *text, const char *option)
 {
-    run->mapping_name = name;
-    run->mapping = duite_mapping_find(name);
-    return chosen(state, "mapping", name, run->mapping);
-}
-
-static int choose_balance(struct argp_state *state, struct simulate_options *run, const char *name)
-{
-    run->balance_name = name;
-    run->balance = duite_balancer_find(name);
-    return chosen(state, "balance", name, run->balance);
-}
-
-static int add_set(struct command *command, const char *text, const char *option)
-{
-    struct simulate_options *run = &command->run;
     struct scene_set *sets = realloc(run->sets, (run->n_sets + 1) * sizeof *sets);
     if (!sets)
         return ENOMEM;
@@ -166,33 +154,53 @@ static int add_set(struct command *command, const char *text, const char *option
 }
 
 /* An option that stands for a key of the scene: the schema checks it, errors name the option. */
-static int cloth_cli_add_key(struct command *command, const char *option, const char *key,
-                             const char *value)
+static error_t add_key(struct simulate_options *run, const char *option, const char *key,
+                       const char *value)
 {
-    char **texts = realloc(command->texts, (command->n_texts + 2) * sizeof *texts);
-    if (!texts)
-        return ENOMEM;
-    command->texts = texts;
-    char **text = texts + command->n_texts, **name = text + 1;
-    if (asprintf(text, "%s=%s", key, value) < 0)
-        return ENOMEM;
-    command->n_texts++;
-    if (asprintf(name, "--%s %s", option, value) < 0)
-        return ENOMEM;
-    command->n_texts++;
-    return add_set(command, *text, *name);
+    char *text = NULL, *name = NULL;
+    if (asprintf(&text, "%s=%s", key, value) >= 0 &&
+        asprintf(&name, "--%s %s", option, value) >= 0 && !add_set(run, text, name))
+        return 0;
+    free(text);
+    free(name);
+    return ENOMEM;
 }
 
-static void print_version(FILE *file)
+/* A number up to the character, or the default if there is none. */
+static const char *parse_step(const char *text, uint64_t otherwise, uint64_t *step)
 {
-    fprintf(file, "duite-cloth (%s)\n", PACKAGE_STRING);
+    char *end = (char *)text;
+    errno = 0;
+    *step = *text >= '0' && *text <= '9' ? strtoull(text, &end, 10) : otherwise;
+    return errno ? NULL : end;
 }
 
-static void print_scenes(FILE *file)
+static error_t parse_steps(duite_options *runtime, struct argp_state *state, const char *text)
 {
-    if (!shipped_print(file))
-        fputs("no scenes are installed; those of the sources are in cloth/scenes\n", file);
+    const char *colon = parse_step(text, 0, &runtime->trace_first);
+    const char *end =
+        colon && *colon == ':' ? parse_step(colon + 1, UINT64_MAX, &runtime->trace_end) : NULL;
+    if (end && !*end && runtime->trace_first < runtime->trace_end)
+        return 0;
+    argp_failure(state, 0, 0,
+                 "--trace-steps %s: two steps with a colon between them are expected, the first "
+                 "one smaller, such as 10:20, 10: or :20",
+                 text);
+    return EINVAL;
 }
+
+static error_t parse_checkpoint(double *seconds, struct argp_state *state, const char *text)
+{
+    char *end;
+    errno = 0;
+    *seconds = strtod(text, &end);
+    if (end != text && !*end && !errno && *seconds > 0 && *seconds <= 1e9)
+        return 0;
+    argp_failure(state, 0, 0, "--checkpoint %s: seconds, > 0 and at most 1e9, are expected", text);
+    return EINVAL;
+}
+
+/* ---- Options ---- */
 
 /* format: of --keys; NULL: none is given. */
 static error_t print_keys(struct command *command, struct argp_state *state, const char *format)
@@ -210,146 +218,97 @@ static error_t print_keys(struct command *command, struct argp_state *state, con
 }
 
 /* Options that print and end the program. */
-static int answer(struct command *command, struct argp_state *state, int key)
+static error_t answer(struct command *command, struct argp_state *state, int key)
 {
     command->done = true;
     if (!command->talks)
         return 0;
     if (key == 'V')
-        print_version(stdout);
-    else if (key == SCENES)
-        print_scenes(stdout);
-    else
+        printf("duite-cloth (%s)\n", PACKAGE_STRING);
+    else if (key != SCENES)
         argp_state_help(state, stdout,
                         key == USAGE ? ARGP_HELP_USAGE
                                      : ARGP_HELP_LONG | ARGP_HELP_DOC | ARGP_HELP_USAGE);
+    else if (!shipped_print(stdout))
+        fputs("no scenes are installed; those of the sources are in cloth/scenes\n", stdout);
     return 0;
 }
 
-static error_t cloth_cli_parse_number(struct command *command, struct argp_state *state, int key,
-                                      const char *value)
+/* Options of the runtime. */
+static error_t parse_runtime(struct simulate_options *run, int key, const char *value,
+                             struct argp_state *state)
 {
-    uint64_t number = 0;
-    bool threads = key == THREADS;
-    int code = cloth_cli_whole_number(state, threads ? "threads" : "seed", value, threads ? 1 : 0,
-                                      threads ? DUITE_MAX_THREADS : UINT64_MAX, &number);
-    if (code)
+    duite_options *runtime = &run->runtime;
+    uint64_t threads = 0;
+    error_t code;
+    switch (key) {
+    case THREADS:
+        code = parse_whole(state, "threads", value, 1, DUITE_MAX_THREADS, &threads);
+        runtime->threads = (unsigned)threads;
         return code;
-    if (threads)
-        command->run.threads = (unsigned)number;
-    else
-        command->run.seed = number;
-    return 0;
-}
-
-static error_t parse_name(struct argp_state *state, const char *option, const char *value,
-                          const char **name)
-{
-    *name = value;
-    if (*value)
-        return 0;
-    argp_failure(state, 0, 0, "%s: an empty name", option);
-    return EINVAL;
-}
-
-/* A number up to the character, or the default if there is none. */
-static const char *parse_step(const char *text, uint64_t otherwise, uint64_t *step)
-{
-    char *end = (char *)text;
-    errno = 0;
-    *step = *text >= '0' && *text <= '9' ? strtoull(text, &end, 10) : otherwise;
-    return errno ? NULL : end;
-}
-
-static error_t parse_steps(struct command *command, struct argp_state *state, const char *text)
-{
-    struct simulate_options *run = &command->run;
-    const char *colon = parse_step(text, 0, &run->trace_first);
-    const char *end =
-        colon && *colon == ':' ? parse_step(colon + 1, UINT64_MAX, &run->trace_end) : NULL;
-    if (end && !*end && run->trace_first < run->trace_end)
-        return 0;
-    argp_failure(state, 0, 0,
-                 "--trace-steps %s: two steps with a colon between them are expected, the first "
-                 "one smaller, such as 10:20, 10: or :20",
-                 text);
-    return EINVAL;
-}
-
-static error_t parse_checkpoint(struct command *command, struct argp_state *state, const char *text)
-{
-    char *end;
-    errno = 0;
-    const double seconds = strtod(text, &end);
-    command->run.checkpoint = seconds;
-    if (end != text && !*end && !errno && seconds > 0 && seconds <= 1e9)
-        return 0;
-    argp_failure(state, 0, 0, "--checkpoint %s: seconds, > 0 and at most 1e9, are expected", text);
-    return EINVAL;
-}
-
-static error_t cloth_cli_parse_scene(struct command *command, struct argp_state *state,
-                                     const char *path)
-{
-    if (command->run.scene) {
-        argp_failure(state, 0, 0, "%s: a second scene file; one is expected", path);
-        return EINVAL;
+    case SEED:
+        return parse_whole(state, "seed", value, 0, UINT64_MAX, &runtime->seed);
+    case SCHEDULER:
+        runtime->scheduler = duite_scheduler_find(value);
+        return parse_policy(state, "scheduler", value, &run->scheduler_name, runtime->scheduler);
+    case MAPPING:
+        runtime->mapping = duite_mapping_find(value);
+        return parse_policy(state, "mapping", value, &run->mapping_name, runtime->mapping);
+    case BALANCE:
+        runtime->balance = duite_balancer_find(value);
+        return parse_policy(state, "balance", value, &run->balance_name, runtime->balance);
+    case TRACE:
+        return parse_name(state, "--trace", value, &runtime->trace);
+    case TRACE_STEPS:
+        return parse_steps(runtime, state, value);
+    default:
+        return ARGP_ERR_UNKNOWN;
     }
-    return parse_name(state, "scene file", path, &command->run.scene);
 }
 
 static error_t cloth_cli_parse(int key, char *value, struct argp_state *state)
 {
     struct command *command = state->input;
+    struct simulate_options *run = &command->run;
     switch (key) {
     case OUTPUT:
-        return parse_name(state, "--output", value, &command->run.output);
+        return parse_name(state, "--output", value, &run->output);
     case REPORT:
-        return parse_name(state, "--report", value, &command->run.report);
+        return parse_name(state, "--report", value, &run->report);
     case RESTART:
-        return parse_name(state, "--restart", value, &command->run.restart);
-    case CHECKPOINT:
-        return parse_checkpoint(command, state, value);
+        return parse_name(state, "--restart", value, &run->restart);
     case LIVE:
-        return parse_name(state, "--live", value, &command->run.live);
+        return parse_name(state, "--live", value, &run->live);
     case SAVE_SYSTEM:
-        return parse_name(state, "--save-system", value, &command->run.save_system);
-    case TRACE:
-        return parse_name(state, "--trace", value, &command->run.trace);
-    case TRACE_STEPS:
-        return parse_steps(command, state, value);
+        return parse_name(state, "--save-system", value, &run->save_system);
+    case CHECKPOINT:
+        return parse_checkpoint(&run->checkpoint, state, value);
     case CHECK_INTERSECTIONS:
-        command->run.check_intersections = true;
+        run->check_intersections = true;
         return 0;
     case QUIET:
-        command->run.quiet = true;
+        run->quiet = true;
         return 0;
     case END:
-        return cloth_cli_add_key(command, "end", "time.end", value);
+        return add_key(run, "end", "time.end", value);
     case GRAIN:
-        return cloth_cli_add_key(command, "grain", "grain", value);
+        return add_key(run, "grain", "grain", value);
+    case SET:
+        return add_set(run, value, NULL);
     case KEYS:
         return print_keys(command, state, value);
-    case SET:
-        return add_set(command, value, NULL);
-    case SCHEDULER:
-        return choose_scheduler(state, &command->run, value);
-    case MAPPING:
-        return choose_mapping(state, &command->run, value);
-    case BALANCE:
-        return choose_balance(state, &command->run, value);
-    case THREADS:
-    case SEED:
-        return cloth_cli_parse_number(command, state, key, value);
     case SCENES:
     case USAGE:
     case 'V':
     case '?':
         return answer(command, state, key);
     case ARGP_KEY_ARG:
-        return cloth_cli_parse_scene(command, state, value);
+        if (!run->scene)
+            return parse_name(state, "scene file", value, &run->scene);
+        argp_failure(state, 0, 0, "%s: a second scene file; one is expected", value);
+        return EINVAL;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_runtime(run, key, value, state);
     }
 }
 
@@ -365,22 +324,24 @@ static const struct argp ARGP = {
            "--check-intersections found intersections, 5 stopped by SIGUSR1 or SIGTERM. "
            "Scene files are described in docs/scene.md and by --keys."};
 
-/* A run goes on in its own folder. */
-static int check_restart(struct command *command)
+/* The fault of options that lack another or exclude each other; NULL: there is none. */
+static const char *find_fault(const struct command *command)
 {
-    struct simulate_options *run = &command->run;
-    const char *wrong = NULL;
-    if (run->restart && run->output && strcmp(run->restart, run->output) != 0)
-        wrong = "--restart DIR goes on writing into DIR: leave --output out";
-    if (run->restart && !run->output)
-        run->output = run->restart;
-    if (run->checkpoint > 0 && !run->output)
-        wrong = "--checkpoint needs --output DIR: checkpoints are kept in that folder";
+    const struct simulate_options *run = &command->run;
+    const duite_options *runtime = &run->runtime;
+    if (!runtime->trace && (runtime->trace_first || runtime->trace_end != UINT64_MAX))
+        return "--trace-steps without --trace FILE, or DUITE_TRACE";
+    if (command->done)
+        return NULL;
+    if (!run->scene)
+        return "a scene file is expected; see duite-cloth --help";
     if (run->restart && run->save_system)
-        wrong = "--save-system with --restart: the system is that of a run from its start";
-    if (wrong && command->talks)
-        fprintf(stderr, "duite-cloth: %s\n", wrong);
-    return wrong ? SIMULATE_BAD_INPUT : SIMULATE_OK;
+        return "--save-system with --restart: the system is that of a run from its start";
+    if (run->checkpoint > 0 && !run->output && !run->restart)
+        return "--checkpoint needs --output DIR: checkpoints are kept in that folder";
+    if (run->restart && run->output && strcmp(run->restart, run->output) != 0)
+        return "--restart DIR goes on writing into DIR: leave --output out";
+    return NULL;
 }
 
 /* Returns an exit code. */
@@ -389,28 +350,22 @@ static int command_line(struct command *command, int argc, char **argv)
     /* --help and the like are options of our own: argp's would end the process of one rank. */
     unsigned flags = ARGP_NO_EXIT | ARGP_NO_HELP | (command->talks ? 0 : ARGP_NO_ERRS);
     error_t error = argp_parse(&ARGP, argc, argv, flags, NULL, command);
-    if (error == ENOMEM && command->talks)
-        fprintf(stderr, "duite-cloth: out of memory\n");
-    if (error)
-        return error == ENOMEM ? SIMULATE_FAILED : SIMULATE_BAD_INPUT;
-    if (!command->run.trace && (command->run.trace_first || command->run.trace_end != UINT64_MAX)) {
-        if (command->talks)
-            fprintf(stderr, "duite-cloth: --trace-steps without --trace FILE, or DUITE_TRACE\n");
-        return SIMULATE_BAD_INPUT;
-    }
-    if (command->done || command->run.scene)
-        return command->done ? SIMULATE_OK : check_restart(command);
-    if (command->talks)
-        fprintf(stderr, "duite-cloth: a scene file is expected; see duite-cloth --help\n");
-    return SIMULATE_BAD_INPUT;
+    const char *fault = error == ENOMEM ? "out of memory" : error ? NULL : find_fault(command);
+    if (fault && command->talks)
+        fprintf(stderr, "duite-cloth: %s\n", fault);
+    if (command->run.restart) /* a run goes on in its own folder */
+        command->run.output = command->run.restart;
+    return error == ENOMEM ? SIMULATE_FAILED : error || fault ? SIMULATE_BAD_INPUT : SIMULATE_OK;
 }
 
-static void free_command(struct command *command)
+static void free_sets(struct simulate_options *run)
 {
-    for (size_t i = 0; i < command->n_texts; i++)
-        free(command->texts[i]);
-    free(command->texts);
-    free(command->run.sets);
+    for (size_t i = 0; i < run->n_sets; i++)
+        if (run->sets[i].option) {
+            free((char *)(uintptr_t)run->sets[i].text);
+            free((char *)(uintptr_t)run->sets[i].option);
+        }
+    free(run->sets);
 }
 
 /* Fails if standard output did not take everything. */
@@ -458,7 +413,7 @@ int main(int argc, char **argv)
     if (code == SIMULATE_OK && !command.done)
         code = simulate(&command.run);
     code = finish_output(code);
-    free_command(&command);
+    free_sets(&command.run);
     if (code == SIMULATE_LOST)
         return code;
     code = agree(code);

@@ -2,6 +2,7 @@
  * result. */
 #include "config.h"
 
+#include "cloth/app/cli.h"
 #include "cloth/garment/garment.h"
 #include "cloth/garment/girth.h"
 #include "cloth/garment/own/own.h"
@@ -9,7 +10,6 @@
 #include "cloth/output/garment.h"
 #include "cloth/scene/pattern.h"
 
-#include <argp.h>
 #include <errno.h>
 #include <math.h>
 #include <stdbool.h>
@@ -19,7 +19,6 @@
 
 const char *argp_program_version = "duite-garment " PACKAGE_VERSION;
 
-enum { SEAMS = 256, OWN, SIZE, MEASURE, MEASURES, WRITE_PATTERN, BODY };
 enum { SIZE_M = 2 };
 
 struct options {
@@ -36,42 +35,87 @@ struct options {
     int n_measures;
 };
 
-static const struct argp_option OPTIONS[] = {
-    {"edge", 'e', "METRES", 0, "Make triangles with edges of about this length", 0},
-    {"vertices", 'n', "N", 0, "Make about N vertices in all panels together", 0},
-    {"output", 'o', "FILE", 0, "Write the mesh to FILE, a Wavefront OBJ", 0},
-    {"seams", SEAMS, "FILE", 0,
-     "Write the seams to FILE, as JSON (GARMENT.seams.json of an output GARMENT.obj)", 0},
-    {"own", OWN, "GARMENT", 0,
-     "Make one of the own garments in place of PATTERN: tshirt, trousers or skirt", 0},
-    {"size", SIZE, "SIZE", 0, "The size of an own garment: XS, S, M, L or XL (M)", 0},
-    {"measure", MEASURE, "NAME=VALUE", 0,
-     "A measure of an own garment that differs from its size's; once for each", 0},
-    {"measures", MEASURES, "GARMENT", 0, "List the measures of an own garment, and end", 0},
-    {"write-pattern", WRITE_PATTERN, "FILE", 0, "Write the pattern to FILE, as JSON", 0},
-    {"body", BODY, "FILE", 0,
-     "Warn if the garment is too small for the body in FILE, an OBJ in metres", 0},
-    {"quiet", 'q', NULL, 0, "No summary", 0},
-    {0}};
+/* ---- The command line ---- */
 
-static int parse_edge(const char *text, double *edge)
+static bool read_vertices(const char *text, void *to, struct argp_state *state)
 {
+    struct options *options = to;
     char *end = NULL;
-    *edge = strtod(text, &end);
-    return end == text || *end || !(*edge > 0) || !isfinite(*edge);
-}
-
-static int parse_count(const char *text, uint32_t *count)
-{
-    char *end = NULL;
+    (void)state;
     errno = 0;
     const unsigned long n = strtoul(text, &end, 10);
-    *count = (uint32_t)n;
-    return *text < '0' || *text > '9' || *end || errno || n < 3 || n > UINT32_MAX;
+    options->fineness.vertices = (uint32_t)n;
+    return *text >= '0' && *text <= '9' && !*end && !errno && n >= 3 && n <= UINT32_MAX;
 }
 
-static void garment_cli_finish(const struct options *options, struct argp_state *state)
+static const struct garment_own *read_garment(const char *text, struct argp_state *state)
 {
+    const struct garment_own *own = garment_own_find(text);
+    if (!own)
+        argp_error(state, "there is no own garment `%s'; there are %s", text, garment_own_words);
+    return own;
+}
+
+static bool read_own(const char *text, void *to, struct argp_state *state)
+{
+    ((struct options *)to)->own = read_garment(text, state);
+    return true;
+}
+
+static bool read_listed(const char *text, void *to, struct argp_state *state)
+{
+    ((struct options *)to)->listed = read_garment(text, state);
+    return true;
+}
+
+static bool read_size(const char *text, void *to, struct argp_state *state)
+{
+    struct options *options = to;
+    options->size = garment_size_find(text);
+    if (options->size < 0)
+        argp_error(state, "--size takes one of %s, not `%s'", garment_size_words, text);
+    return true;
+}
+
+static bool read_measure(const char *text, void *to, struct argp_state *state)
+{
+    struct options *options = to;
+    if (options->n_measures == GARMENT_MEASURES)
+        argp_error(state, "no garment has so many measures: `%s' is one too many", text);
+    options->measure[options->n_measures++] = text;
+    return true;
+}
+
+#define TO(member) offsetof(struct options, member)
+static const struct cli_option OPTIONS[] = {
+    {"edge", 'e', "METRES", "Make triangles with edges of about this length", CLI_ABOVE_0,
+     TO(fineness.edge), "a length above 0 in metres", NULL, 0},
+    {"vertices", 'n', "N", "Make about N vertices in all panels together", CLI_OTHER, 0,
+     "a number from 3 on", read_vertices, 0},
+    {"output", 'o', "FILE", "Write the mesh to FILE, a Wavefront OBJ", CLI_FILE, TO(output), NULL,
+     NULL, 0},
+    {"seams", 256, "FILE",
+     "Write the seams to FILE, as JSON (GARMENT.seams.json of an output GARMENT.obj)", CLI_FILE,
+     TO(seams), NULL, NULL, 0},
+    {"own", 257, "GARMENT",
+     "Make one of the own garments in place of PATTERN: tshirt, trousers or skirt", CLI_OTHER, 0,
+     NULL, read_own, 0},
+    {"size", 258, "SIZE", "The size of an own garment: XS, S, M, L or XL (M)", CLI_OTHER, 0, NULL,
+     read_size, 0},
+    {"measure", 259, "NAME=VALUE",
+     "A measure of an own garment that differs from its size's; once for each", CLI_OTHER, 0, NULL,
+     read_measure, 0},
+    {"measures", 260, "GARMENT", "List the measures of an own garment, and end", CLI_OTHER, 0, NULL,
+     read_listed, 0},
+    {"write-pattern", 261, "FILE", "Write the pattern to FILE, as JSON", CLI_FILE, TO(written),
+     NULL, NULL, 0},
+    {"body", 262, "FILE", "Warn if the garment is too small for the body in FILE, an OBJ in metres",
+     CLI_FILE, TO(body), NULL, NULL, 0},
+    {"quiet", 'q', NULL, "No summary", CLI_FLAG, TO(quiet), NULL, NULL, 0}};
+
+static void garment_cli_finish(void *to, struct argp_state *state)
+{
+    const struct options *options = to;
     if (options->listed)
         return;
     if (!options->pattern && !options->own)
@@ -93,87 +137,18 @@ static void garment_cli_finish(const struct options *options, struct argp_state 
         argp_error(state, "say how fine: --edge METRES or --vertices N");
 }
 
-static const struct garment_own *parse_garment(const char *arg, struct argp_state *state)
-{
-    const struct garment_own *own = garment_own_find(arg);
-    if (!own)
-        argp_error(state, "there is no own garment `%s'; there are %s", arg, garment_own_words);
-    return own;
-}
+static const struct cli CLI = {
+    .arguments = "PATTERN\n--own GARMENT",
+    .about = "Makes the mesh of a garment from the sewing pattern PATTERN, a JSON file, or from "
+             "measures: panels, and which vertices are sewn together.",
+    .option = OPTIONS,
+    .n_options = sizeof OPTIONS / sizeof *OPTIONS,
+    .marks = CLI_NONE,
+    .argument = TO(pattern),
+    .one = "one pattern at a time",
+    .finish = garment_cli_finish};
 
-/* The options of own garments. */
-static error_t parse_own(int key, const char *arg, struct argp_state *state)
-{
-    struct options *options = state->input;
-    switch (key) {
-    case OWN:
-        options->own = parse_garment(arg, state);
-        return 0;
-    case MEASURES:
-        options->listed = parse_garment(arg, state);
-        return 0;
-    case SIZE:
-        options->size = garment_size_find(arg);
-        if (options->size < 0)
-            argp_error(state, "--size takes one of %s, not `%s'", garment_size_words, arg);
-        return 0;
-    case MEASURE:
-        if (options->n_measures == GARMENT_MEASURES)
-            argp_error(state, "no garment has so many measures: `%s' is one too many", arg);
-        options->measure[options->n_measures++] = arg;
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-}
-
-static error_t garment_cli_parse(int key, char *arg, struct argp_state *state)
-{
-    struct options *options = state->input;
-    switch (key) {
-    case 'e':
-        if (parse_edge(arg, &options->fineness.edge))
-            argp_error(state, "--edge takes a length above 0 in metres, not `%s'", arg);
-        return 0;
-    case 'n':
-        if (parse_count(arg, &options->fineness.vertices))
-            argp_error(state, "--vertices takes a number from 3 on, not `%s'", arg);
-        return 0;
-    case 'o':
-        if (!*arg)
-            argp_error(state, "--output takes the name of a file");
-        options->output = arg;
-        return 0;
-    case SEAMS:
-        if (!*arg)
-            argp_error(state, "--seams takes the name of a file");
-        options->seams = arg;
-        return 0;
-    case WRITE_PATTERN:
-        if (!*arg)
-            argp_error(state, "--write-pattern takes the name of a file");
-        options->written = arg;
-        return 0;
-    case BODY:
-        if (!*arg)
-            argp_error(state, "--body takes the name of a file");
-        options->body = arg;
-        return 0;
-    case 'q':
-        options->quiet = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (options->pattern)
-            argp_error(state, "one pattern at a time: `%s' is one too many", arg);
-        options->pattern = arg;
-        return 0;
-    case ARGP_KEY_END:
-        garment_cli_finish(options, state);
-        return 0;
-    default:
-        return parse_own(key, arg, state);
-    }
-}
+/* ---- Files ---- */
 
 /* Both names of one plain file, or of none that is there yet. */
 static bool same_file(const char *a, const char *b)
@@ -182,18 +157,6 @@ static bool same_file(const char *a, const char *b)
     if (stat(a, &one) == 0 && stat(b, &two) == 0)
         return S_ISREG(one.st_mode) && one.st_dev == two.st_dev && one.st_ino == two.st_ino;
     return strcmp(a, b) == 0;
-}
-
-/* Beside the mesh, with another ending; the caller frees it. */
-static char *seams_path(const struct options *options)
-{
-    const char *output = options->output;
-    const size_t n = strlen(output);
-    char *path = NULL;
-    if (options->seams)
-        return strdup(options->seams);
-    const int stem = (int)(n > 4 && strcmp(output + n - 4, ".obj") == 0 ? n - 4 : n);
-    return asprintf(&path, "%.*s.seams.json", stem, output) < 0 ? NULL : path;
 }
 
 static int check_paths(const struct options *options, const char *seams, struct cloth_error *error)
@@ -308,7 +271,8 @@ static int compare_body(const struct garment *garment, const char *path, struct 
     struct girth_seam *seam = calloc(garment->n_seams + (size_t)1, sizeof *seam);
     int code = seam ? mesh_read_surface(&mesh, path, error)
                     : cloth_fail(error, CLOTH_E_MEMORY, "no memory for seams");
-    code = code == CLOTH_E_IO ? CLOTH_E_INPUT : code; /* there is no such file */
+    if (code == CLOTH_E_IO)
+        code = error->code = CLOTH_E_INPUT; /* there is no such file */
     for (uint32_t s = 0; s < garment->n_seams && !code; s++)
         seam[s] = (struct girth_seam){garment->seam[s].n_pairs,
                                       (const uint32_t(*)[2])garment->seam[s].pair};
@@ -346,7 +310,9 @@ static int write_mesh(const struct options *options, const char *seams,
 static int garment_cli_run(const struct options *options, struct cloth_error *error)
 {
     struct garment_pattern pattern = {0};
-    char *seams = options->output ? seams_path(options) : NULL;
+    char *seams = options->seams    ? strdup(options->seams)
+                  : options->output ? cli_beside(options->output, ".seams.json")
+                                    : NULL;
     int code = options->output && !seams ? cloth_fail(error, CLOTH_E_MEMORY, "no memory for a name")
                                          : garment_cli_take_pattern(&pattern, options, error);
     code = code ? code : check_paths(options, seams, error);
@@ -374,28 +340,12 @@ static void list_measures(const struct garment_own *own)
 
 int main(int argc, char **argv)
 {
-    static const struct argp argp = {OPTIONS,
-                                     garment_cli_parse,
-                                     "PATTERN\n--own GARMENT",
-                                     "Makes the mesh of a garment from the sewing pattern PATTERN, "
-                                     "a JSON file, or from measures: panels, and which vertices "
-                                     "are sewn together.",
-                                     NULL,
-                                     NULL,
-                                     NULL};
     struct options options = {.size = -1};
     struct cloth_error error = {0};
-    int code = CLOTH_OK;
-    argp_err_exit_status = 2;
-    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    cli_read(&CLI, argc, argv, &options);
     if (options.listed)
         list_measures(options.listed);
     else
-        code = garment_cli_run(&options, &error);
-    if (!code && (fflush(stdout) != 0 || ferror(stdout)))
-        code =
-            cloth_fail(&error, CLOTH_E_IO, "cannot write to standard output: %s", strerror(errno));
-    if (code)
-        fprintf(stderr, "duite-garment: %s\n", error.text);
-    return code ? code == CLOTH_E_INPUT ? 2 : 1 : 0;
+        garment_cli_run(&options, &error);
+    return cli_end("duite-garment", &error);
 }

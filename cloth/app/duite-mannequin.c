@@ -1,11 +1,10 @@
 /* The command line of the figure: reads the options, makes the figure, prints the result. */
 #include "config.h"
 
+#include "cloth/app/cli.h"
 #include "cloth/mannequin/pose.h"
 #include "cloth/output/mannequin.h"
 
-#include <argp.h>
-#include <errno.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -14,7 +13,6 @@
 
 const char *argp_program_version = "duite-mannequin " PACKAGE_VERSION;
 
-enum { FPS = 256 };
 static const double MOST_FRAMES = 100000, DEFAULT_FPS = 25;
 
 struct options {
@@ -24,46 +22,46 @@ struct options {
     bool quiet;
 };
 
-static const struct argp_option OPTIONS[] = {
-    {"height", 'h', "METRES", 0, "Make a figure of this height (1.75)", 0},
-    {"measure", 'm', "NAME=METRES", 0,
+static bool read_measure(const char *text, void *to, struct argp_state *state)
+{
+    struct options *options = to;
+    char *name = (char *)(uintptr_t)text, *value = strchr(name, '=');
+    if (!value)
+        argp_error(state, "--measure takes a name and a girth, NAME=METRES, not `%s'", text);
+    *value++ = 0;
+    const uint32_t i = mannequin_find(name);
+    if (i == MANNEQUIN_GIRTHS)
+        argp_error(state, "there is no measure `%s'; --help lists them", name);
+    if (options->mannequin.girth[i] > 0)
+        argp_error(state, "the measure %s is given twice", name);
+    if (!cli_above_0(value, &options->mannequin.girth[i]))
+        argp_error(state, "the measure %s takes a length above 0 in metres, not `%s'", name, value);
+    return true;
+}
+
+#define TO(member) offsetof(struct options, member)
+static const struct cli_option OPTIONS[] = {
+    {"height", 'h', "METRES", "Make a figure of this height (1.75)", CLI_ABOVE_0,
+     TO(mannequin.height), "a length above 0 in metres", NULL, 0},
+    {"measure", 'm', "NAME=METRES",
      "Give it this girth: neck, chest, waist, hip, thigh, knee, calf, ankle, upper_arm, elbow or "
      "wrist; can be given for each",
-     0},
-    {"edge", 'e', "METRES", 0, "Make triangles with edges of about this length (0.02)", 0},
-    {"output", 'o', "FILE", 0, "Write the mesh to FILE, a Wavefront OBJ", 0},
-    {"walk", 'w', "SECONDS", 0,
+     CLI_OTHER, 0, NULL, read_measure, 0},
+    {"edge", 'e', "METRES", "Make triangles with edges of about this length (0.02)", CLI_ABOVE_0,
+     TO(mannequin.edge), "a length above 0 in metres", NULL, 0},
+    {"output", 'o', "FILE", "Write the mesh to FILE, a Wavefront OBJ", CLI_FILE, TO(output), NULL,
+     NULL, 0},
+    {"walk", 'w', "SECONDS",
      "Write so many seconds of a walk on the spot, too, as a PC2 point cache (BODY.pc2 beside "
      "BODY.obj)",
-     0},
-    {"fps", FPS, "RATE", 0, "Frames a second of the walk (25)", 0},
-    {"quiet", 'q', NULL, 0, "No summary", 0},
-    {0}};
+     CLI_ABOVE_0, TO(walk), "seconds above 0", NULL, 0},
+    {"fps", 256, "RATE", "Frames a second of the walk (25)", CLI_ABOVE_0, TO(fps), "a rate above 0",
+     NULL, 0},
+    {"quiet", 'q', NULL, "No summary", CLI_FLAG, TO(quiet), NULL, NULL, 0}};
 
-static int parse_length(const char *text, double *length)
+static void mannequin_cli_finish(void *to, struct argp_state *state)
 {
-    char *end = NULL;
-    *length = strtod(text, &end);
-    return end == text || *end || !(*length > 0) || !isfinite(*length);
-}
-
-static void parse_measure(struct options *options, char *arg, struct argp_state *state)
-{
-    char *value = strchr(arg, '=');
-    if (!value)
-        argp_error(state, "--measure takes a name and a girth, NAME=METRES, not `%s'", arg);
-    *value++ = 0;
-    const uint32_t i = mannequin_find(arg);
-    if (i == MANNEQUIN_GIRTHS)
-        argp_error(state, "there is no measure `%s'; --help lists them", arg);
-    if (options->mannequin.girth[i] > 0)
-        argp_error(state, "the measure %s is given twice", arg);
-    if (parse_length(value, &options->mannequin.girth[i]))
-        argp_error(state, "the measure %s takes a length above 0 in metres, not `%s'", arg, value);
-}
-
-static void mannequin_cli_finish(struct options *options, struct argp_state *state)
-{
+    struct options *options = to;
     if (!options->output)
         argp_error(state, "say where the mesh goes: --output FILE");
     if (options->fps > 0 && !(options->walk > 0))
@@ -74,47 +72,15 @@ static void mannequin_cli_finish(struct options *options, struct argp_state *sta
                    options->walk * options->fps);
 }
 
-static error_t mannequin_cli_parse(int key, char *arg, struct argp_state *state)
-{
-    struct options *options = state->input;
-    switch (key) {
-    case 'h':
-        if (parse_length(arg, &options->mannequin.height))
-            argp_error(state, "--height takes a length above 0 in metres, not `%s'", arg);
-        return 0;
-    case 'm':
-        parse_measure(options, arg, state);
-        return 0;
-    case 'e':
-        if (parse_length(arg, &options->mannequin.edge))
-            argp_error(state, "--edge takes a length above 0 in metres, not `%s'", arg);
-        return 0;
-    case 'w':
-        if (parse_length(arg, &options->walk))
-            argp_error(state, "--walk takes seconds above 0, not `%s'", arg);
-        return 0;
-    case FPS:
-        if (parse_length(arg, &options->fps))
-            argp_error(state, "--fps takes a rate above 0, not `%s'", arg);
-        return 0;
-    case 'o':
-        if (!*arg)
-            argp_error(state, "--output takes the name of a file");
-        options->output = arg;
-        return 0;
-    case 'q':
-        options->quiet = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        argp_error(state, "nothing is read: `%s' is one too many", arg);
-        return 0;
-    case ARGP_KEY_END:
-        mannequin_cli_finish(options, state);
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-}
+static const struct cli CLI = {
+    .about = "Makes the closed mesh of a standing figure, made to measure, for garments to be put "
+             "on.",
+    .option = OPTIONS,
+    .n_options = sizeof OPTIONS / sizeof *OPTIONS,
+    .marks = CLI_NONE,
+    .argument = CLI_NONE,
+    .one = "nothing is read",
+    .finish = mannequin_cli_finish};
 
 static void mannequin_cli_say(const struct mesh *mesh, const double *girth)
 {
@@ -144,21 +110,17 @@ static void mannequin_cli_place(const void *context, uint32_t frame, double (*x)
     mannequin_place(walking->rig, walking->mesh, angle, x);
 }
 
-/* Beside the mesh, with another ending. */
 static int write_walk(const struct options *options, const struct mannequin_rig *rig,
                       const struct mesh *mesh, struct cloth_error *error)
 {
-    const char *output = options->output;
-    const size_t n = strlen(output);
-    const int stem = (int)(n > 4 && strcmp(output + n - 4, ".obj") == 0 ? n - 4 : n);
     const struct walking walking = {rig, mesh, options->fps};
     const struct output_shapes shapes = {.n_points = mesh->n_vertices,
                                          .n_frames =
                                              (uint32_t)(options->walk * options->fps + 0.5) + 1,
                                          .place = mannequin_cli_place,
                                          .context = &walking};
-    char *path = NULL;
-    if (asprintf(&path, "%.*s.pc2", stem, output) < 0)
+    char *path = cli_beside(options->output, ".pc2");
+    if (!path)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for a name");
     const int code = output_mannequin_pc2(path, &shapes, error);
     free(path);
@@ -183,23 +145,9 @@ static int mannequin_cli_run(const struct options *options, struct cloth_error *
 
 int main(int argc, char **argv)
 {
-    static const struct argp argp = {OPTIONS,
-                                     mannequin_cli_parse,
-                                     NULL,
-                                     "Makes the closed mesh of a standing figure, made to measure, "
-                                     "for garments to be put on.",
-                                     NULL,
-                                     NULL,
-                                     NULL};
     struct options options = {0};
     struct cloth_error error = {0};
-    argp_err_exit_status = 2;
-    argp_parse(&argp, argc, argv, 0, NULL, &options);
-    int code = mannequin_cli_run(&options, &error);
-    if (!code && (fflush(stdout) != 0 || ferror(stdout)))
-        code =
-            cloth_fail(&error, CLOTH_E_IO, "cannot write to standard output: %s", strerror(errno));
-    if (code)
-        fprintf(stderr, "duite-mannequin: %s\n", error.text);
-    return code ? code == CLOTH_E_INPUT ? 2 : 1 : 0;
+    cli_read(&CLI, argc, argv, &options);
+    mannequin_cli_run(&options, &error);
+    return cli_end("duite-mannequin", &error);
 }

@@ -5,29 +5,25 @@ dist_man_MANS += cloth/app/duite-cloth.1 cloth/app/duite-garment.1 cloth/app/dui
 duite_cloth_SOURCES = \
     cloth/app/duite-cloth.c cloth/app/simulate.c cloth/app/simulate.h cloth/app/simulate_begin.c cloth/app/simulate_run.h \
     cloth/app/stops.c cloth/app/check/drape.c cloth/app/check/drape.h cloth/app/check/intersections.c \
-    cloth/app/check/intersections.h cloth/app/check/intersections_open.c cloth/app/check/intersections_state.h \
-    cloth/app/run/keeper.c cloth/app/run/keeper.h cloth/app/run/options.c cloth/app/run/options.h cloth/app/run/outputs.c \
-    cloth/app/run/outputs.h cloth/app/run/outputs_colours.c cloth/app/run/outputs_colours.h cloth/app/run/outputs_hdf5.c \
-    cloth/app/run/outputs_hdf5.h cloth/app/run/outputs_setup.c cloth/app/run/outputs_setup.h cloth/app/run/phases.c \
-    cloth/app/run/phases.h cloth/app/run/phases_check.c cloth/app/run/phases_motions.c cloth/app/run/phases_settings.c \
-    cloth/app/run/progress.c cloth/app/run/progress.h cloth/app/run/restart.c cloth/app/run/restart.h cloth/app/run/room.c \
-    cloth/app/run/room.h cloth/app/run/start.c cloth/app/run/start.h cloth/app/run/start_welds.c cloth/app/run/start_welds.h \
-    cloth/app/report/summary.c cloth/app/report/summary.h cloth/app/report/summary_parts.h cloth/app/report/summary_print.c \
-    cloth/app/report/summary_seams.c cloth/app/report/summary_time.c cloth/app/report/summary_time.h
+    cloth/app/check/intersections.h cloth/app/run/checkpoints.c cloth/app/run/checkpoints.h cloth/app/run/options.c \
+    cloth/app/run/options.h cloth/app/run/outputs.c cloth/app/run/outputs.h cloth/app/run/outputs_fields.c \
+    cloth/app/run/outputs_fields.h cloth/app/run/outputs_setup.c cloth/app/run/outputs_setup.h cloth/app/run/phases.c \
+    cloth/app/run/phases.h cloth/app/run/phases_same.c cloth/app/run/progress.c cloth/app/run/progress.h cloth/app/run/start.c \
+    cloth/app/run/start.h cloth/app/run/start_welds.c cloth/app/report/summary.c cloth/app/report/summary.h \
+    cloth/app/report/summary_print.c cloth/app/report/summary_time.c
 duite_cloth_CPPFLAGS = $(AM_CPPFLAGS) -DSHIPPED_SCENES='"$(scenesdir)"'
 duite_cloth_LDADD = libduite_tools.a $(CLOTH_LIBS)
-duite_garment_SOURCES = cloth/app/duite-garment.c
+duite_garment_SOURCES = cloth/app/duite-garment.c cloth/app/cli.c cloth/app/cli.h
 duite_garment_LDADD = $(CLOTH_LIBS)
-duite_mannequin_SOURCES = cloth/app/duite-mannequin.c
+duite_mannequin_SOURCES = cloth/app/duite-mannequin.c cloth/app/cli.c cloth/app/cli.h
 duite_mannequin_LDADD = $(CLOTH_LIBS)
 
 if HAVE_VIEW
 bin_PROGRAMS += duite-view
 dist_man_MANS += cloth/app/duite-view.1
 duite_view_SOURCES = \
-    cloth/app/duite-view.c cloth/app/view/frames.c cloth/app/view/frames.h cloth/app/view/live.c cloth/app/view/live.h \
-    cloth/app/view/trace.c cloth/app/view/trace.h cloth/app/check/intersections.c cloth/app/check/intersections.h \
-    cloth/app/check/intersections_folder.c cloth/app/check/intersections_open.c cloth/app/check/intersections_state.h
+    cloth/app/duite-view.c cloth/app/cli.c cloth/app/cli.h cloth/app/view/frames.c cloth/app/view/frames.h \
+    cloth/app/view/live.c cloth/app/view/live.h cloth/app/check/intersections.c cloth/app/check/intersections.h
 duite_view_LDADD = $(CHART_LIBS) $(VIEW_LIBS)
 endif
 EXTRA_DIST += cloth/app/duite-view.1 cloth/app/demo.sh

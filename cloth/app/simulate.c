@@ -3,7 +3,6 @@
 #include "cloth/app/simulate_run.h"
 
 #include "cloth/app/report/summary.h"
-#include "cloth/app/run/keeper.h"
 #include "tools/predict/predict.h"
 
 #include <math.h>
@@ -81,18 +80,9 @@ static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
     const bool last = phases_is_last(&run->phases), goes_on = run->phases.n > 1;
-    const struct flow_output output = {.context = &run->outputs,
-                                       .before = phases_before(&run->phases),
-                                       .end = last ? NULL : run->phases.end,
-                                       .frame = run->wants_frames ? outputs_frame : NULL,
-                                       .written = outputs_written,
-                                       .places = options->output ? outputs_places : NULL,
-                                       .beside = options->output ? outputs_beside : NULL,
-                                       .force = options->output ? outputs_force : NULL,
-                                       .row = options->output ? outputs_row : NULL,
-                                       .system =
-                                           options->save_system && last ? outputs_system : NULL,
-                                       .save = options->checkpoint > 0 ? restart_save : NULL};
+    struct flow_output output = {.before = phases_before(&run->phases),
+                                 .end = last ? NULL : run->phases.end};
+    outputs_receive(&run->outputs, options, run->wants_frames, last, &output);
     const bool wants = run->wants_frames || options->save_system || goes_on;
     const struct flow_progress progress = {run, forget_meshes, show_step, simulate_stops,
                                            options->checkpoint > 0 ? is_due : NULL};
@@ -100,7 +90,7 @@ static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
     run->threads = duite_threads(rt);
     run->cores = duite_cores(rt, &from);
     snprintf(run->cores_from, sizeof run->cores_from, "%s", from);
-    progress_begin(&run->progress, run->phases.done[run->phases.now].name);
+    progress_begin(&run->progress, phases_label(&run->phases, run->phases.now));
     flow_run(run->flow, rt, wants ? &output : NULL, &progress, &run->report, error);
     progress_end(&run->progress);
     if (error->code == CLOTH_E_INPUT) /* a start that only the first look finds to touch */
@@ -110,7 +100,7 @@ static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
 static void say_stopped(const struct run *run)
 {
     const struct flow_report *report = &run->phases.total;
-    const char *phase = run->phases.done[run->phases.now].name;
+    const char *phase = phases_label(&run->phases, run->phases.now);
     double end = 0;
     for (uint32_t i = 0; i < run->phases.n; i++)
         end += run->phases.models[i].end;
@@ -154,17 +144,9 @@ static int execute(struct run *run)
     struct cloth_error error = {0};
     duite *rt = NULL;
     run->untraced = (struct cloth_error){0}; /* the files of the phase before are replaced */
-    duite_options options = duite_options_default();
+    duite_options options = run->options->runtime;
     options.kernels = flow_kernels();
     options.context = run->flow;
-    options.threads = run->options->threads;
-    options.scheduler = run->options->scheduler;
-    options.mapping = run->options->mapping;
-    options.balance = run->options->balance;
-    options.seed = run->options->seed;
-    options.trace = run->options->trace;
-    options.trace_first = run->options->trace_first;
-    options.trace_end = run->options->trace_end;
     if (!runtime_fails(&error, duite_start(&rt, &options))) {
         run_flow(run, rt, &error);
         if (!error.code && duite_trace_end(rt))
@@ -183,24 +165,15 @@ static int execute(struct run *run)
     return error.code == CLOTH_E_LOST ? say_lost(run, &error) : simulate_agree(run, &error);
 }
 
-/* Collective. */
-static void count_intersections(struct run *run)
-{
-    int intersects = 0;
-    outputs_count(&run->outputs);
-    intersects = run->outputs.found.bad > 0;
-    MPI_Bcast(&intersects, 1, MPI_INT, 0, MPI_COMM_WORLD);
-    run->intersects = intersects;
-}
-
 /* All phases, or those up to a stop. */
 static int run_phases(struct run *run)
 {
     int code = execute(run);
-    while (!code && !run->report.stopped && !run->stopped_before && !phases_is_last(&run->phases)) {
+    while (!code && !run->report.stopped && !phases_is_last(&run->phases)) {
         code = simulate_next(run);
-        if (!code && !run->stopped_before)
-            code = execute(run);
+        if (code || run->stopped_before)
+            break;
+        code = execute(run);
     }
     if (run->stopped_before) { /* between two phases: nothing else closed them */
         struct cloth_error error = {0};
@@ -225,6 +198,42 @@ static void find_bounds(const char *trace, double *path, double *lower)
     trace_run_free(traced);
 }
 
+/* On rank 0. workers, peak: of all ranks, the summary's. */
+static void report_run(struct run *run, uint64_t workers, uint64_t peak, struct cloth_error *error)
+{
+    const struct simulate_options *options = run->options;
+    struct outputs *outputs = &run->outputs;
+    struct summary summary = {.options = options,
+                              .model = run->model,
+                              .report = &run->phases.total,
+                              .phases = &run->phases,
+                              .untangled = &run->untangled,
+                              .elastic = run->elastic,
+                              .intersections =
+                                  options->check_intersections ? &outputs->found : NULL,
+                              .drape = outputs->drape.n ? &outputs->drapes : NULL,
+                              .ranks = run->ranks,
+                              .threads = run->threads,
+                              .cores = run->cores,
+                              .cores_from = run->cores_from,
+                              .workers = workers,
+                              .memory_bytes = peak,
+                              .critical_path = NAN,
+                              .lower_bound = NAN};
+    if (options->runtime.trace)
+        find_bounds(options->runtime.trace, &summary.critical_path, &summary.lower_bound);
+    if (run->report.stopped || run->stopped_before)
+        say_stopped(run);
+    intersections_say(&outputs->found, "duite-cloth");
+    if (!run->stopped_before) /* else it has warned */
+        warn_of_motion(run);
+    simulate_warn_of_edges(run);
+    if (options->report)
+        summary_write(&summary, options->report, error);
+    if (!options->quiet)
+        summary_print(stdout, &summary);
+}
+
 static int simulate_conclude(struct run *run)
 {
     struct cloth_error error = {0};
@@ -233,89 +242,56 @@ static int simulate_conclude(struct run *run)
     uint64_t workers = run->threads, peak = 1024 * (uint64_t)usage.ru_maxrss; /* Linux counts KiB */
     MPI_Allreduce(MPI_IN_PLACE, &workers, 1, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
     MPI_Allreduce(MPI_IN_PLACE, &peak, 1, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
-    double path = NAN, bound = NAN;
-    count_intersections(run);
-    struct outputs *outputs = &run->outputs;
-    if (outputs->drape)
-        drape_find(outputs->drape, &outputs->drapes, &error);
-    if (run->rank == 0 && run->options->trace)
-        find_bounds(run->options->trace, &path, &bound);
-    if (run->rank == 0) {
-        const struct summary summary = {
-            .options = run->options,
-            .model = run->model,
-            .report = &run->phases.total,
-            .phases = &run->phases,
-            .untangled = &run->untangled,
-            .elastic = run->elastic,
-            .intersections = run->options->check_intersections ? &outputs->found : NULL,
-            .drape = outputs->drape ? &outputs->drapes : NULL,
-            .ranks = run->ranks,
-            .threads = run->threads,
-            .cores = run->cores,
-            .cores_from = run->cores_from,
-            .workers = workers,
-            .memory_bytes = peak,
-            .critical_path = path,
-            .lower_bound = bound};
-        if (run->report.stopped || run->stopped_before)
-            say_stopped(run);
-        intersections_say(&outputs->found, "duite-cloth");
-        if (!run->stopped_before) /* else it has warned */
-            warn_of_motion(run);
-        simulate_warn_of_edges(run);
-        if (run->options->report)
-            summary_write(&summary, run->options->report, &error);
-        if (!run->options->quiet)
-            summary_print(stdout, &summary);
-    }
+    int intersects = run->outputs.found.bad > 0;
+    MPI_Bcast(&intersects, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    run->intersects = intersects;
+    if (run->outputs.drape.n)
+        drape_find(&run->outputs.drape, &run->outputs.drapes, &error);
+    if (run->rank == 0)
+        report_run(run, workers, peak, &error);
     const int code = simulate_agree(run, &error);
     const int unwritten = simulate_agree(run, &run->outputs.hdf5.unwritten);
     const int untraced = simulate_agree(run, &run->untraced);
     return code ? code : unwritten ? unwritten : untraced;
 }
 
-/* The exit code of a run that began. done: if nothing failed. */
-static int code_of(int failure, int done)
+/* The exit code of a run that ended with a cloth_code. */
+static int code_of(const struct run *run, int code)
 {
-    if (failure == CLOTH_E_LOST)
+    const bool stopped = run->report.stopped || run->stopped_before;
+    if (code == CLOTH_E_LOST)
         return SIMULATE_LOST;
-    if (failure == CLOTH_E_INPUT)
+    if (code == CLOTH_E_INPUT)
         return SIMULATE_BAD_INPUT;
-    return failure ? SIMULATE_FAILED : done;
+    if (code)
+        return SIMULATE_FAILED;
+    return stopped ? SIMULATE_STOPPED : run->intersects ? SIMULATE_INTERSECTS : SIMULATE_OK;
 }
 
 int simulate(const struct simulate_options *options)
 {
     struct simulate_options found = *options;
     struct run run = {.options = &found, .asked = options->scene};
-    int code = SIMULATE_BAD_INPUT;
     MPI_Comm_rank(MPI_COMM_WORLD, &run.rank);
     MPI_Comm_size(MPI_COMM_WORLD, &run.ranks);
     char *shipped =
         run.rank == 0 ? shipped_scene(options->scene) : NULL; /* rank 0 alone reads it */
     if (shipped)
         found.scene = shipped;
-    int failure = simulate_prepare(&run);
-    if (failure == CLOTH_E_MEMORY || failure == CLOTH_E_LIBRARY || failure == CLOTH_E_IO)
-        code = SIMULATE_FAILED;
-    if (!failure && run.stopped_before)
-        code = SIMULATE_STOPPED;
-    else if (!failure) {
-        failure = run_phases(&run);
-        if (!failure)
-            failure = simulate_conclude(&run);
-        const int done = run.intersects ? SIMULATE_INTERSECTS : SIMULATE_OK;
-        const bool stopped = run.report.stopped || run.stopped_before;
-        code = code_of(failure, stopped ? SIMULATE_STOPPED : done);
-    }
+    int code = simulate_prepare(&run);
+    const bool begins = !code && !run.stopped_before;
+    if (code == CLOTH_E_RUN) /* a start whose places no check can take */
+        code = CLOTH_E_INPUT;
+    code = begins ? run_phases(&run) : code;
+    if (begins && !code)
+        code = simulate_conclude(&run);
     struct cloth_error ignored = {0};
     outputs_close(&run.outputs, &ignored);
     outputs_free(&run.outputs);
     flow_free(run.flow);
     free(run.elastic);
     phases_free(&run.phases);
-    restart_free(&run.restart);
+    output_checkpoint_free(&run.restart.checkpoint);
     free(shipped);
-    return code;
+    return code_of(&run, code);
 }

@@ -2,9 +2,7 @@
  * tells the others the parts they need. */
 #include "cloth/app/simulate_run.h"
 
-#include "cloth/app/run/room.h"
 #include "cloth/app/run/start.h"
-#include "cloth/app/run/start_welds.h"
 #include "cloth/base/memory.h"
 #include "cloth/output/output.h"
 
@@ -87,7 +85,6 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
     int code = phases_read(&run->phases, options->scene, options->n_sets, options->sets, error);
-    run->outputs.untangled = &run->untangled;
     run->phases.keeps_start = options->checkpoint > 0;
     if (!code && options->restart)
         code = outputs_lock(&run->outputs, options, error);
@@ -100,8 +97,9 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
         code = restart_resume(&run->restart, run->flow, error);
     if (!code && options->report)
         code = simulate_begin_check_file(run, "--report", options->report, error);
-    if (!code && options->trace)
-        code = simulate_begin_check_file(run, "--trace (or DUITE_TRACE)", options->trace, error);
+    if (!code && options->runtime.trace)
+        code = simulate_begin_check_file(run, "--trace (or DUITE_TRACE)", options->runtime.trace,
+                                         error);
     return code;
 }
 
@@ -111,7 +109,7 @@ static bool check_stop(struct run *run)
     int wanted = simulate_stops(NULL);
     MPI_Allreduce(MPI_IN_PLACE, &wanted, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
     run->stopped_before = wanted;
-    if (wanted && run->rank == 0 && !run->phases.done[0].ended)
+    if (wanted && run->rank == 0 && !*run->phases.done[0].ended)
         simulate_say_unbegun();
     return wanted;
 }
@@ -128,7 +126,7 @@ static bool is_known(const struct run *run, const char *warning)
 /* Prints, on rank 0, the warnings of the phase that begins. */
 static void simulate_begin_warn(const struct run *run)
 {
-    const char *warning, *name = run->phases.done[run->phases.now].name;
+    const char *warning, *name = phases_label(&run->phases, run->phases.now);
     char phase[100] = "";
     if (name && run->phases.now)
         snprintf(phase, sizeof phase, "phase '%.60s': ", name);
@@ -144,7 +142,7 @@ static void agree_on_frames(struct run *run)
 {
     const struct simulate_options *options = run->options;
     int wanted =
-        options->output || options->live || options->check_intersections || run->outputs.drape;
+        options->output || options->live || options->check_intersections || run->outputs.drape.n;
     MPI_Bcast(&wanted, 1, MPI_INT, 0, MPI_COMM_WORLD);
     run->wants_frames = wanted;
 }
@@ -161,11 +159,9 @@ static void open_outputs(struct run *run, struct cloth_error *error)
         fprintf(stderr, "duite-cloth: warning: the scene asks for output.hdf5, whose frames are "
                         "written into the folder of --output; there is none\n");
     if (options->output)
-        room_check(run->phases.n, run->phases.models, run->flow, options->output, error);
-    if (!error->code && model_promise(run->model).apart)
-        start_check(run->model, run->flow, &run->apart, options->scene, error);
+        outputs_check_room(run->phases.n, run->phases.models, run->flow, options->output, error);
     if (!error->code)
-        start_welds(run->model, run->flow, &run->apart, options->scene, error);
+        start_check(run->model, run->flow, &run->apart, options->scene, error);
     if (!error->code)
         outputs_open(&run->outputs, options, &run->phases, run->flow, &run->apart,
                      options->restart ? &run->restart.at : NULL, error);
@@ -212,10 +208,8 @@ static void begin_phase(struct run *run, struct cloth_error *error)
                    "%s: its probes have other columns than those of the first phase",
                    run->options->scene);
     free(columns);
-    if (!error->code && model_promise(run->model).apart)
-        start_check(run->model, run->flow, &run->apart, run->options->scene, error);
     if (!error->code)
-        start_welds(run->model, run->flow, &run->apart, run->options->scene, error);
+        start_check(run->model, run->flow, &run->apart, run->options->scene, error);
     if (!error->code)
         outputs_go_on(&run->outputs, &run->phases, &run->apart, error);
 }

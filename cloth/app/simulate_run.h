@@ -1,10 +1,9 @@
 #ifndef CLOTH_APP_SIMULATE_RUN_H
 #define CLOTH_APP_SIMULATE_RUN_H
 
+#include "cloth/app/run/checkpoints.h"
 #include "cloth/app/run/outputs.h"
-#include "cloth/app/run/phases.h"
 #include "cloth/app/run/progress.h"
-#include "cloth/app/run/restart.h"
 #include "cloth/app/simulate.h"
 #include "cloth/untangle/untangle.h"
 

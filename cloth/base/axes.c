@@ -39,3 +39,17 @@ void cloth_axes(double small, double m[3][3], double axes[3][3])
         base_axes_turn(small, m, axes, 1, 2);
     }
 }
+
+bool cloth_rotation(const double quaternion[4], double turn[3][3])
+{
+    const double *q = quaternion;
+    const double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    const double w = q[0] / length, x = q[1] / length, y = q[2] / length, z = q[3] / length;
+    const double rows[3][3] = {
+        {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+        {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+        {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)},
+    };
+    memcpy(turn, rows, sizeof rows);
+    return length > 0;
+}

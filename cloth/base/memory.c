@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 static void *base_memory_out_of(size_t n, size_t size, struct cloth_error *error)
 {
@@ -38,4 +39,13 @@ void *cloth_list_add(struct cloth_list *list, size_t size, size_t count, struct 
     }
     list->n = needed;
     return (char *)list->items + (needed - count) * size;
+}
+
+int cloth_list_put(struct cloth_list *list, const void *item, size_t size,
+                   struct cloth_error *error)
+{
+    void *to = cloth_list_add(list, size, 1, error);
+    if (to)
+        memcpy(to, item, size);
+    return to ? CLOTH_OK : CLOTH_E_MEMORY;
 }

@@ -22,4 +22,8 @@ struct cloth_list {
  * call. NULL and CLOTH_E_MEMORY leave the list as it was. */
 void *cloth_list_add(struct cloth_list *list, size_t size, size_t count, struct cloth_error *error);
 
+/* Adds a copy of one item. Error: CLOTH_E_MEMORY. */
+int cloth_list_put(struct cloth_list *list, const void *item, size_t size,
+                   struct cloth_error *error);
+
 #endif

@@ -3,4 +3,4 @@ libduite_cloth_a_SOURCES += \
 	cloth/base/error.c cloth/base/error.h \
 	cloth/base/file.c cloth/base/file.h \
 	cloth/base/memory.c cloth/base/memory.h cloth/base/order.h cloth/base/sets.h \
-	cloth/base/simd.c cloth/base/simd.h
+	cloth/base/simd.c cloth/base/simd.h cloth/base/vector.h

@@ -1,6 +1,7 @@
 /* Bending about edges (cloth/physics/bending.h): hinges, and the quadratic energy, which has no
  * damping. A cloth with a damped quadratic energy has hinges without stiffness, too. */
 #include "cloth/physics/bending.h"
+#include "cloth/base/vector.h"
 #include "cloth/element/cloths.h"
 
 #include <math.h>
@@ -49,15 +50,14 @@ static int bend_rest(const struct element_cloths *cloths, uint32_t cloth,
 static bool seam_meets(const struct element_seam *seam, const double a[9], double b[9])
 {
     const double rounding = 1e-6, most = 1e-2; /* of the length of the edge */
-    double edge[3], apart[2][3];
-    const double square = mesh_difference(a, a + 3, NULL, edge), tolerance = seam->tolerance;
+    const double square = cloth_square(a, a + 3), tolerance = seam->tolerance;
     const double limit =
         fmax(rounding * rounding * square, fmin(tolerance * tolerance, most * most * square));
     for (int i = 0; i < 2; i++)
-        if (!(mesh_difference(b + 3 * i, a + 3 * i, NULL, apart[i]) <= limit))
+        if (!(cloth_square(a + 3 * i, b + 3 * i) <= limit))
             return false;
     for (int c = 0; c < 3; c++)
-        b[6 + c] += (apart[0][c] + apart[1][c]) / 2;
+        b[6 + c] += ((a[c] - b[c]) + (a[3 + c] - b[3 + c])) / 2;
     return true;
 }
 

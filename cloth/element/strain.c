@@ -9,30 +9,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int strain_take(struct element_strains *strains, const struct model *model,
-                       struct cloth_error *error)
+int element_strains_room(struct element_strains *strains, uint32_t n_materials,
+                         struct cloth_error *error)
 {
-    for (uint32_t c = 0; c < model->n_cloths; c++) {
-        const struct mesh *mesh = &model->cloths[c].mesh;
-        strains->n_vertices += mesh->n_vertices;
-        strains->n_triangles += mesh->n_triangles;
-        strains->n_edges += mesh->n_bare_edges;
-    }
-    const uint32_t n = strains->n_triangles;
+    const size_t n = strains->n_triangles, vector = sizeof(phys_vec);
     strains->corner = cloth_alloc(n, sizeof *strains->corner, error);
-    strains->gradient = aligned_alloc(sizeof(phys_vec), ((size_t)n + 1) * sizeof(phys_vec));
+    strains->gradient = aligned_alloc(vector, (n + 1) * vector);
     strains->area = cloth_alloc(n, sizeof *strains->area, error);
     strains->edge = cloth_alloc(strains->n_edges, sizeof *strains->edge, error);
     strains->length = cloth_alloc(strains->n_edges, sizeof *strains->length, error);
-    strains->membrane = aligned_alloc(sizeof(phys_vec),
-                                      ((size_t)model->n_materials + 1) * sizeof *strains->membrane);
-    strains->has_stress = cloth_alloc(model->n_materials, sizeof *strains->has_stress, error);
-    strains->x =
-        aligned_alloc(sizeof(phys_vec), ((size_t)strains->n_vertices + 1) * sizeof(phys_vec));
-    if (strains->corner && strains->gradient && strains->area && strains->edge && strains->length &&
-        strains->membrane && strains->has_stress && strains->x)
-        return CLOTH_OK;
-    return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for the strains of %u triangles", n);
+    strains->membrane =
+        aligned_alloc(vector, ((size_t)n_materials + 1) * sizeof *strains->membrane);
+    strains->has_stress = cloth_alloc(n_materials, sizeof *strains->has_stress, error);
+    strains->x = aligned_alloc(vector, ((size_t)strains->n_vertices + 1) * vector);
+    if (!strains->gradient || !strains->membrane || !strains->x)
+        cloth_fail(error, CLOTH_E_MEMORY, "out of memory for the strains of %zu triangles", n);
+    return error->code;
 }
 
 static void add_triangle(struct element_strains *strains, const struct element_cloths *cloths,
@@ -83,7 +75,13 @@ int element_strains_make(struct element_strains *strains, const struct model *mo
 {
     struct element_cloths cloths;
     *strains = (struct element_strains){0};
-    int code = strain_take(strains, model, error);
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        const struct mesh *mesh = &model->cloths[c].mesh;
+        strains->n_vertices += mesh->n_vertices;
+        strains->n_triangles += mesh->n_triangles;
+        strains->n_edges += mesh->n_bare_edges;
+    }
+    int code = element_strains_room(strains, model->n_materials, error);
     if (code)
         return code;
     code = element_cloths_make(&cloths, model, error);

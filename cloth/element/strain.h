@@ -24,6 +24,9 @@ struct element_strains {
  * element_cloths_make. Local. */
 int element_strains_make(struct element_strains *strains, const struct model *model,
                          struct cloth_error *error);
+/* Room alone, for what *strains counts; otherwise as above. */
+int element_strains_room(struct element_strains *strains, uint32_t n_materials,
+                         struct cloth_error *error);
 void element_strains_free(struct element_strains *strains);
 
 /* strain: of each triangle its largest principal strain, of each edge length / length at rest - 1;

@@ -4,7 +4,6 @@
 #include "cloth/base/memory.h"
 #include "cloth/garment/detail/flat.h"
 #include "cloth/garment/detail/meshing.h"
-#include "cloth/garment/detail/seams.h"
 #include "cloth/physics/curve.h"
 
 #include <math.h>
@@ -20,14 +19,28 @@ static const uint32_t MOST = (uint32_t)1 << 27;
  * about 0.365 P / h, since its vertices are nearer to each other. */
 static const double INSIDE = 1.155, AROUND = 0.365;
 
-static double first_spacing(const struct meshing *meshing, double n)
+static void measure_pattern(const struct garment_pattern *pattern, double *area, double *around)
 {
-    double area = 0, around = 0;
-    for (uint32_t p = 0; p < meshing->pattern->n_panels; p++) {
-        area += fabs(garment_panel_area(&meshing->pattern->panel[p]));
-        for (uint32_t e = meshing->first[p]; e < meshing->first[p + 1]; e++)
-            around += meshing->edge[e].curve.length;
+    *area = *around = 0;
+    for (uint32_t p = 0; p < pattern->n_panels; p++) {
+        *area += fabs(garment_panel_area(&pattern->panel[p]));
+        for (uint32_t e = 0; e < pattern->panel[p].n_edges; e++)
+            *around += garment_edge_length(&pattern->panel[p], e);
     }
+}
+
+double garment_vertices(const struct garment_pattern *pattern, double edge)
+{
+    double area, around;
+    measure_pattern(pattern, &area, &around);
+    return INSIDE * area / (edge * edge) + AROUND * around / edge;
+}
+
+/* The spacing that gives about n vertices. */
+static double first_spacing(const struct garment_pattern *pattern, double n)
+{
+    double area, around;
+    measure_pattern(pattern, &area, &around);
     const double a = INSIDE * area, b = AROUND * around;
     return (b + sqrt(b * b + 4 * a * n)) / (2 * n);
 }
@@ -41,14 +54,22 @@ static double next_spacing(double spacing, double n, double wanted, double fine,
                                            : next;
 }
 
-static int mesh_by_count(struct meshing *meshing, uint32_t wanted, struct cloth_error *error)
+static uint32_t count_vertices(const struct meshing *meshing)
 {
-    double spacing = first_spacing(meshing, wanted), best = spacing, least = INFINITY;
+    uint32_t n = 0;
+    for (uint32_t p = 0; p < meshing->pattern->n_panels; p++)
+        n += meshing->panel[p].plane.n;
+    return n;
+}
+
+static void mesh_by_count(struct meshing *meshing, uint32_t wanted)
+{
+    double spacing = first_spacing(meshing->pattern, wanted), best = spacing, least = INFINITY;
     double fine = 0, coarse = INFINITY; /* spacings that gave too many and too few */
-    int code = CLOTH_OK;
-    for (int k = 0; k < TRIES && least > (k < EARLY ? CLOSE : FAIR) && !code; k++) {
-        code = meshing_mesh(meshing, spacing, error);
-        const double n = meshing_count(meshing), off = fabs(n - wanted) / wanted;
+    const struct cloth_error *error = meshing->error;
+    for (int k = 0; k < TRIES && least > (k < EARLY ? CLOSE : FAIR) && !error->code; k++) {
+        meshing_mesh(meshing, spacing);
+        const double n = count_vertices(meshing), off = fabs(n - wanted) / wanted;
         if (off < least) {
             least = off;
             best = spacing;
@@ -60,25 +81,12 @@ static int mesh_by_count(struct meshing *meshing, uint32_t wanted, struct cloth_
         if (off > CLOSE)
             spacing = next_spacing(spacing, n, wanted, fine, coarse);
     }
-    if (!code && meshing->spacing != best)
-        code = meshing_mesh(meshing, best, error);
-    return code;
+    if (!error->code && meshing->spacing != best)
+        meshing_mesh(meshing, best);
 }
 
-double garment_vertices(const struct garment_pattern *pattern, double edge)
-{
-    double n = 0;
-    for (uint32_t p = 0; p < pattern->n_panels; p++) {
-        const struct garment_panel *panel = pattern->panel + p;
-        n += INSIDE * fabs(garment_panel_area(panel)) / (edge * edge);
-        for (uint32_t e = 0; e < panel->n_edges; e++)
-            n += AROUND * garment_edge_length(panel, e) / edge;
-    }
-    return n;
-}
-
-static int garment_check_fineness(const struct garment_fineness *fineness,
-                                  const struct garment_pattern *pattern, struct cloth_error *error)
+static int check_fineness(const struct garment_fineness *fineness,
+                          const struct garment_pattern *pattern, struct cloth_error *error)
 {
     if (fineness->vertices && (fineness->vertices < 3 || fineness->vertices > MOST))
         return cloth_fail(error, CLOTH_E_INPUT, "%u vertices cannot be had: 3 to %u",
@@ -93,8 +101,8 @@ static int garment_check_fineness(const struct garment_fineness *fineness,
     return CLOTH_OK;
 }
 
-static int garment_make_room(struct garment *garment, const struct meshing *meshing,
-                             struct cloth_error *error)
+static int make_room(struct garment *garment, const struct meshing *meshing,
+                     struct cloth_error *error)
 {
     const struct garment_pattern *pattern = meshing->pattern;
     uint64_t n = 0, n_triangles = 0;
@@ -120,7 +128,7 @@ static int garment_make_room(struct garment *garment, const struct meshing *mesh
 
 /* Maya's rotation x, y, z: the vector turns about x first. Only the first two columns are needed,
  * since panels are flat. */
-static void garment_axes_of(const double degrees[3], double axis[2][3])
+static void panel_axes(const double degrees[3], double axis[2][3])
 {
     double c[3], s[3];
     for (int k = 0; k < 3; k++)
@@ -140,7 +148,7 @@ static void put_piece(struct garment *garment, struct meshing *meshing, uint32_t
     struct meshing_panel *of = &meshing->panel[p];
     const uint32_t n = of->plane.n, n_triangles = of->plane.n_triangles;
     double axis[2][3];
-    garment_axes_of(panel->rotate, axis);
+    panel_axes(panel->rotate, axis);
     for (uint32_t v = 0; v < n; v++) {
         const double *uv = of->plane.place[v], x = of->clockwise ? -uv[0] : uv[0];
         memcpy(garment->uv[first + v], uv, sizeof garment->uv[0]);
@@ -151,17 +159,15 @@ static void put_piece(struct garment *garment, struct meshing *meshing, uint32_t
     for (uint32_t t = 0; t < n_triangles; t++) {
         for (int i = 0; i < 3; i++)
             garment->triangle[first_triangle + t][i] = first + of->plane.triangle[t].vertex[i];
-        garment->excused[first_triangle + t] =
-            flat_excused(&of->plane, of->start[panel->n_edges], of->sharp, t);
+        garment->excused[first_triangle + t] = flat_excused(&of->plane, of->sharp, t);
     }
     garment->piece[p] = (struct garment_piece){first, n, first_triangle, n_triangles, of->start};
     of->start = NULL; /* the garment's now */
 }
 
-static int garment_put_all(struct garment *garment, struct meshing *meshing,
-                           struct cloth_error *error)
+static int put_pieces(struct garment *garment, struct meshing *meshing, struct cloth_error *error)
 {
-    int code = garment_make_room(garment, meshing, error);
+    int code = make_room(garment, meshing, error);
     uint32_t first = 0, first_triangle = 0;
     if (code)
         return code;
@@ -178,18 +184,19 @@ static int garment_put_all(struct garment *garment, struct meshing *meshing,
 int garment_make(struct garment *garment, const struct garment_pattern *pattern,
                  const struct garment_fineness *fineness, struct cloth_error *error)
 {
+    struct cloth_error own = {0};
     struct meshing meshing = {0};
     *garment = (struct garment){0};
-    int code = garment_check_fineness(fineness, pattern, error);
-    if (code)
-        return code;
-    code = meshing_make(&meshing, pattern, error);
-    if (!code)
-        code = fineness->vertices ? mesh_by_count(&meshing, fineness->vertices, error)
-                                  : meshing_mesh(&meshing, fineness->edge, error);
-    code = code ? code : garment_put_all(garment, &meshing, error);
+    if (!check_fineness(fineness, pattern, &own))
+        meshing_make(&meshing, pattern, &own);
+    if (!own.code && fineness->vertices)
+        mesh_by_count(&meshing, fineness->vertices);
+    else if (!own.code)
+        meshing_mesh(&meshing, fineness->edge);
+    if (!own.code)
+        put_pieces(garment, &meshing, &own);
     meshing_free(&meshing);
-    return code;
+    return own.code ? cloth_fail(error, own.code, "%s", own.text) : CLOTH_OK;
 }
 
 void garment_free(struct garment *garment)

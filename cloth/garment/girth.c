@@ -14,6 +14,17 @@ static const double NEAR = 0.03;             /* of a seam: how far cuts of both 
 static const double MOST = 0.8, LEAST = 0.2; /* of a part's outline: surrounded, not surrounded */
 enum { WINDOW = 2, LEVELS = 1000 };
 
+struct girths {
+    const struct girth_mesh *garment, *body;
+    const struct girth_seam *seam;
+    struct cloth_list edge; /* struct seam_edge: of all seams, sorted */
+    double first;           /* m: the height of level 0, WINDOW below the garment */
+    uint32_t n_levels;
+    struct slice *level; /* of the body */
+    struct girth_worst *worst;
+    struct cloth_error error; /* the first one */
+};
+
 /* ---- Seams ---- */
 
 struct seam_edge {
@@ -28,30 +39,18 @@ static int compare_edges(const void *a, const void *b)
     return (one->edge > two->edge) - (one->edge < two->edge);
 }
 
-struct seams {
-    uint32_t n;
-    struct seam_edge *edge;
-    const struct girth_seam *seam;
-};
-
-static int list_seams(struct seams *seams, uint32_t n_seams, const struct girth_seam *seam,
-                      struct cloth_error *error)
+static void list_seams(struct girths *of, uint32_t n_seams)
 {
-    size_t n = 0;
     for (uint32_t s = 0; s < n_seams; s++)
-        n += 2 * (size_t)seam[s].n;
-    *seams = (struct seams){.edge = cloth_alloc(n, sizeof *seams->edge, error), .seam = seam};
-    if (!seams->edge)
-        return CLOTH_E_MEMORY;
-    for (uint32_t s = 0; s < n_seams; s++)
-        for (uint32_t k = 0; k + 1 < seam[s].n; k++)
-            for (uint32_t side = 0; side < 2; side++) {
-                const uint32_t a = seam[s].pair[k][side], b = seam[s].pair[k + 1][side];
+        for (uint32_t k = 0; k + 1 < of->seam[s].n; k++)
+            for (uint32_t side = 0; side < 2 && !of->error.code; side++) {
+                const uint32_t a = of->seam[s].pair[k][side], b = of->seam[s].pair[k + 1][side];
                 const uint64_t low = a < b ? a : b, high = a < b ? b : a;
-                seams->edge[seams->n++] = (struct seam_edge){low << 32 | high, s, side, k, b < a};
+                const struct seam_edge edge = {low << 32 | high, s, side, k, b < a};
+                cloth_list_put(&of->edge, &edge, sizeof edge, &of->error);
             }
-    qsort(seams->edge, seams->n, sizeof *seams->edge, compare_edges);
-    return CLOTH_OK;
+    if (of->edge.n)
+        qsort(of->edge.items, of->edge.n, sizeof(struct seam_edge), compare_edges);
 }
 
 /* An open end of a cut on a seam. */
@@ -61,26 +60,22 @@ struct loose {
     double at; /* pairs from the seam's begin */
 };
 
-static int list_loose(struct cloth_list *list, const struct slice *slice, const struct seams *seams,
-                      struct cloth_error *error)
+static void list_loose(struct girths *of, struct cloth_list *list, const struct slice *slice)
 {
     for (uint32_t s = 0; s < slice->n; s++)
-        for (int k = 0; k < 2; k++) {
+        for (int k = 0; k < 2 && !of->error.code; k++) {
             struct slice_end *end = &slice->segment[s].end[k];
             const struct seam_edge key = {.edge = end->edge};
             const struct seam_edge *edge =
-                end->open && seams->n
-                    ? bsearch(&key, seams->edge, seams->n, sizeof key, compare_edges)
+                end->open && of->edge.n
+                    ? bsearch(&key, of->edge.items, of->edge.n, sizeof key, compare_edges)
                     : NULL;
             if (!edge)
                 continue;
-            struct loose *loose = cloth_list_add(list, sizeof *loose, 1, error);
-            if (!loose)
-                return CLOTH_E_MEMORY;
-            *loose = (struct loose){end, s, edge->seam, edge->side,
-                                    edge->k + (edge->backward ? 1 - end->part : end->part)};
+            const struct loose loose = {end, s, edge->seam, edge->side,
+                                        edge->k + (edge->backward ? 1 - end->part : end->part)};
+            cloth_list_put(list, &loose, sizeof loose, &of->error);
         }
-    return CLOTH_OK;
 }
 
 /* The nearest of the seam's other side; n: there is none. */
@@ -94,14 +89,14 @@ static size_t nearest(const struct loose *loose, size_t n, size_t i)
     return best;
 }
 
-static int sew(struct slice *slice, const struct seams *seams, struct cloth_error *error)
+static void sew(struct girths *of, struct slice *slice)
 {
     struct cloth_list list = {0};
-    const int code = list_loose(&list, slice, seams, error);
+    list_loose(of, &list, slice);
     struct loose *loose = list.items;
-    for (size_t i = 0; i < list.n && !code; i++) {
+    for (size_t i = 0; i < list.n; i++) {
         const size_t k = nearest(loose, list.n, i);
-        const double allowed = k < list.n ? fmax(1, NEAR * seams->seam[loose[i].seam].n) : 0;
+        const double allowed = k < list.n ? fmax(1, NEAR * of->seam[loose[i].seam].n) : 0;
         if (k == list.n || nearest(loose, list.n, k) != i ||
             fabs(loose[k].at - loose[i].at) > allowed)
             continue;
@@ -109,7 +104,6 @@ static int sew(struct slice *slice, const struct seams *seams, struct cloth_erro
         loose[i].end->open = false;
     }
     free(loose);
-    return code;
 }
 
 /* ---- Loops and the bodies inside ---- */
@@ -127,32 +121,28 @@ static void flatten(double point[2], const struct slice_end *end)
     point[1] = end->place[2];
 }
 
-/* The loop of a set of segments; girth 0: it is open. */
-static int take_loop(struct loop *loop, const struct slice *slice, uint32_t set,
-                     struct cloth_error *error)
+/* The loop of a set of segments; girth 0: it is open, or an error. */
+static struct loop take_loop(struct girths *of, const struct slice *slice, uint32_t set)
 {
-    uint32_t n = 0;
-    bool open = false;
-    *loop = (struct loop){.hull = cloth_alloc(2 * (size_t)slice->n, sizeof *loop->hull, error)};
-    if (!loop->hull)
-        return CLOTH_E_MEMORY;
-    for (uint32_t s = 0; s < slice->n; s++) {
+    struct loop loop = {.hull = cloth_alloc(2 * (size_t)slice->n, sizeof *loop.hull, &of->error)};
+    bool open = !loop.hull;
+    for (uint32_t s = 0; s < slice->n && loop.hull; s++) {
         const struct slice_segment *segment = &slice->segment[s];
         if (cloth_sets_root(slice->set, s) != set)
             continue;
         for (int k = 0; k < 2; k++) {
             open = open || segment->end[k].open;
-            flatten(loop->hull[n++], &segment->end[k]);
+            flatten(loop.hull[loop.n++], &segment->end[k]);
         }
-        loop->girth += segment->length;
+        loop.girth += segment->length;
     }
-    loop->girth = open ? 0 : loop->girth;
-    return slice_hull(loop->hull, n, &loop->n, error);
+    if (open || slice_hull(loop.hull, loop.n, &loop.n, &of->error))
+        loop.girth = 0;
+    return loop;
 }
 
 /* How much of each part of a body's slice is inside of a loop. */
-static void garment_girth_measure(const struct slice *body, const struct loop *loop,
-                                  double (*part)[2])
+static void measure_inside(const struct slice *body, const struct loop *loop, double (*part)[2])
 {
     for (uint32_t s = 0; s < body->n; s++) {
         const struct slice_segment *segment = &body->segment[s];
@@ -166,63 +156,42 @@ static void garment_girth_measure(const struct slice *body, const struct loop *l
 }
 
 /* The girth of the body inside a loop; 0: none, or it cannot be told. */
-static int body_girth(double *girth, const struct slice *body, const struct loop *loop,
-                      struct cloth_error *error)
+static double body_girth(struct girths *of, const struct slice *body, const struct loop *loop)
 {
-    double(*part)[2] = cloth_alloc(body->n, sizeof *part, error);
-    double(*point)[2] = cloth_alloc(2 * (size_t)body->n, sizeof *point, error);
+    double(*part)[2] = cloth_alloc(body->n, sizeof *part, &of->error), girth = 0;
+    double(*point)[2] = cloth_alloc(2 * (size_t)body->n, sizeof *point, &of->error);
     uint32_t n = 0;
-    bool clear = true;
-    int code = part && point ? CLOTH_OK : CLOTH_E_MEMORY;
-    *girth = 0;
-    if (!code)
-        garment_girth_measure(body, loop, part);
-    for (uint32_t s = 0; s < body->n && !code; s++) {
-        const double *of = part[cloth_sets_root(body->set, s)];
-        clear = clear && (of[1] <= LEAST * of[0] || of[1] >= MOST * of[0]);
-        for (int k = 0; k < 2 && of[1] >= MOST * of[0]; k++)
+    bool clear = part && point;
+    if (clear)
+        measure_inside(body, loop, part);
+    for (uint32_t s = 0; s < body->n && clear; s++) {
+        const double *in = part[cloth_sets_root(body->set, s)];
+        const bool inside = in[1] >= MOST * in[0];
+        clear = inside || in[1] <= LEAST * in[0];
+        for (int k = 0; k < 2 && inside; k++)
             flatten(point[n++], &body->segment[s].end[k]);
     }
-    if (!code && clear && n > 2)
-        code = slice_hull(point, n, &n, error);
-    if (!code && clear && n > 2)
-        *girth = slice_around((const double(*)[2])point, n);
+    if (clear && n > 2 && !slice_hull(point, n, &n, &of->error))
+        girth = slice_around((const double(*)[2])point, n);
     free(part);
     free(point);
-    return code;
+    return girth;
 }
 
 /* ---- Levels ---- */
 
 /* Cuts a mesh at a height, m. */
-static int slice_at(struct slice *slice, const struct girth_mesh *mesh, double y,
-                    struct cloth_error *error)
+static void slice_at(struct girths *of, struct slice *slice, const struct girth_mesh *mesh,
+                     double y)
 {
-    uint32_t n = 0;
-    for (uint32_t t = 0; t < mesh->n_triangles; t++)
-        for (int k = 0; k < 3; k++)
-            n = mesh->triangle[t][k] < n ? n : mesh->triangle[t][k] + 1;
-    double *height = cloth_alloc(n, sizeof *height, error);
-    *slice = (struct slice){0};
-    if (!height)
-        return CLOTH_E_MEMORY;
-    for (uint32_t v = 0; v < n; v++)
-        height[v] = mesh->x[v][1] - y;
-    const struct slice_mesh cut = {mesh->n_triangles, mesh->triangle, mesh->x, height};
-    const int code = slice_make(slice, &cut, error);
-    free(height);
-    return code;
+    static const double up[3] = {0, 1, 0};
+    const struct slice_mesh cut = {mesh->n_triangles, mesh->triangle, mesh->x};
+    slice_make(slice, &cut, up, y, &of->error);
 }
 
-struct levels {
-    double first; /* m: the height of level 0, WINDOW below the garment */
-    uint32_t n;
-    struct slice *body;
-};
-
-static int garment_girth_cut_body(struct levels *levels, const struct girth_mesh *garment,
-                                  const struct girth_mesh *body, struct cloth_error *error)
+static void cut_body(struct girths *of)
 {
+    const struct girth_mesh *garment = of->garment;
     double low = INFINITY, high = -INFINITY;
     for (uint32_t t = 0; t < garment->n_triangles; t++)
         for (int i = 0; i < 3; i++) {
@@ -230,70 +199,58 @@ static int garment_girth_cut_body(struct levels *levels, const struct girth_mesh
             high = fmax(high, garment->x[garment->triangle[t][i]][1]);
         }
     const double n = ceil((high - low) / STEP) + 2 * WINDOW;
-    *levels = (struct levels){.first = low - (WINDOW - 0.5) * STEP};
+    of->first = low - (WINDOW - 0.5) * STEP;
     if (!(n >= 0 && n < LEVELS)) /* nothing that is worn */
-        return CLOTH_OK;
-    levels->body = cloth_alloc((size_t)n, sizeof *levels->body, error);
-    int code = levels->body ? CLOTH_OK : CLOTH_E_MEMORY;
-    while (!code && levels->n < (uint32_t)n) {
-        const double y = levels->first + levels->n * STEP;
-        code = slice_at(&levels->body[levels->n++], body, y, error);
-    }
-    return code;
+        return;
+    of->level = cloth_alloc((size_t)n, sizeof *of->level, &of->error);
+    for (uint32_t l = 0; l < (uint32_t)n && !of->error.code; l++)
+        slice_at(of, &of->level[of->n_levels++], of->body, of->first + l * STEP);
 }
 
 /* Compares a loop on a level with the body around this level. */
-static int garment_girth_compare(struct girth_worst *worst, const struct loop *loop,
-                                 const struct levels *levels, uint32_t level,
-                                 struct cloth_error *error)
+static void compare_loop(struct girths *of, const struct loop *loop, uint32_t level)
 {
+    struct girth_worst *worst = of->worst;
     double least = INFINITY;
     for (uint32_t l = level - WINDOW; l <= level + WINDOW; l++) {
-        double girth;
-        const int code = body_girth(&girth, &levels->body[l], loop, error);
-        if (code)
-            return code;
+        const double girth = body_girth(of, &of->level[l], loop);
         least = girth > 0 ? fmin(least, girth) : least;
     }
     if (least < INFINITY && (!worst->found || least * worst->garment > worst->body * loop->girth))
-        *worst = (struct girth_worst){true, levels->first + level * STEP, loop->girth, least};
-    return CLOTH_OK;
+        *worst = (struct girth_worst){true, of->first + level * STEP, loop->girth, least};
 }
 
-static int compare_level(struct girth_worst *worst, const struct girth_mesh *garment,
-                         const struct seams *seams, const struct levels *levels, uint32_t level,
-                         struct cloth_error *error)
+static void compare_level(struct girths *of, uint32_t level)
 {
     struct slice slice;
-    int code = slice_at(&slice, garment, levels->first + level * STEP, error);
-    code = code ? code : sew(&slice, seams, error);
-    for (uint32_t s = 0; s < slice.n && !code; s++) {
-        struct loop loop;
+    slice_at(of, &slice, of->garment, of->first + level * STEP);
+    if (!of->error.code)
+        sew(of, &slice);
+    for (uint32_t s = 0; s < slice.n && !of->error.code; s++) {
         if (cloth_sets_root(slice.set, s) != s)
             continue;
-        code = take_loop(&loop, &slice, s, error);
-        if (!code && loop.girth > 0)
-            code = garment_girth_compare(worst, &loop, levels, level, error);
+        const struct loop loop = take_loop(of, &slice, s);
+        if (loop.girth > 0)
+            compare_loop(of, &loop, level);
         free(loop.hull);
     }
     slice_free(&slice);
-    return code;
 }
 
 int girth_compare(struct girth_worst *worst, const struct girth_mesh *garment, uint32_t n_seams,
                   const struct girth_seam *seam, const struct girth_mesh *body,
                   struct cloth_error *error)
 {
-    struct levels levels = {0};
-    struct seams seams = {0};
+    struct girths of = {.garment = garment, .body = body, .seam = seam, .worst = worst};
     *worst = (struct girth_worst){0};
-    int code = list_seams(&seams, n_seams, seam, error);
-    code = code ? code : garment_girth_cut_body(&levels, garment, body, error);
-    for (uint32_t l = WINDOW; l + WINDOW < levels.n && !code; l++)
-        code = compare_level(worst, garment, &seams, &levels, l, error);
-    for (uint32_t l = 0; l < levels.n; l++)
-        slice_free(&levels.body[l]);
-    free(levels.body);
-    free(seams.edge);
-    return code;
+    list_seams(&of, n_seams);
+    if (!of.error.code)
+        cut_body(&of);
+    for (uint32_t l = WINDOW; l + WINDOW < of.n_levels && !of.error.code; l++)
+        compare_level(&of, l);
+    for (uint32_t l = 0; l < of.n_levels; l++)
+        slice_free(&of.level[l]);
+    free(of.level);
+    free(of.edge.items);
+    return of.error.code ? cloth_fail(error, of.error.code, "%s", of.error.text) : CLOTH_OK;
 }

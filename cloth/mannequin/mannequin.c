@@ -1,13 +1,12 @@
 /* Rounds of remeshing and measuring: the error of a girth goes into the factor on its widths, until
  * the mesh itself has the girths. */
 #include "cloth/mannequin/mannequin.h"
-#include "cloth/base/memory.h"
-#include "cloth/mannequin/detail/rig.h"
-#include "cloth/mannequin/measures.h"
+#include "cloth/base/sets.h"
+#include "cloth/base/vector.h"
+#include "cloth/mannequin/detail/surface.h"
+#include "cloth/mesh/slice.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { SHAPING = 8, FITTING = 12, COLLAPSES = 4 };
 static const double CELL = 0.02;   /* m: of the lattice */
@@ -18,59 +17,110 @@ struct making {
     struct mannequin asked; /* for a figure of MANNEQUIN_HEIGHT */
     double factor[MANNEQUIN_GIRTHS], girth[MANNEQUIN_GIRTHS];
     struct figure figure;
-    struct surface surface;
-    struct cloth_error *error;
+    struct surface surface; /* has the error */
 };
 
-static int remesh(struct making *making)
+static void remesh(struct surface *surface, double edge)
 {
-    struct surface *surface = &making->surface;
-    const double edge = making->asked.edge;
-    int code = surface_split(surface, &making->figure, edge, making->error);
-    for (int i = 0; i < COLLAPSES && !code; i++)
-        code = surface_collapse(surface, &making->figure, edge, making->error);
-    code = code ? code : surface_turn(surface, making->error);
-    return code ? code : surface_smooth(surface, &making->figure, making->error);
+    surface_split(surface, edge);
+    for (int i = 0; i < COLLAPSES; i++)
+        surface_collapse(surface, edge);
+    surface_turn(surface);
+    surface_smooth(surface);
 }
 
-/* Measures, and corrects the factors. *worst: the measure that is furthest from its wanted value;
+/* ---- Girths: loops of the half's sections ---- */
+
+/* By set: its length, and the sum of its places weighted by length. */
+static void sum_loops(const struct slice *slice, double (*sum)[4])
+{
+    for (uint32_t s = 0; s < slice->n; s++) {
+        const struct slice_segment *segment = slice->segment + s;
+        double *to = sum[cloth_sets_root(slice->set, s)];
+        for (int c = 0; c < 3; c++)
+            to[c] += 0.5 * segment->length * (segment->end[0].place[c] + segment->end[1].place[c]);
+        to[3] += segment->length;
+    }
+}
+
+/* The length of the loop whose middle is nearest to a point; one that is open goes on in the mirror
+ * image. */
+static double nearest_loop(const struct slice *slice, const double (*sums)[4],
+                           const double point[3], bool half)
+{
+    double best = INFINITY, length = 0;
+    for (uint32_t s = 0; s < slice->n; s++) {
+        const double *sum = sums[s];
+        if (!(sum[3] > 0))
+            continue;
+        const double middle[3] = {half ? 0 : sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]};
+        const double far = cloth_distance(middle, point) + (half ? sum[0] / sum[3] : 0);
+        if (far < best) {
+            best = far;
+            length = half ? 2 * sum[3] : sum[3];
+        }
+    }
+    return length;
+}
+
+/* The length of the section of a measure, of both halves; 0: there is none. */
+static double find_girth(const struct surface *surface, uint32_t measured)
+{
+    double point[3], normal[3], (*sum)[4] = NULL, girth = 0;
+    const struct slice_mesh mesh = {surface->m, (const uint32_t(*)[3])surface->triangle,
+                                    (const double(*)[3])surface->x};
+    struct slice slice;
+    figure_section(surface->figure, measured, point, normal);
+    if (!slice_make(&slice, &mesh, normal, cloth_dot(point, normal), surface->error))
+        sum = cloth_alloc(slice.n, sizeof *sum, surface->error);
+    if (sum) {
+        sum_loops(&slice, sum);
+        girth = nearest_loop(&slice, (const double(*)[4])sum, point, measured < MANNEQUIN_THIGH);
+    }
+    free(sum);
+    slice_free(&slice);
+    return girth;
+}
+
+/* Measures, and corrects the factors. Returns the measure that is furthest from its wanted value;
  * MANNEQUIN_GIRTHS: all are close. */
-static int fit(struct making *making, uint32_t *worst)
+static uint32_t fit(struct making *making)
 {
     double most = CLOSE;
-    int code = CLOTH_OK;
-    *worst = MANNEQUIN_GIRTHS;
-    for (uint32_t i = 0; i < MANNEQUIN_GIRTHS && !code; i++) {
-        code =
-            surface_girth(&making->surface, &making->figure, i, &making->girth[i], making->error);
+    uint32_t worst = MANNEQUIN_GIRTHS;
+    for (uint32_t i = 0; i < MANNEQUIN_GIRTHS; i++) {
+        making->girth[i] = find_girth(&making->surface, i);
         const double ratio = making->asked.girth[i] / fmax(making->girth[i], 1e-3);
         if (fabs(ratio - 1) > most) {
             most = fabs(ratio - 1);
-            *worst = i;
+            worst = i;
         }
         making->factor[i] *= fmin(1.1, fmax(0.9, ratio));
     }
-    if (*worst < MANNEQUIN_GIRTHS)
+    if (worst < MANNEQUIN_GIRTHS)
         figure_make(&making->figure, making->factor);
-    return code;
+    return worst;
 }
 
-static int mannequin_mannequin_make(struct making *making, uint32_t *worst)
+/* Returns the worst measure, as `fit` does. */
+static uint32_t make_half(struct making *making)
 {
+    const struct cloth_error *error = making->surface.error;
+    uint32_t worst = MANNEQUIN_GIRTHS;
     figure_make(&making->figure, making->factor);
-    int code = surface_march(&making->surface, &making->figure, CELL, making->error);
-    for (int i = 0; i < SHAPING && !code; i++) {
-        code = remesh(making);
-        if (!code && i >= SHAPING / 2)
-            code = fit(making, worst);
+    surface_march(&making->surface, CELL);
+    for (int i = 0; i < SHAPING && !error->code; i++) {
+        remesh(&making->surface, making->asked.edge);
+        if (!error->code && i >= SHAPING / 2)
+            worst = fit(making);
     }
-    for (int i = 0; i < FITTING && !code; i++) {
-        surface_project(&making->surface, &making->figure);
-        code = fit(making, worst);
-        if (*worst == MANNEQUIN_GIRTHS)
+    for (int i = 0; i < FITTING && !error->code; i++) {
+        surface_project(&making->surface);
+        worst = fit(making);
+        if (worst == MANNEQUIN_GIRTHS)
             break;
     }
-    return code;
+    return worst;
 }
 
 /* ---- Both halves ---- */
@@ -115,37 +165,33 @@ static uint32_t mirror(const struct surface *half, const struct fitting *fitting
 }
 
 /* The whole mesh, and its rig unless NULL. */
-static int mannequin_finish(const struct making *making, struct mesh *mesh,
-                            struct mannequin_rig *rig)
+static void make_whole(const struct making *making, struct mesh *mesh, struct mannequin_rig *rig)
 {
     const struct surface *half = &making->surface;
+    struct cloth_error *error = half->error;
     const struct fitting fitting = fit_height(half, making->asked.height);
-    uint32_t *image = cloth_alloc(half->n, sizeof *image, making->error);
-    double *x = cloth_alloc(6 * (size_t)half->n, sizeof *x, making->error);
-    uint32_t *corner = cloth_alloc(6 * (size_t)half->m, sizeof *corner, making->error);
-    int code = making->error->code;
-    if (!code) {
+    uint32_t *image = cloth_alloc(half->n, sizeof *image, error);
+    double *x = cloth_alloc(6 * (size_t)half->n, sizeof *x, error);
+    uint32_t *corner = cloth_alloc(6 * (size_t)half->m, sizeof *corner, error);
+    if (!error->code) {
         const uint32_t n = mirror(half, &fitting, making->asked.height, image, x, corner);
-        code = mesh_inline(mesh, n, x, 0, NULL, 2 * half->m, corner, making->error);
+        mesh_inline(mesh, n, x, 0, NULL, 2 * half->m, corner, error);
     }
-    if (!code && rig)
-        code = rig_make(rig, mesh, half, &making->figure, making->asked.edge, fitting.low,
-                        fitting.scale, making->error);
+    if (!error->code && rig)
+        rig_make(rig, mesh, half, making->asked.edge, fitting.low, fitting.scale);
     free(image);
     free(x);
     free(corner);
-    return code;
 }
 
-static int check_girths(const struct making *making, uint32_t worst, double scale)
+static void check_girths(const struct making *making, uint32_t worst, double scale)
 {
     const double is = making->girth[worst], asked = making->asked.girth[worst];
-    if (fabs(is / asked - 1) <= NEAR)
-        return CLOTH_OK;
-    return cloth_fail(making->error, CLOTH_E_INPUT,
-                      "a %s of %g m does not go with the other girths: this figure gets one of "
-                      "%.3g m; change it, or those beside it",
-                      mannequin_measures[worst].name, asked * scale, is * scale);
+    if (fabs(is / asked - 1) > NEAR)
+        cloth_fail(making->surface.error, CLOTH_E_INPUT,
+                   "a %s of %g m does not go with the other girths: this figure gets one of %.3g "
+                   "m; change it, or those beside it",
+                   mannequin_measures[worst].name, asked * scale, is * scale);
 }
 
 int mannequin_make_rigged(struct mesh *mesh, struct mannequin_rig *rig,
@@ -153,8 +199,8 @@ int mannequin_make_rigged(struct mesh *mesh, struct mannequin_rig *rig,
                           struct cloth_error *error)
 {
     struct cloth_error own = {0};
-    struct making making = {.asked = *mannequin, .error = &own};
-    uint32_t worst = MANNEQUIN_GIRTHS;
+    struct making making = {.asked = *mannequin,
+                            .surface = {.figure = &making.figure, .error = &own}};
     *mesh = (struct mesh){0};
     if (rig)
         *rig = (struct mannequin_rig){0};
@@ -166,19 +212,20 @@ int mannequin_make_rigged(struct mesh *mesh, struct mannequin_rig *rig,
         making.asked.girth[i] /= scale;
         making.factor[i] = making.asked.girth[i] / mannequin_measures[i].girth;
     }
-    int code = mannequin_mannequin_make(&making, &worst);
-    if (!code && worst < MANNEQUIN_GIRTHS)
-        code = check_girths(&making, worst, scale);
-    code = code ? code : mannequin_finish(&making, mesh, rig);
+    const uint32_t worst = make_half(&making);
+    if (!own.code && worst < MANNEQUIN_GIRTHS)
+        check_girths(&making, worst, scale);
+    if (!own.code)
+        make_whole(&making, mesh, rig);
     for (uint32_t i = 0; i < MANNEQUIN_GIRTHS && girth; i++)
         girth[i] = making.girth[i] * scale;
     surface_free(&making.surface);
-    if (code) {
-        mesh_free(mesh);
-        if (rig)
-            mannequin_rig_free(rig);
-    }
-    return code ? cloth_fail(error, code, "%s", own.text) : CLOTH_OK;
+    if (!own.code)
+        return CLOTH_OK;
+    mesh_free(mesh);
+    if (rig)
+        mannequin_rig_free(rig);
+    return cloth_fail(error, own.code, "%s", own.text);
 }
 
 int mannequin_make(struct mesh *mesh, const struct mannequin *mannequin,

@@ -59,6 +59,10 @@ struct mannequin {
 int mannequin_make(struct mesh *mesh, const struct mannequin *mannequin,
                    double girth[MANNEQUIN_GIRTHS], struct cloth_error *error);
 
+/* Replaces 0 by defaults; checks ranges and ratios of measures. Errors: CLOTH_E_INPUT, with the
+ * measure's name. */
+int mannequin_complete(struct mannequin *mannequin, struct cloth_error *error);
+
 /* The number of a measure's name; MANNEQUIN_GIRTHS: there is none. */
 uint32_t mannequin_find(const char *name);
 

@@ -1,5 +1,5 @@
 /* The measures of figures, and the errors that name them. */
-#include "cloth/mannequin/measures.h"
+#include "cloth/mannequin/mannequin.h"
 
 #include <string.h>
 

@@ -1,14 +1,10 @@
 # A closed figure that garments are put on. Pure.
 libduite_cloth_a_SOURCES += \
 	cloth/mannequin/mannequin.c cloth/mannequin/mannequin.h \
-	cloth/mannequin/measures.c cloth/mannequin/measures.h \
+	cloth/mannequin/measures.c \
 	cloth/mannequin/pose.c cloth/mannequin/pose.h \
 	cloth/mannequin/detail/figure.c cloth/mannequin/detail/figure.h \
 	cloth/mannequin/detail/figure_parts.c \
-	cloth/mannequin/detail/girth.c \
 	cloth/mannequin/detail/march.c \
 	cloth/mannequin/detail/refine.c \
-	cloth/mannequin/detail/rig.c cloth/mannequin/detail/rig.h \
-	cloth/mannequin/detail/smooth.c \
-	cloth/mannequin/detail/surface.c cloth/mannequin/detail/surface.h \
-	cloth/mannequin/detail/vector.h
+	cloth/mannequin/detail/surface.c cloth/mannequin/detail/surface.h

@@ -1,7 +1,10 @@
 /* Bones hang on each other: chest on pelvis, arms on chest, legs on pelvis. A bone's turn comes
- * after that of the bone it hangs on. */
+ * after that of the bone it hangs on. Vertices follow bones by weights, which go from each vertex
+ * to its neighbours in so many rounds that they are smooth over a few centimetres, whatever the
+ * length of edges. */
 #include "cloth/mannequin/pose.h"
-#include "cloth/mannequin/detail/rig.h"
+#include "cloth/base/vector.h"
+#include "cloth/mannequin/detail/surface.h"
 #include "cloth/physics/curve.h"
 
 #include <stdlib.h>
@@ -72,6 +75,9 @@ void mannequin_walk_at(const struct mannequin_walk *walk, double time,
 
 /* ---- Bones ---- */
 
+/* The number of a bone in a rig: of the left and of the right side. */
+static const uint32_t rig_bones[2][FIGURE_BONES] = {{0, 1, 2, 3, 4, 5, 6}, {0, 1, 7, 8, 9, 10, 11}};
+
 /* x -> turn x + shift. Turns are not const: C17 has no such arguments of arrays of arrays. */
 struct motion {
     double turn[3][3], shift[3];
@@ -101,12 +107,10 @@ static void hang(struct motion *on, double turn[3][3], const double joint[3], st
 {
     double local[3];
     for (int i = 0; i < 3; i++)
-        local[i] =
-            joint[i] - (turn[i][0] * joint[0] + turn[i][1] * joint[1] + turn[i][2] * joint[2]);
+        local[i] = joint[i] - cloth_dot(turn[i], joint);
     pose_multiply(on->turn, turn, motion->turn);
     for (int i = 0; i < 3; i++)
-        motion->shift[i] = on->turn[i][0] * local[0] + on->turn[i][1] * local[1] +
-                           on->turn[i][2] * local[2] + on->shift[i];
+        motion->shift[i] = cloth_dot(on->turn[i], local) + on->shift[i];
 }
 
 /* First about z, outwards, then about x, forwards: hanging limbs swing to +z. */
@@ -163,8 +167,7 @@ void mannequin_place(const struct mannequin_rig *rig, const struct mesh *mesh,
             if (!(w > 0))
                 continue;
             for (int i = 0; i < 3; i++)
-                sum[i] += w * (motion[b].turn[i][0] * from[0] + motion[b].turn[i][1] * from[1] +
-                               motion[b].turn[i][2] * from[2] + motion[b].shift[i]);
+                sum[i] += w * (cloth_dot(motion[b].turn[i], from) + motion[b].shift[i]);
         }
         memcpy(x[v], sum, sizeof sum);
     }
@@ -174,4 +177,60 @@ void mannequin_rig_free(struct mannequin_rig *rig)
 {
     free(rig->weight);
     *rig = (struct mannequin_rig){0};
+}
+
+/* ---- Weights ---- */
+
+static const double WIDTH = 0.055; /* m: over which weights are smooth */
+
+/* Neighbours of vertices come in the order of triangles; each edge has both its directions. */
+static void rig_smooth(const struct mesh *mesh, double (*weight)[MANNEQUIN_BONES], uint32_t rounds,
+                       struct cloth_error *error)
+{
+    const size_t n = mesh->n_vertices, n_sides = 3 * (size_t)mesh->n_triangles;
+    double(*sum)[MANNEQUIN_BONES] = cloth_alloc(n, sizeof *sum, error);
+    double *count = cloth_alloc(n, sizeof *count, error);
+    const bool made = sum && count;
+    for (size_t i = 0; made && i < n_sides; i++)
+        count[mesh->triangle[i]] += 1;
+    for (uint32_t round = 0; made && round < rounds; round++) {
+        memset(sum, 0, n * sizeof *sum);
+        for (size_t i = 0; i < n_sides; i++) {
+            const uint32_t a = mesh->triangle[i], b = mesh->triangle[i - i % 3 + (i + 1) % 3];
+            for (uint32_t k = 0; k < MANNEQUIN_BONES; k++)
+                sum[a][k] += weight[b][k];
+        }
+        for (size_t v = 0; v < n; v++)
+            for (uint32_t k = 0; k < MANNEQUIN_BONES; k++)
+                weight[v][k] = sum[v][k] / count[v];
+    }
+    free(sum);
+    free(count);
+}
+
+void rig_make(struct mannequin_rig *rig, const struct mesh *mesh, const struct surface *half,
+              double edge, double low, const double scale[2])
+{
+    rig->weight = cloth_alloc(mesh->n_vertices, sizeof *rig->weight, half->error);
+    if (!rig->weight)
+        return;
+    for (uint32_t b = 1; b < FIGURE_BONES; b++) {
+        double at[3];
+        figure_joint(half->figure, b, at);
+        for (uint32_t side = 0; side < 2; side++) {
+            double *joint = rig->joint[rig_bones[side][b]];
+            joint[0] = scale[1] * (side ? -at[0] : at[0]);
+            joint[1] = scale[0] * (at[1] - low);
+            joint[2] = scale[1] * at[2];
+        }
+    }
+    uint32_t image = half->n;
+    for (uint32_t v = 0; v < half->n; v++) {
+        const enum figure_bone bone = figure_bone(half->figure, half->x[v]);
+        rig->weight[v][rig_bones[0][bone]] = 1;
+        if (!half->middle[v])
+            rig->weight[image++][rig_bones[1][bone]] = 1;
+    }
+    const uint32_t rounds = (uint32_t)(WIDTH * WIDTH / (edge * edge)) + 1;
+    rig_smooth(mesh, rig->weight, rounds, half->error);
 }

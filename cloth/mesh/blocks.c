@@ -4,17 +4,18 @@
 
 #include "cloth/base/memory.h"
 #include "cloth/mesh/detail/graph.h"
-#include "cloth/mesh/detail/pieces.h"
 
+#include <endian.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 #include <xxhash.h>
 
 struct cutter {
     struct cloth_error *error;
     struct mesh_blocks *blocks; /* until set_places: place[] is the node of a vertex */
     struct mesh_graph graph;
-    struct mesh_order *order;
+    struct mesh_order order;
     uint32_t *part;  /* of each node */
     uint32_t *nodes; /* part after part: those of part p are nodes[start[p] ..] */
 };
@@ -37,7 +38,7 @@ static int number_nodes(struct cutter *cutter, uint32_t n_vertices, const unsign
         blocks->n_places += used[v] ? 1 : 0;
     uint32_t n = blocks->n_places;
     blocks->n_blocks = count_blocks(n, grain);
-    blocks->start = cloth_alloc((size_t)blocks->n_blocks + 1, sizeof(uint32_t), cutter->error);
+    blocks->start = cloth_alloc((size_t)blocks->n_blocks + 2, sizeof(uint32_t), cutter->error);
     blocks->vertex = cloth_alloc(n, sizeof(uint32_t), cutter->error);
     blocks->place = cloth_alloc(n_vertices, sizeof(uint32_t), cutter->error);
     cutter->part = cloth_alloc(n, sizeof(uint32_t), cutter->error);
@@ -58,19 +59,15 @@ static bool blocks_group(struct cutter *cutter)
     struct mesh_blocks *blocks = cutter->blocks;
     uint32_t *start = blocks->start, n = blocks->n_places;
     bool full = true;
-    for (uint32_t b = 0; b <= blocks->n_blocks; b++)
-        start[b] = 0;
+    memset(start, 0, ((size_t)blocks->n_blocks + 2) * sizeof *start);
     for (uint32_t node = 0; node < n; node++)
-        start[cutter->part[node] + 1]++;
+        start[cutter->part[node] + 2]++;
     for (uint32_t b = 0; b < blocks->n_blocks; b++) {
-        full = full && start[b + 1] > 0;
-        start[b + 1] += start[b];
+        full = full && start[b + 2] > 0;
+        start[b + 2] += start[b + 1];
     }
-    for (uint32_t node = 0; node < n; node++)
-        cutter->nodes[start[cutter->part[node]]++] = node;
-    for (uint32_t b = blocks->n_blocks; b > 0; b--) /* each was moved on to the next one's */
-        start[b] = start[b - 1];
-    start[0] = 0;
+    for (uint32_t node = 0; node < n; node++) /* from where part b begins to where it ends */
+        cutter->nodes[start[cutter->part[node] + 1]++] = node;
     return full;
 }
 
@@ -78,7 +75,7 @@ static void order_parts(struct cutter *cutter)
 {
     const uint32_t *start = cutter->blocks->start;
     for (uint32_t b = 0; b < cutter->blocks->n_blocks; b++)
-        mesh_order_part(cutter->order, cutter->part, start[b + 1] - start[b],
+        mesh_order_part(&cutter->order, cutter->part, start[b + 1] - start[b],
                         cutter->nodes + start[b]);
 }
 
@@ -106,20 +103,6 @@ static int fill_empty(struct cutter *cutter)
     return code;
 }
 
-static int blocks_cut(struct cutter *cutter)
-{
-    cutter->order = mesh_order_new(&cutter->graph, cutter->error);
-    if (!cutter->order)
-        return CLOTH_E_MEMORY;
-    int code =
-        mesh_partition(cutter->part, &cutter->graph, cutter->blocks->n_blocks, cutter->error);
-    if (!code && !blocks_group(cutter))
-        code = fill_empty(cutter);
-    if (!code)
-        order_parts(cutter);
-    return code;
-}
-
 static void set_places(struct cutter *cutter)
 {
     struct mesh_blocks *blocks = cutter->blocks;
@@ -133,26 +116,20 @@ static void set_places(struct cutter *cutter)
     }
 }
 
-static unsigned char *blocks_put_numbers(unsigned char *to, size_t n, const uint32_t *numbers)
-{
-    for (size_t i = 0; i < n; i++)
-        for (int shift = 0; shift < 32; shift += 8)
-            *to++ = (unsigned char)(numbers[i] >> shift);
-    return to;
-}
-
 static int set_hash(struct cutter *cutter)
 {
     struct mesh_blocks *blocks = cutter->blocks;
-    size_t n = 2 + (size_t)blocks->n_blocks + blocks->n_places;
-    unsigned char *bytes = cloth_alloc(n, 4, cutter->error);
-    if (!bytes)
+    const size_t n_starts = (size_t)blocks->n_blocks + 1, n = 1 + n_starts + blocks->n_places;
+    uint32_t *number = cloth_alloc(n, sizeof *number, cutter->error);
+    if (!number)
         return CLOTH_E_MEMORY;
-    unsigned char *to = blocks_put_numbers(bytes, 1, &blocks->n_blocks);
-    to = blocks_put_numbers(to, (size_t)blocks->n_blocks + 1, blocks->start);
-    blocks_put_numbers(to, blocks->n_places, blocks->vertex);
-    blocks->hash = XXH64(bytes, 4 * n, 0);
-    free(bytes);
+    number[0] = blocks->n_blocks;
+    memcpy(number + 1, blocks->start, n_starts * sizeof *number);
+    memcpy(number + 1 + n_starts, blocks->vertex, blocks->n_places * sizeof *number);
+    for (size_t i = 0; i < n; i++)
+        number[i] = htole32(number[i]);
+    blocks->hash = XXH64(number, n * sizeof *number, 0);
+    free(number);
     return CLOTH_OK;
 }
 
@@ -164,19 +141,22 @@ int mesh_blocks_cut(struct mesh_blocks *blocks, uint32_t n_vertices, const unsig
     if (grain == 0)
         return cloth_fail(error, CLOTH_E_INPUT, "a grain of 0 vertices; it must be at least 1");
     int code = number_nodes(&cutter, n_vertices, used, grain);
-    if (!code)
-        code = mesh_graph_build(&cutter.graph, blocks->n_places, n_vertices, blocks->place, pairs,
-                                error);
-    if (!code)
-        code = blocks_cut(&cutter);
-    mesh_graph_free(&cutter.graph);
+    code = code ? code
+                : mesh_graph_build(&cutter.graph, blocks->n_places, n_vertices, blocks->place,
+                                   pairs, error);
+    code = code ? code : mesh_order_make(&cutter.order, &cutter.graph, error);
+    code = code ? code : mesh_partition(cutter.part, &cutter.graph, blocks->n_blocks, error);
+    if (!code && !blocks_group(&cutter))
+        code = fill_empty(&cutter);
     if (!code) {
+        order_parts(&cutter);
         set_places(&cutter);
         code = set_hash(&cutter);
     }
     if (code)
         mesh_blocks_free(blocks);
-    mesh_order_free(cutter.order);
+    mesh_order_free(&cutter.order);
+    mesh_graph_free(&cutter.graph);
     free(cutter.part);
     free(cutter.nodes);
     return code;

@@ -1,9 +1,9 @@
 /* Vertices that stand for others are farther than the distance from each other, so a cell has a
  * bounded number of them, and the work is linear for any mesh. */
 #include "cloth/base/memory.h"
+#include "cloth/base/vector.h"
 #include "cloth/mesh/mesh.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 enum { CELL = 4 }; /* distances a side: near vertices are mostly in one cell */
@@ -16,6 +16,13 @@ struct cells {
     uint32_t *head, *next; /* vertex + 1; 0: the end */
 };
 
+/* The cell that a vertex is in, or one that is `aside` along each axis. */
+static void cell_of(const struct cells *cells, uint32_t v, double aside, double cell[3])
+{
+    for (size_t i = 0; i < 3; i++)
+        cell[i] = floor((cells->position[3 * (size_t)v + i] + aside) / (CELL * cells->distance));
+}
+
 static uint32_t chain_of(const struct cells *cells, const double cell[3])
 {
     uint64_t hash = 0;
@@ -24,19 +31,13 @@ static uint32_t chain_of(const struct cells *cells, const double cell[3])
     return (uint32_t)(hash >> 16) & cells->mask;
 }
 
-static double square_between(const double *a, const double *b)
-{
-    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-    return x * x + y * y + z * z;
-}
-
 /* The lowest vertex of a chain that is near; `best` where none is lower. */
-static uint32_t coincide_look_along(const struct cells *cells, uint32_t chain, const double *x,
+static uint32_t coincide_look_along(const struct cells *cells, uint32_t chain, uint32_t v,
                                     uint32_t best)
 {
-    const double most = cells->distance * cells->distance;
+    const double *x = cells->position, most = cells->distance * cells->distance;
     for (uint32_t at = cells->head[chain]; at; at = cells->next[at - 1])
-        if (at - 1 < best && square_between(x, cells->position + 3 * (size_t)(at - 1)) <= most)
+        if (at - 1 < best && cloth_square(x + 3 * (size_t)v, x + 3 * (size_t)(at - 1)) <= most)
             best = at - 1;
     return best;
 }
@@ -44,25 +45,21 @@ static uint32_t coincide_look_along(const struct cells *cells, uint32_t chain, c
 /* The lowest vertex that stands for others and is near; v itself: there is none. */
 static uint32_t coincide_find_near(const struct cells *cells, uint32_t v)
 {
-    const double *x = cells->position + 3 * (size_t)v, size = CELL * cells->distance;
     double low[3], high[3], at[3];
-    for (int i = 0; i < 3; i++) {
-        low[i] = floor((x[i] - cells->distance) / size);
-        high[i] = floor((x[i] + cells->distance) / size);
-    }
+    cell_of(cells, v, -cells->distance, low);
+    cell_of(cells, v, cells->distance, high);
     uint32_t best = v;
     for (at[0] = low[0]; at[0] <= high[0]; at[0]++)
         for (at[1] = low[1]; at[1] <= high[1]; at[1]++)
             for (at[2] = low[2]; at[2] <= high[2]; at[2]++)
-                best = coincide_look_along(cells, chain_of(cells, at), x, best);
+                best = coincide_look_along(cells, chain_of(cells, at), v, best);
     return best;
 }
 
 static void coincide_put(struct cells *cells, uint32_t v)
 {
     double at[3];
-    for (int i = 0; i < 3; i++)
-        at[i] = floor(cells->position[3 * (size_t)v + (size_t)i] / (CELL * cells->distance));
+    cell_of(cells, v, 0, at);
     const uint32_t chain = chain_of(cells, at);
     cells->next[v] = cells->head[chain];
     cells->head[chain] = v + 1;

@@ -1,8 +1,6 @@
 /* The compliances are written out, not inverted: so a lattice without diagonals, whose stiffness
  * is singular, has its moduli, too. */
-#include "cloth/mesh/elastic.h"
-
-#include "cloth/mesh/detail/vector.h"
+#include "cloth/mesh/lattice.h"
 
 #include <math.h>
 

@@ -3,71 +3,47 @@
 #include "cloth/mesh/lattice.h"
 
 #include "cloth/base/memory.h"
-#include "cloth/mesh/detail/sort.h"
-#include "cloth/mesh/detail/vector.h"
+#include "cloth/mesh/detail/sides.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Makes springs and hands each to `take`, which may fail. */
+/* Makes springs. They are shown to `visit` unless it is NULL, else counted, and stored if so
+ * wanted.
+ */
 struct builder {
     const struct mesh *mesh;
     const struct mesh_moduli *moduli;
     struct cloth_error *error;
-    int (*take)(struct builder *builder, const struct mesh_spring *spring);
-    uint32_t n;
-    struct cloth_list springs; /* of `append` */
     void (*visit)(void *to, const struct mesh_spring *spring);
     void *to;
+    uint32_t n;
+    bool stores;
+    struct cloth_list springs;
 };
 
-static int mesh_lattice_count(struct builder *builder, const struct mesh_spring *spring)
+static int take_spring(struct builder *builder, const struct mesh_spring *spring)
 {
-    (void)spring;
-    if (builder->n == UINT32_MAX)
+    if (builder->visit) {
+        builder->visit(builder->to, spring);
+        return CLOTH_OK;
+    }
+    if (builder->n++ == UINT32_MAX)
         return cloth_fail(builder->error, CLOTH_E_INPUT,
                           "the mesh has more than %u springs; use a coarser one", UINT32_MAX);
-    builder->n++;
-    return CLOTH_OK;
+    return builder->stores
+               ? cloth_list_put(&builder->springs, spring, sizeof *spring, builder->error)
+               : CLOTH_OK;
 }
 
-static int mesh_lattice_append(struct builder *builder, const struct mesh_spring *spring)
+static int add_spring(struct builder *builder, uint32_t a, uint32_t b, enum mesh_spring_kind kind,
+                      double stiffness, double length)
 {
-    const int code = mesh_lattice_count(builder, spring);
-    if (code)
-        return code;
-    struct mesh_spring *to = cloth_list_add(&builder->springs, sizeof *to, 1, builder->error);
-    if (!to)
-        return CLOTH_E_MEMORY;
-    *to = *spring;
-    return CLOTH_OK;
-}
-
-static int mesh_lattice_show(struct builder *builder, const struct mesh_spring *spring)
-{
-    builder->visit(builder->to, spring);
-    return CLOTH_OK;
-}
-
-static int mesh_lattice_check_length(const struct builder *builder, uint32_t a, uint32_t b,
-                                     double length)
-{
-    if (length > 0 && isfinite(length))
-        return CLOTH_OK;
-    return cloth_fail(builder->error, CLOTH_E_INPUT,
-                      "vertices %u and %u (counted from 1) are %g m apart; vertices that a spring "
-                      "joins need a finite distance above 0",
-                      a + 1, b + 1, length);
-}
-
-/* area >= 0: modulus * area / length^2; else the modulus as it is. */
-static int mesh_lattice_add(struct builder *builder, uint32_t a, uint32_t b,
-                            enum mesh_spring_kind kind, double modulus, double area, double length)
-{
-    int code = mesh_lattice_check_length(builder, a, b, length);
-    if (code)
-        return code;
-    double stiffness = area >= 0 ? modulus * (area / length / length) : modulus;
+    if (!(length > 0) || !isfinite(length))
+        return cloth_fail(builder->error, CLOTH_E_INPUT,
+                          "vertices %u and %u (counted from 1) are %g m apart; vertices that a "
+                          "spring joins need a finite distance above 0",
+                          a + 1, b + 1, length);
     if (stiffness == 0)
         return CLOTH_OK;
     if (!isfinite(stiffness))
@@ -76,7 +52,7 @@ static int mesh_lattice_add(struct builder *builder, uint32_t a, uint32_t b,
                           "of %g N/m; it must be finite",
                           a + 1, b + 1, stiffness);
     const struct mesh_spring spring = {a < b ? a : b, a < b ? b : a, stiffness, length, kind};
-    return builder->take(builder, &spring);
+    return take_spring(builder, &spring);
 }
 
 /* The moduli of a spring between two vertices. */
@@ -86,8 +62,6 @@ static const struct mesh_moduli *moduli_of(const struct builder *builder, uint32
     const int region = regions ? mesh_region(regions->mask, 2, (const uint32_t[]){a, b}) : -1;
     return region < 0 ? builder->moduli : regions->moduli + region;
 }
-
-enum { NO_AREA = -1 };
 
 /* Modulus of a grid's spring. */
 static double modulus_along(const struct mesh_moduli *moduli, enum mesh_spring_kind kind, int weft)
@@ -128,8 +102,7 @@ static int add_grid_vertex(struct builder *builder, uint32_t i, uint32_t j)
         const double k = springs[s].part *
                          modulus_along(moduli_of(builder, a, b), springs[s].kind, springs[s].weft);
         const double length = mesh_distance(mesh->position, a, b);
-        int code = k == 0 ? CLOTH_OK
-                          : mesh_lattice_add(builder, a, b, springs[s].kind, k, NO_AREA, length);
+        int code = k == 0 ? CLOTH_OK : add_spring(builder, a, b, springs[s].kind, k, length);
         if (code)
             return code;
     }
@@ -146,8 +119,8 @@ static int add_grid(struct builder *builder)
 }
 
 /* Turns components along u and v into those along warp and weft. */
-static void mesh_lattice_turn(const struct mesh_regions *regions, const struct mesh_edge *edge,
-                              double *u, double *v)
+static void turn_to_grain(const struct mesh_regions *regions, const struct mesh_edge *edge,
+                          double *u, double *v)
 {
     const uint32_t end[2] = {edge->a, edge->b};
     const int region = regions ? mesh_region(regions->grain_mask, 2, end) : -1;
@@ -168,7 +141,7 @@ static double weft_share(const struct builder *builder, const struct mesh_edge *
     mesh_uv(mesh, mesh_uv_number(mesh, triangle, edge->a), a);
     mesh_uv(mesh, mesh_uv_number(mesh, triangle, edge->b), b);
     double along = b[0] - a[0], across = b[1] - a[1];
-    mesh_lattice_turn(builder->moduli->regions, edge, &along, &across);
+    turn_to_grain(builder->moduli->regions, edge, &along, &across);
     const double u = along * along, v = across * across;
     return u + v > 0 ? v / (u + v) : 0;
 }
@@ -194,22 +167,23 @@ static int modulus_of(const struct builder *builder, const struct mesh_edge *edg
 }
 
 /* Adds the spring of a triangle's side. */
-static int mesh_lattice_add_side(struct builder *builder, const struct mesh_edge *edge)
+static int add_side(struct builder *builder, const struct mesh_edge *edge)
 {
     double modulus;
     const int code = modulus_of(builder, edge, &modulus);
     if (code)
         return code;
     const double length = mesh_length(builder->mesh, edge->triangle, edge->a, edge->b);
-    return mesh_lattice_add(builder, edge->a, edge->b, MESH_STRETCH, modulus, edge->area, length);
+    return add_spring(builder, edge->a, edge->b, MESH_STRETCH,
+                      modulus * (edge->area / length / length), length);
 }
 
 static int add_lone_edge(struct builder *builder, const struct mesh_edge *edge)
 {
     const double length = mesh_distance(builder->mesh->position, edge->a, edge->b);
     const double ea = moduli_of(builder, edge->a, edge->b)->ea;
-    return mesh_lattice_add(builder, edge->a, edge->b, MESH_STRETCH, length > 0 ? ea / length : 0,
-                            NO_AREA, length);
+    return add_spring(builder, edge->a, edge->b, MESH_STRETCH, length > 0 ? ea / length : 0,
+                      length);
 }
 
 /* Adds the spring between the opposite vertices. */
@@ -218,19 +192,18 @@ static int add_bend(struct builder *builder, const struct mesh_edge *edge, doubl
     const uint32_t corner[4] = {edge->a, edge->b, edge->opposite[0], edge->opposite[1]};
     double x[12];
     mesh_hinge(builder->mesh, edge->triangle, corner, x);
-    return mesh_lattice_add(builder, corner[2], corner[3], MESH_BEND, modulus, edge->area,
-                            mesh_distance(x, 2, 3));
+    const double length = mesh_distance(x, 2, 3);
+    return add_spring(builder, corner[2], corner[3], MESH_BEND,
+                      modulus * (edge->area / length / length), length);
 }
 
 /* All stretch springs, then all bend springs, each in edge order. */
-static int mesh_lattice_add_edges(struct builder *builder, const struct mesh_edges *edges)
+static int add_edges(struct builder *builder, const struct mesh_edges *edges)
 {
     int code = CLOTH_OK;
-    for (uint32_t e = 0; e < edges->n && !code; e++) {
-        const struct mesh_edge *edge = &edges->edge[e];
-        code = edge->opposite[0] == UINT32_MAX ? add_lone_edge(builder, edge)
-                                               : mesh_lattice_add_side(builder, edge);
-    }
+    for (uint32_t e = 0; e < edges->n && !code; e++)
+        code = edges->edge[e].opposite[0] == UINT32_MAX ? add_lone_edge(builder, &edges->edge[e])
+                                                        : add_side(builder, &edges->edge[e]);
     for (uint32_t e = 0; e < edges->n && !code; e++) {
         const struct mesh_edge *edge = &edges->edge[e];
         uint32_t a = edge->opposite[0], b = edge->opposite[1];
@@ -241,41 +214,37 @@ static int mesh_lattice_add_edges(struct builder *builder, const struct mesh_edg
     return code;
 }
 
-static int sort(struct mesh_lattice *lattice, const struct builder *builder)
+static int sort_springs(struct mesh_lattice *lattice, const struct builder *builder)
 {
     const struct mesh_spring *spring = builder->springs.items;
-    size_t n = builder->springs.n;
-    int code = CLOTH_E_MEMORY;
+    const size_t n = builder->springs.n;
     uint32_t *pair = cloth_alloc(n, 2 * sizeof *pair, builder->error);
     uint32_t *order = cloth_alloc(n, sizeof *order, builder->error);
     lattice->spring = cloth_alloc(n, sizeof *lattice->spring, builder->error);
-    if (!pair || !order || !lattice->spring)
-        goto done;
-    for (size_t s = 0; s < n; s++) {
+    int code = pair && order && lattice->spring ? CLOTH_OK : CLOTH_E_MEMORY;
+    for (size_t s = 0; s < n && !code; s++) {
         pair[2 * s] = spring[s].a;
         pair[2 * s + 1] = spring[s].b;
     }
-    code = mesh_sort_pairs(order, n, pair, builder->mesh->n_vertices, builder->error);
-    if (code)
-        goto done;
-    for (size_t s = 0; s < n; s++)
+    if (!code)
+        code = mesh_sort_pairs(order, n, pair, builder->mesh->n_vertices, builder->error);
+    for (size_t s = 0; s < n && !code; s++)
         lattice->spring[s] = spring[order[s]];
-done:
     free(pair);
     free(order);
     return code;
 }
 
-static int mesh_lattice_build_edges(struct mesh_lattice *lattice, struct builder *builder)
+static int build_from_edges(struct mesh_lattice *lattice, struct builder *builder)
 {
     struct mesh_edges edges = {0};
-    builder->take = mesh_lattice_append;
+    builder->stores = true;
     int code = mesh_edges_find(&edges, builder->mesh, builder->error);
     if (!code)
-        code = mesh_lattice_add_edges(builder, &edges);
+        code = add_edges(builder, &edges);
     mesh_edges_free(&edges);
     if (!code)
-        code = sort(lattice, builder);
+        code = sort_springs(lattice, builder);
     free(builder->springs.items);
     return code;
 }
@@ -283,11 +252,9 @@ static int mesh_lattice_build_edges(struct mesh_lattice *lattice, struct builder
 int mesh_lattice_build(struct mesh_lattice *lattice, const struct mesh *mesh,
                        const struct mesh_moduli *moduli, struct cloth_error *error)
 {
-    struct builder builder = {
-        .mesh = mesh, .moduli = moduli, .error = error, .take = mesh_lattice_count};
+    struct builder builder = {.mesh = mesh, .moduli = moduli, .error = error};
     *lattice = (struct mesh_lattice){.mesh = mesh, .moduli = *moduli};
-    const int code =
-        mesh->grid_nx ? add_grid(&builder) : mesh_lattice_build_edges(lattice, &builder);
+    const int code = mesh->grid_nx ? add_grid(&builder) : build_from_edges(lattice, &builder);
     lattice->n = builder.n;
     if (code)
         mesh_lattice_free(lattice);
@@ -297,11 +264,8 @@ int mesh_lattice_build(struct mesh_lattice *lattice, const struct mesh *mesh,
 void mesh_lattice_each(const struct mesh_lattice *lattice,
                        void (*visit)(void *to, const struct mesh_spring *spring), void *to)
 {
-    struct builder builder = {.mesh = lattice->mesh,
-                              .moduli = &lattice->moduli,
-                              .take = mesh_lattice_show,
-                              .visit = visit,
-                              .to = to};
+    struct builder builder = {
+        .mesh = lattice->mesh, .moduli = &lattice->moduli, .visit = visit, .to = to};
     if (lattice->mesh && lattice->mesh->grid_nx)
         add_grid(&builder); /* built once without a failure */
     for (uint32_t s = 0; lattice->spring && s < lattice->n; s++)

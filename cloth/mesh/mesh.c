@@ -1,49 +1,28 @@
 /* Functions of every mesh, whatever its source. Sums run in triangle order, so they are the same
  * everywhere. */
 #include "cloth/mesh/mesh.h"
+#include "cloth/base/axes.h"
+#include "cloth/base/memory.h"
+#include "cloth/base/vector.h"
 
-#include "cloth/mesh/detail/vector.h"
-
-#include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 const struct mesh_transform mesh_identity = {{1, 1, 1}, {1, 0, 0, 0}, {0, 0, 0}};
 
-/* The matrix of a quaternion (w, x, y, z) divided by its length; false if it turns nothing (also of
- * length zero). */
-static bool rotation(const double *quaternion, double matrix[3][3])
-{
-    const double *q = quaternion;
-    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    if ((q[1] == 0 && q[2] == 0 && q[3] == 0) || !(length > 0))
-        return false;
-    double w = q[0] / length, x = q[1] / length, y = q[2] / length, z = q[3] / length;
-    double rows[3][3] = {
-        {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-        {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-        {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)},
-    };
-    memcpy(matrix, rows, sizeof rows);
-    return true;
-}
-
 void mesh_apply(struct mesh *mesh, const struct mesh_transform *transform)
 {
+    const double *q = transform->rotate, *shift = transform->translate;
     double matrix[3][3];
-    bool turns = rotation(transform->rotate, matrix);
+    const bool turns = (q[1] != 0 || q[2] != 0 || q[3] != 0) && cloth_rotation(q, matrix);
     for (size_t v = 0; v < mesh->n_vertices; v++) {
         double *x = mesh->position + 3 * v, scaled[3];
         for (size_t i = 0; i < 3; i++)
             scaled[i] = x[i] * transform->scale[i];
         for (size_t i = 0; i < 3; i++) {
-            x[i] = scaled[i];
-            if (turns)
-                x[i] =
-                    matrix[i][0] * scaled[0] + matrix[i][1] * scaled[1] + matrix[i][2] * scaled[2];
-            if (transform->translate[i] != 0) /* -0 + 0 would lose its sign */
-                x[i] += transform->translate[i];
+            x[i] = turns ? cloth_dot(matrix[i], scaled) : scaled[i];
+            if (shift[i] != 0) /* -0 + 0 would lose its sign */
+                x[i] += shift[i];
         }
     }
 }
@@ -71,29 +50,14 @@ void mesh_share_of(const struct mesh *mesh, uint32_t triangle, double density, b
     share->mass = mesh_triangle_area(mesh, triangle) * density / share->n;
 }
 
-static void add_share(const struct mesh *mesh, uint32_t triangle, double density, bool by_cell,
-                      double *mass)
+void mesh_add_mass(const struct mesh *mesh, double density, bool by_cell, double *mass)
 {
-    struct mesh_share share;
-    mesh_share_of(mesh, triangle, density, by_cell, &share);
-    for (uint32_t i = 0; i < share.n; i++)
-        mass[share.vertex[i]] += share.mass;
-}
-
-void mesh_add_mass_of(const struct mesh *mesh, uint32_t triangle, double density, double *mass)
-{
-    add_share(mesh, triangle, density, false, mass);
-}
-
-void mesh_add_cell_mass_of(const struct mesh *mesh, uint32_t triangle, double density, double *mass)
-{
-    add_share(mesh, triangle, density, true, mass);
-}
-
-void mesh_add_mass(const struct mesh *mesh, double density, double *mass)
-{
-    for (uint32_t t = 0; t < mesh->n_triangles; t++)
-        mesh_add_mass_of(mesh, t, density, mass);
+    for (uint32_t t = 0; t < mesh->n_triangles; t++) {
+        struct mesh_share share;
+        mesh_share_of(mesh, t, density, by_cell, &share);
+        for (uint32_t i = 0; i < share.n; i++)
+            mass[share.vertex[i]] += share.mass;
+    }
 }
 
 double mesh_box(const struct mesh *mesh, double low[3], double high[3])
@@ -110,6 +74,106 @@ double mesh_box(const struct mesh *mesh, double low[3], double high[3])
     }
     return longest;
 }
+
+/* ---- Principal axes: those of the second moments ---- */
+
+/* Second moments about the mean of all vertices. */
+static void moments(const struct mesh *mesh, double m[3][3])
+{
+    double mean[3] = {0};
+    memset(m, 0, 9 * sizeof(double));
+    for (size_t v = 0; v < mesh->n_vertices; v++)
+        for (size_t i = 0; i < 3; i++)
+            mean[i] += mesh->position[3 * v + i] / mesh->n_vertices;
+    for (size_t v = 0; v < mesh->n_vertices; v++)
+        for (size_t i = 0; i < 3; i++)
+            for (size_t j = 0; j < 3; j++)
+                m[i][j] +=
+                    (mesh->position[3 * v + i] - mean[i]) * (mesh->position[3 * v + j] - mean[j]);
+}
+
+/* Copies an axis, its largest component above 0. */
+static void take_axis(const double axis[3], double to[3])
+{
+    int largest = 0;
+    for (int i = 1; i < 3; i++)
+        if (fabs(axis[i]) > fabs(axis[largest]) * (1 + 1e-9))
+            largest = i;
+    for (int i = 0; i < 3; i++)
+        to[i] = axis[largest] < 0 ? -axis[i] : axis[i];
+}
+
+void mesh_axes(const struct mesh *mesh, double u[3], double v[3])
+{
+    double m[3][3], axis[3][3];
+    moments(mesh, m);
+    cloth_axes(1e-15 * (m[0][0] + m[1][1] + m[2][2]), m, axis); /* less is rounding */
+    int least = 2; /* of equals the last; the two others keep their order unless the later is longer
+                    */
+    for (int k = 1; k >= 0; k--)
+        if (m[k][k] < m[least][least] * (1 - 1e-9))
+            least = k;
+    const int first = least == 0 ? 1 : 0, second = least == 2 ? 1 : 2;
+    const bool later = m[second][second] > m[first][first] * (1 + 1e-9);
+    take_axis(axis[later ? second : first], u);
+    take_axis(axis[later ? first : second], v);
+}
+
+/* ---- Groups: runs of faces. A name may have several, and a face may be in several groups ---- */
+
+uint32_t mesh_group_of(const struct mesh *mesh, const char *name)
+{
+    for (uint32_t g = 0; g < mesh->n_groups; g++)
+        if (!strcmp(mesh->group[g], name))
+            return g;
+    return UINT32_MAX;
+}
+
+int mesh_group_add(struct mesh *mesh, const char *name, uint32_t first, uint32_t n,
+                   struct cloth_error *error)
+{
+    const size_t size = strlen(name) + 1;
+    char **group = realloc(mesh->group, ((size_t)mesh->n_groups + 1) * sizeof *group);
+    mesh->group = group ? group : mesh->group;
+    struct mesh_group_run *run =
+        realloc(mesh->group_run, ((size_t)mesh->n_group_runs + 1) * sizeof *run);
+    mesh->group_run = run ? run : mesh->group_run;
+    char *copy = group && run ? cloth_alloc(size, 1, error) : NULL;
+    if (!copy)
+        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for the groups of a mesh");
+    memcpy(copy, name, size);
+    uint32_t r = mesh->n_group_runs++;
+    for (; r > 0 && run[r - 1].first > first; r--)
+        run[r] = run[r - 1];
+    run[r] = (struct mesh_group_run){mesh->n_groups, first, n};
+    group[mesh->n_groups++] = copy;
+    return CLOTH_OK;
+}
+
+void mesh_group_vertices(const struct mesh *mesh, uint32_t group, unsigned char *mark)
+{
+    const uint32_t *start = mesh->face_start;
+    for (uint32_t r = 0; r < mesh->n_group_runs; r++) {
+        const struct mesh_group_run *run = mesh->group_run + r;
+        for (uint32_t c = start[run->first]; run->group == group && c < start[run->first + run->n];
+             c++)
+            mark[mesh->face_corner[c]] = 1;
+    }
+}
+
+/* A polygon of k corners has k - 2 triangles, which stand in the order of the faces. */
+void mesh_group_triangles(const struct mesh *mesh, uint32_t group, unsigned char *mark)
+{
+    for (uint32_t r = 0; r < mesh->n_group_runs; r++) {
+        const struct mesh_group_run *run = mesh->group_run + r;
+        const uint32_t end = run->first + run->n;
+        const uint32_t from = mesh->face_start[run->first] - 2 * run->first;
+        if (run->group == group)
+            memset(mark + from, 1, mesh->face_start[end] - 2 * end - from);
+    }
+}
+
+/* ---- The end ---- */
 
 static void free_names(char **name, uint32_t n)
 {

@@ -106,9 +106,9 @@ int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error
 int mesh_read_surface(struct mesh *mesh, const char *path, struct cloth_error *error);
 
 /* Reads the frames of a PC2 file of version 1, which have n_vertices each. *place: n_frames x
- * n_vertices x 3 as in the file, finite or not, to be freed; NULL after an error. Codes:
- * CLOTH_E_INPUT for another format, frames of another size, no frames, or an early end; CLOTH_E_IO,
- * CLOTH_E_MEMORY. */
+ * n_vertices x 3 as in the file, to be freed; NULL after an error. Codes: CLOTH_E_INPUT for another
+ * format, frames of another size, no frames, an early end, or a coordinate that is not finite;
+ * CLOTH_E_IO, CLOTH_E_MEMORY. */
 int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t *n_frames, double **place,
                   struct cloth_error *error);
 
@@ -158,6 +158,9 @@ uint32_t mesh_uv_number(const struct mesh *mesh, uint32_t t, uint32_t vertex);
 /* Its place there, m: a shape at rest from uv may have several places of a vertex. */
 const double *mesh_place(const struct mesh *mesh, uint32_t t, uint32_t vertex);
 double mesh_triangle_area(const struct mesh *mesh, uint32_t t);
+/* The distance of two positions (n x 3), m, and the area of a triangle with these corners, m^2. */
+double mesh_distance(const double *position, uint32_t a, uint32_t b);
+double mesh_area(const double *position, const uint32_t corner[3]);
 
 /* The group of that name; UINT32_MAX: there is none. */
 uint32_t mesh_group_of(const struct mesh *mesh, const char *name);
@@ -174,11 +177,11 @@ void mesh_group_triangles(const struct mesh *mesh, uint32_t group, unsigned char
  * above 0: u the longer one; of equal ones the earlier coordinate's. */
 void mesh_axes(const struct mesh *mesh, double u[3], double v[3]);
 
-/* Frees the arrays of a mesh and clears it; a zeroed mesh is fine. */
 /* The box around all vertices, m; from INFINITY to -INFINITY of none. Returns its longest side, 0
  * of none. */
 double mesh_box(const struct mesh *mesh, double low[3], double high[3]);
 
+/* Frees the arrays of a mesh and clears it; a zeroed mesh is fine. */
 void mesh_free(struct mesh *mesh);
 
 /* All edges of the triangles and the lone edges, each once, a < b, sorted by (a, b). A lone edge
@@ -207,31 +210,23 @@ double mesh_length(const struct mesh *mesh, const uint32_t triangle[2], uint32_t
  * triangles have other places for the ends, the second is laid flat beside the first. */
 void mesh_hinge(const struct mesh *mesh, const uint32_t triangle[2], const uint32_t corner[4],
                 double x[12]);
-/* y = b - a; returns y.z, or y.y if z is NULL. */
-double mesh_difference(const double *a, const double *b, const double *z, double y[3]);
 /* Lays the triangle b beside the triangle a (ends of the edge, then opposite), flat: where its
  * opposite vertex comes to lie. */
 void mesh_lay_beside(const double a[9], const double b[9], double x[3]);
 
-/* Adds to mass[v] (kg, n_vertices) a third of each triangle's area (as positioned) times density
- * (kg/m^2). */
-void mesh_add_mass(const struct mesh *mesh, double density, double *mass);
-/* The same of one triangle. */
-void mesh_add_mass_of(const struct mesh *mesh, uint32_t triangle, double density, double *mass);
 /* The corner that triangle t lacks of the cell of a grid that it is in; UINT32_MAX: no grid. */
 uint32_t mesh_fourth(const struct mesh *mesh, uint32_t t);
-/* Mass of a triangle on each of n vertices, kg: by_cell as mesh_add_cell_mass_of adds it, else as
- * mesh_add_mass_of does. */
+/* Mass of a triangle, its area (as positioned) times density (kg/m^2), on each of its corners, kg.
+ * by_cell: in a grid each corner of its cell gets a quarter, so that the masses of a sheet do not
+ * depend on its diagonals. */
 struct mesh_share {
     uint32_t n, vertex[4];
     double mass;
 };
 void mesh_share_of(const struct mesh *mesh, uint32_t triangle, double density, bool by_cell,
                    struct mesh_share *share);
-/* Adds the mass of one triangle. In a grid each corner of its cell gets a quarter, so that the
- * masses of a sheet do not depend on its diagonals. */
-void mesh_add_cell_mass_of(const struct mesh *mesh, uint32_t triangle, double density,
-                           double *mass);
+/* Adds the shares of all triangles to mass[v] (kg, n_vertices). */
+void mesh_add_mass(const struct mesh *mesh, double density, bool by_cell, double *mass);
 
 /* The sum of the areas of all triangles, as positioned, m^2. */
 double mesh_surface(const struct mesh *mesh);

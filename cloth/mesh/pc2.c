@@ -4,6 +4,7 @@
 #include "cloth/base/memory.h"
 #include "cloth/mesh/mesh.h"
 
+#include <endian.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -15,10 +16,9 @@ enum { HEADER = 32, POINT = 12 }; /* bytes */
 
 static uint32_t number_at(const unsigned char *bytes)
 {
-    uint32_t value = 0;
-    for (int i = 0; i < 4; i++)
-        value |= (uint32_t)bytes[i] << (8 * i);
-    return value;
+    uint32_t value;
+    memcpy(&value, bytes, sizeof value);
+    return le32toh(value);
 }
 
 static double float_at(const unsigned char *bytes)
@@ -47,25 +47,21 @@ static int mesh_pc2_read_header(FILE *file, const char *path, uint32_t n_vertice
     return CLOTH_OK;
 }
 
-/* Adds a frame, the next of the file, to the list. bytes: room for one. */
+/* Reads a frame, the next of the file. bytes: room for it; place: n_vertices x 3. */
 static int mesh_pc2_read_frame(FILE *file, const char *path, uint32_t n_vertices, uint32_t frame,
-                               unsigned char *bytes, struct cloth_list *list,
-                               struct cloth_error *error)
+                               unsigned char *bytes, double *place, struct cloth_error *error)
 {
     if (fread(bytes, POINT, n_vertices, file) != n_vertices)
         return cloth_fail(error, ferror(file) ? CLOTH_E_IO : CLOTH_E_INPUT,
                           "%s: it ends within frame %ju", path, (uintmax_t)frame + 1);
-    double(*place)[3] = cloth_list_add(list, sizeof *place, n_vertices, error);
-    for (size_t i = 0; place && i < 3 * (size_t)n_vertices; i++)
-        place[i / 3][i % 3] = float_at(bytes + 4 * i);
-    if (!place)
-        return CLOTH_E_MEMORY;
-    for (size_t i = 0; i < 3 * (size_t)n_vertices; i++)
-        if (!isfinite(place[i / 3][i % 3]))
+    for (size_t i = 0; i < 3 * (size_t)n_vertices; i++) {
+        place[i] = float_at(bytes + 4 * i);
+        if (!isfinite(place[i]))
             return cloth_fail(error, CLOTH_E_INPUT,
-                              "%s: vertex %zu of frame %zu has a coordinate that is no finite "
+                              "%s: vertex %zu of frame %ju has a coordinate that is no finite "
                               "number (vertices and frames count from 1)",
-                              path, i / 3 + 1, list->n / n_vertices);
+                              path, i / 3 + 1, (uintmax_t)frame + 1);
+    }
     return CLOTH_OK;
 }
 
@@ -85,65 +81,52 @@ static uint64_t count_whole(FILE *file, uint32_t n_vertices)
 static int read_frames(FILE *file, const char *path, uint32_t n_vertices, uint32_t first,
                        uint32_t end, double **place, struct cloth_error *error)
 {
-    struct cloth_list list = {0};
     const uint64_t n_whole = count_whole(file, n_vertices);
     if (n_whole < end)
         return cloth_fail(error, CLOTH_E_INPUT, "%s: it ends within frame %ju", path,
                           (uintmax_t)n_whole + 1);
+    const size_t n = 3 * (size_t)n_vertices;
     unsigned char *bytes = cloth_alloc(n_vertices, POINT, error);
-    int code = bytes ? CLOTH_OK : CLOTH_E_MEMORY;
+    double *to = cloth_alloc((end - first) * n, sizeof *to, error);
+    int code = bytes && to ? CLOTH_OK : CLOTH_E_MEMORY;
     if (!code && fseeko(file, HEADER + (off_t)POINT * n_vertices * first, SEEK_SET) != 0)
         code = cloth_fail(error, CLOTH_E_IO, "%s: cannot be read: %s", path, strerror(errno));
     for (uint32_t k = first; k < end && !code; k++)
-        code = mesh_pc2_read_frame(file, path, n_vertices, k, bytes, &list, error);
+        code = mesh_pc2_read_frame(file, path, n_vertices, k, bytes, to + (k - first) * n, error);
     free(bytes);
     if (code)
-        free(list.items);
+        free(to);
     else
-        *place = list.items;
+        *place = to;
     return code;
 }
 
-/* Opens it, and reads its header. Returns NULL after an error. */
-static FILE *mesh_pc2_open_frames(const char *path, uint32_t n_vertices, uint32_t *n_frames,
-                                  struct cloth_error *error)
+/* Reads one frame, or all. */
+static int read_file(const char *path, uint32_t n_vertices, bool all, uint32_t frame,
+                     uint32_t *n_frames, double **place, struct cloth_error *error)
 {
     FILE *file = cloth_file_open(path);
     *n_frames = 0;
-    if (!file) {
-        cloth_fail(error, CLOTH_E_IO, "%s: cannot be read: %s", path, cloth_file_why());
-        return NULL;
-    }
-    if (mesh_pc2_read_header(file, path, n_vertices, n_frames, error)) {
-        fclose(file);
-        return NULL;
-    }
-    return file;
+    *place = NULL;
+    if (!file)
+        return cloth_fail(error, CLOTH_E_IO, "%s: cannot be read: %s", path, cloth_file_why());
+    int code = mesh_pc2_read_header(file, path, n_vertices, n_frames, error);
+    const uint32_t first = all ? 0 : frame == MESH_LAST_FRAME ? *n_frames - 1 : frame;
+    if (!code && first < *n_frames)
+        code =
+            read_frames(file, path, n_vertices, first, all ? *n_frames : first + 1, place, error);
+    fclose(file);
+    return code;
 }
 
 int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t *n_frames, double **place,
                   struct cloth_error *error)
 {
-    *place = NULL;
-    FILE *file = mesh_pc2_open_frames(path, n_vertices, n_frames, error);
-    if (!file)
-        return error->code;
-    const int code = read_frames(file, path, n_vertices, 0, *n_frames, place, error);
-    fclose(file);
-    return code;
+    return read_file(path, n_vertices, true, 0, n_frames, place, error);
 }
 
 int mesh_read_pc2_frame(const char *path, uint32_t n_vertices, uint32_t frame, uint32_t *n_frames,
                         double **place, struct cloth_error *error)
 {
-    int code = CLOTH_OK;
-    *place = NULL;
-    FILE *file = mesh_pc2_open_frames(path, n_vertices, n_frames, error);
-    if (!file)
-        return error->code;
-    const uint32_t one = frame == MESH_LAST_FRAME ? *n_frames - 1 : frame;
-    if (one < *n_frames)
-        code = read_frames(file, path, n_vertices, one, one + 1, place, error);
-    fclose(file);
-    return code;
+    return read_file(path, n_vertices, false, frame, n_frames, place, error);
 }

@@ -1,10 +1,9 @@
 /* A shadow is cut by evenly spaced lines. The intervals of all triangles along a line are joined,
  * so overlapping triangles count once. */
 #include "cloth/base/memory.h"
-#include "cloth/mesh/detail/vector.h"
+#include "cloth/base/vector.h"
 #include "cloth/mesh/mesh.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 enum { LINES = 2048 };
@@ -35,10 +34,9 @@ static void shadow_find_frame(const double axis[3], double along[3], double acro
     along[least] = 0;
     along[i] = -axis[j] / size;
     along[j] = axis[i] / size;
-    for (int c = 0; c < 3; c++) {
-        const int d = (c + 1) % 3, e = (c + 2) % 3;
-        across[c] = (axis[d] * along[e] - axis[e] * along[d]) / whole;
-    }
+    cloth_cross(axis, along, across);
+    for (int c = 0; c < 3; c++)
+        across[c] /= whole;
 }
 
 static void project_vertices(struct shadow *shadow, const double axis[3])
@@ -47,8 +45,8 @@ static void project_vertices(struct shadow *shadow, const double axis[3])
     shadow_find_frame(axis, along, across);
     for (uint32_t v = 0; v < shadow->shape->n_vertices; v++) {
         const double *x = shadow->shape->position + 3 * (size_t)v;
-        shadow->at[v][0] = along[0] * x[0] + along[1] * x[1] + along[2] * x[2];
-        shadow->at[v][1] = across[0] * x[0] + across[1] * x[1] + across[2] * x[2];
+        shadow->at[v][0] = cloth_dot(along, x);
+        shadow->at[v][1] = cloth_dot(across, x);
         low = fmin(low, shadow->at[v][1]);
         high = fmax(high, shadow->at[v][1]);
     }
@@ -138,27 +136,23 @@ int mesh_shadow(const struct mesh_shape *shape, const double axis[3], double *ar
                 struct cloth_error *error)
 {
     const size_t n = shape->n_triangles;
-    struct shadow *shadow = cloth_alloc(1, sizeof *shadow, error);
+    struct shadow shadow = {.shape = shape,
+                            .at = cloth_alloc(shape->n_vertices, sizeof *shadow.at, error),
+                            .next = cloth_alloc(n, sizeof *shadow.next, error),
+                            .active = cloth_alloc(n, sizeof *shadow.active, error),
+                            .cut = cloth_alloc(n, sizeof *shadow.cut, error)};
+    const bool made = shadow.at && shadow.next && shadow.active && shadow.cut;
     *area = 0;
-    if (!shadow)
-        return error->code;
-    shadow->shape = shape;
-    shadow->at = cloth_alloc(shape->n_vertices, sizeof *shadow->at, error);
-    shadow->next = cloth_alloc(n, sizeof *shadow->next, error);
-    shadow->active = cloth_alloc(n, sizeof *shadow->active, error);
-    shadow->cut = cloth_alloc(n, sizeof *shadow->cut, error);
-    const bool made = shadow->at && shadow->next && shadow->active && shadow->cut;
     if (made)
-        project_vertices(shadow, axis);
-    if (made && shadow->apart > 0) {
-        shadow_list_triangles(shadow);
-        *area = sweep_lines(shadow);
+        project_vertices(&shadow, axis);
+    if (made && shadow.apart > 0) {
+        shadow_list_triangles(&shadow);
+        *area = sweep_lines(&shadow);
     }
-    free(shadow->at);
-    free(shadow->next);
-    free(shadow->active);
-    free(shadow->cut);
-    free(shadow);
+    free(shadow.at);
+    free(shadow.next);
+    free(shadow.active);
+    free(shadow.cut);
     return made ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 

@@ -2,14 +2,15 @@
 #include "cloth/mesh/slice.h"
 #include "cloth/base/memory.h"
 #include "cloth/base/sets.h"
+#include "cloth/base/vector.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static void cut_edge(struct slice_end *end, const struct slice_mesh *mesh, uint32_t a, uint32_t b)
+/* part: where the plane is, from a on. */
+static void cut_edge(struct slice_end *end, const struct slice_mesh *mesh, uint32_t a, uint32_t b,
+                     double part)
 {
-    const double p = mesh->height[a], q = mesh->height[b], part = p / (p - q);
     end->part = a < b ? part : 1 - part;
     end->edge = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
     end->open = true;
@@ -17,23 +18,18 @@ static void cut_edge(struct slice_end *end, const struct slice_mesh *mesh, uint3
         end->place[k] = mesh->x[a][k] + part * (mesh->x[b][k] - mesh->x[a][k]);
 }
 
-/* False: the plane does not cut the triangle. */
+/* height: of its corners over the plane. False: the plane does not cut the triangle. */
 static bool slice_cut_triangle(struct slice_segment *segment, const struct slice_mesh *mesh,
-                               uint32_t t)
+                               uint32_t t, const double height[3])
 {
     const uint32_t *v = mesh->triangle[t];
     int n = 0;
     for (int i = 0; i < 3; i++) {
-        const uint32_t a = v[i], b = v[(i + 1) % 3];
-        if ((mesh->height[a] < 0) != (mesh->height[b] < 0))
-            cut_edge(&segment->end[n++], mesh, a, b);
+        const int j = (i + 1) % 3;
+        if ((height[i] < 0) != (height[j] < 0))
+            cut_edge(&segment->end[n++], mesh, v[i], v[j], height[i] / (height[i] - height[j]));
     }
-    double square = 0;
-    for (int k = 0; k < 3 && n == 2; k++) {
-        const double d = segment->end[0].place[k] - segment->end[1].place[k];
-        square += d * d;
-    }
-    segment->length = sqrt(square);
+    segment->length = n == 2 ? cloth_distance(segment->end[0].place, segment->end[1].place) : 0;
     return n == 2;
 }
 
@@ -73,21 +69,20 @@ static int slice_join(struct slice *slice, struct cloth_error *error)
     return CLOTH_OK;
 }
 
-int slice_make(struct slice *slice, const struct slice_mesh *mesh, struct cloth_error *error)
+int slice_make(struct slice *slice, const struct slice_mesh *mesh, const double normal[3],
+               double level, struct cloth_error *error)
 {
     struct cloth_list list = {0};
     struct slice_segment segment;
     int code = CLOTH_OK;
-    *slice = (struct slice){0};
-    for (uint32_t t = 0; t < mesh->n_triangles && !code; t++)
-        if (slice_cut_triangle(&segment, mesh, t)) {
-            struct slice_segment *next = cloth_list_add(&list, sizeof segment, 1, error);
-            code = next ? CLOTH_OK : CLOTH_E_MEMORY;
-            if (next)
-                *next = segment;
-        }
-    slice->n = (uint32_t)list.n;
-    slice->segment = list.items;
+    for (uint32_t t = 0; t < mesh->n_triangles && !code; t++) {
+        double height[3];
+        for (int i = 0; i < 3; i++)
+            height[i] = cloth_dot(mesh->x[mesh->triangle[t][i]], normal) - level;
+        if (slice_cut_triangle(&segment, mesh, t, height))
+            code = cloth_list_put(&list, &segment, sizeof segment, error);
+    }
+    *slice = (struct slice){.n = (uint32_t)list.n, .segment = list.items};
     return code ? code : slice_join(slice, error);
 }
 
@@ -106,16 +101,10 @@ static int compare_points(const void *a, const void *b)
     return (p[1] > q[1]) - (p[1] < q[1]);
 }
 
-/* Twice the area of a triangle, above 0 if it is counterclockwise. */
-static double slice_turn(const double a[2], const double b[2], const double c[2])
-{
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
 /* Goes on with a chain of k points, of which those from `lower` on may be dropped. */
 static uint32_t extend(double (*chain)[2], uint32_t k, uint32_t lower, const double point[2])
 {
-    while (k >= lower && slice_turn(chain[k - 2], chain[k - 1], point) <= 0)
+    while (k >= lower && cloth_turn(chain[k - 2], chain[k - 1], point) <= 0)
         k--;
     memcpy(chain[k], point, sizeof *chain);
     return k + 1;
@@ -156,7 +145,7 @@ double slice_around(const double (*hull)[2], uint32_t n)
 bool slice_inside(const double (*hull)[2], uint32_t n, const double point[2])
 {
     for (uint32_t i = 0; i < n; i++)
-        if (slice_turn(hull[i], hull[(i + 1) % n], point) < 0)
+        if (cloth_turn(hull[i], hull[(i + 1) % n], point) < 0)
             return false;
     return n >= 3;
 }

@@ -12,7 +12,6 @@ struct slice_mesh {
     uint32_t n_triangles;
     const uint32_t (*triangle)[3];
     const double (*x)[3]; /* of each vertex, m */
-    const double *height; /* of each vertex over the plane, m */
 };
 
 struct slice_end {
@@ -33,9 +32,10 @@ struct slice {
     uint32_t *set; /* n: segments that hang together (base/sets.h) */
 };
 
-/* Cuts a mesh. The slice is to be freed, also after an error. Error:
- * CLOTH_E_MEMORY. */
-int slice_make(struct slice *slice, const struct slice_mesh *mesh, struct cloth_error *error);
+/* Cuts a mesh by the plane of places whose product with the normal is the level. The slice is to be
+ * freed, also after an error. Error: CLOTH_E_MEMORY. */
+int slice_make(struct slice *slice, const struct slice_mesh *mesh, const double normal[3],
+               double level, struct cloth_error *error);
 void slice_free(struct slice *slice);
 
 /* The convex hull of n points, counterclockwise, in their place. *corners: how many it has. Error:

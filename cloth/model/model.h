@@ -4,7 +4,7 @@
 #include "cloth/base/error.h"
 #include "cloth/contact/shape.h"
 #include "cloth/contact/soup.h"
-#include "cloth/mesh/elastic.h"
+#include "cloth/mesh/lattice.h"
 #include "cloth/model/cloth.h"
 #include "cloth/model/contact.h"
 #include "cloth/model/hdf5.h"

@@ -1,7 +1,6 @@
 /* + - * / and sqrt only, so that a motion has the same bits everywhere. */
 #include "cloth/physics/motion.h"
-
-#include <math.h>
+#include "cloth/base/axes.h"
 
 /* The key at or before the time; n > 0. */
 static size_t key_before(size_t n, const struct phys_key *keys, double time)
@@ -17,25 +16,6 @@ static size_t key_before(size_t n, const struct phys_key *keys, double time)
     return low;
 }
 
-/* The rotation by a quaternion of any length but 0. */
-static void turn_of(const double q[4], double turn[3][3])
-{
-    double square = 0;
-    for (int i = 0; i < 4; i++)
-        square += q[i] * q[i];
-    const double length = sqrt(square), w = q[0] / length, x = q[1] / length, y = q[2] / length,
-                 z = q[3] / length;
-    turn[0][0] = 1 - 2 * (y * y + z * z);
-    turn[0][1] = 2 * (x * y - w * z);
-    turn[0][2] = 2 * (x * z + w * y);
-    turn[1][0] = 2 * (x * y + w * z);
-    turn[1][1] = 1 - 2 * (x * x + z * z);
-    turn[1][2] = 2 * (y * z - w * x);
-    turn[2][0] = 2 * (x * z - w * y);
-    turn[2][1] = 2 * (y * z + w * x);
-    turn[2][2] = 1 - 2 * (x * x + y * y);
-}
-
 void phys_pose_at(size_t n, const struct phys_key *keys, const double about[3], double time,
                   struct phys_pose *pose)
 {
@@ -47,7 +27,7 @@ void phys_pose_at(size_t n, const struct phys_key *keys, const double about[3], 
     const double sign = dot < 0 ? -1 : 1;
     for (int i = 0; i < 4; i++)
         q[i] = (1 - part) * a->rotate[i] + part * sign * b->rotate[i];
-    turn_of(q, pose->turn);
+    cloth_rotation(q, pose->turn);
     for (int i = 0; i < 3; i++) {
         pose->about[i] = about[i];
         pose->translate[i] = (1 - part) * a->translate[i] + part * b->translate[i];

@@ -2,6 +2,7 @@
  * the sum of the two others, so that a triangle's forces sum to zero but for rounding. */
 #include "cloth/physics/triangle.h"
 
+#include "cloth/base/vector.h"
 #include "cloth/physics/detail/membrane.h"
 
 #include <math.h>
@@ -35,17 +36,6 @@ int phys_triangle_rest(const double uv[6], double gradient[4], double *area)
     return *area > 0 && isfinite(*area) ? 0 : -1;
 }
 
-static double triangle_dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void triangle_cross(const double a[3], const double b[3], double y[3])
-{
-    for (int i = 0; i < 3; i++)
-        y[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
 /* R of the map from uv to x, as phys_frame_polar finds it; 0 if it has none. */
 static int directions(const double e[2][3], const double uv[6], double ru[3], double rv[3])
 {
@@ -56,13 +46,13 @@ static int directions(const double e[2][3], const double uv[6], double ru[3], do
         f[0][i] = e[0][i] * g[0] + e[1][i] * g[2];
         f[1][i] = e[0][i] * g[1] + e[1][i] * g[3];
     }
-    triangle_cross(f[0], f[1], normal);
-    const double det = sqrt(triangle_dot(normal, normal));
+    cloth_cross(f[0], f[1], normal);
+    const double det = sqrt(cloth_dot(normal, normal));
     for (int i = 0; i < 3; i++)
         normal[i] /= det;
-    const double trace = sqrt(triangle_dot(f[0], f[0]) + triangle_dot(f[1], f[1]) + 2 * det);
-    triangle_cross(f[1], normal, turned[0]);
-    triangle_cross(normal, f[0], turned[1]);
+    const double trace = sqrt(cloth_dot(f[0], f[0]) + cloth_dot(f[1], f[1]) + 2 * det);
+    cloth_cross(f[1], normal, turned[0]);
+    cloth_cross(normal, f[0], turned[1]);
     for (int i = 0; i < 3; i++) {
         ru[i] = (f[0][i] + turned[0][i]) / trace;
         rv[i] = (f[1][i] + turned[1][i]) / trace;
@@ -78,19 +68,19 @@ void phys_triangle_local(const double x[9], const double uv[6], double local[6])
         e[1][i] = x[6 + i] - x[i];
     }
     if (!directions((const double(*)[3])e, uv, ru, rv)) {
-        const double length = sqrt(triangle_dot(e[0], e[0]));
-        triangle_cross(e[0], e[1], normal);
-        const double area = sqrt(triangle_dot(normal, normal));
+        const double length = sqrt(cloth_dot(e[0], e[0]));
+        cloth_cross(e[0], e[1], normal);
+        const double area = sqrt(cloth_dot(normal, normal));
         for (int i = 0; i < 3; i++)
             ru[i] = length > 0 ? e[0][i] / length : 0;
-        triangle_cross(normal, ru, rv);
+        cloth_cross(normal, ru, rv);
         for (int i = 0; i < 3; i++)
             rv[i] = area > 0 ? rv[i] / area : 0;
     }
     local[0] = local[1] = 0;
     for (int i = 0; i < 2; i++) {
-        local[2 + 2 * i] = triangle_dot(e[i], ru);
-        local[3 + 2 * i] = triangle_dot(e[i], rv);
+        local[2 + 2 * i] = cloth_dot(e[i], ru);
+        local[3 + 2 * i] = cloth_dot(e[i], rv);
     }
 }
 

@@ -2,37 +2,38 @@
  * are no copy. Each step relies on the one before. */
 #include "cloth/scene/scene.h"
 #include "cloth/scene/build/build.h"
-#include "cloth/scene/build/made.h"
 #include "cloth/scene/schema/check.h"
-#include "cloth/scene/schema/fabrics.h"
-#include "cloth/scene/yaml/edit.h"
 
-static scene_build_step *const steps[] = {scene_build_phases,        scene_build_world,
-                                          scene_build_cloths,        scene_build_check_obstacles,
-                                          scene_build_sides,         scene_build_contact,
-                                          scene_build_check_contact, scene_build_probes,
-                                          scene_build_contact_idle,  scene_build_hdf5,
-                                          scene_build_drape,         scene_build_joints,
-                                          scene_build_welds,         scene_build_mesh_welds,
-                                          scene_build_seams,         scene_build_pieces,
-                                          scene_build_short_edges,   scene_build_folds,
-                                          scene_build_girths,        scene_build_warn_seams,
-                                          scene_build_unusual,       scene_build_settings,
-                                          scene_build_needs};
+/* Steps of the whole scene, or of each cloth. */
+static const struct {
+    scene_build_step *whole;
+    scene_build_cloth_step *each;
+} steps[] = {{.whole = scene_build_phases},        {.whole = scene_build_world},
+             {.each = scene_build_cloth},          {.whole = scene_build_check_obstacles},
+             {.whole = scene_build_sides},         {.whole = scene_build_contact},
+             {.whole = scene_build_check_contact}, {.whole = scene_build_probes},
+             {.whole = scene_build_contact_idle},  {.whole = scene_build_hdf5},
+             {.whole = scene_build_drape},         {.whole = scene_build_joints},
+             {.whole = scene_build_welds},         {.each = scene_build_mesh_weld},
+             {.each = scene_build_seams},          {.whole = scene_build_sewn},
+             {.each = scene_build_pieces},         {.each = scene_build_short_edges},
+             {.each = scene_build_folds},          {.each = scene_build_girths},
+             {.each = scene_build_warn_seams},     {.whole = scene_build_unusual},
+             {.whole = scene_build_settings},      {.whole = scene_build_needs}};
 
-static int read_tree(struct model *model, struct scene_tree *tree, uint32_t phase,
-                     struct cloth_error *error)
+static int read_tree(struct scene_tree *tree, uint32_t phase)
 {
-    int code = scene_edit_sets(tree, phase, error);
-    if (!code)
-        code = scene_fabrics_fill(tree, error);
-    if (!code)
-        code = scene_check(model, tree, error);
-    if (!code)
-        code = scene_build_file(model, tree->path, error);
-    for (size_t i = 0; i < sizeof steps / sizeof *steps && !code; i++)
-        code = steps[i](model, tree, error);
-    return code;
+    const int code = scene_edit_sets(tree, phase) || scene_fabrics_fill(tree) ||
+                     scene_check(tree) || scene_build_file(tree, tree->path);
+    for (size_t i = 0; i < sizeof steps / sizeof *steps && !code; i++) {
+        const int cloths = scene_tree_get(tree, 1, "cloths");
+        if (steps[i].whole && steps[i].whole(tree))
+            return tree->error->code;
+        for (uint32_t c = 0; steps[i].each && c < tree->model->n_cloths; c++)
+            if (steps[i].each(tree, c, scene_tree_item(tree, cloths, c)))
+                return tree->error->code;
+    }
+    return tree->error->code;
 }
 
 static int read_phase(struct model *model, const char *path, uint32_t phase, size_t n_sets,
@@ -43,18 +44,18 @@ static int read_phase(struct model *model, const char *path, uint32_t phase, siz
     struct scene_tree tree;
     *model = (struct model){0};
     int code = scene_tree_load(&tree, path, &scene_words, &own);
+    tree.model = model;
     tree.n_sets = n_sets;
     tree.sets = sets;
     tree.made = made;
-    if (!code)
-        code = read_tree(model, &tree, phase, &own);
+    code = code ? code : read_tree(&tree, phase);
     const int map = code && phase ? scene_tree_phase(&tree, phase) : 0;
     const char *name = map ? scene_tree_text(&tree, map, "name") : NULL;
     if (code)
-        cloth_fail(error, code, "%.*s%s%.60s%s", name ? 900 : 1023, own.text,
+        cloth_fail(error, own.code, "%.*s%s%.60s%s", name ? 900 : 1023, own.text,
                    name ? "; in phase '" : "", name ? name : "", name ? "'" : "");
     scene_tree_free(&tree);
-    return code;
+    return own.code;
 }
 
 int scene_read(struct model *model, const char *path, size_t n_sets, const struct scene_set *sets,
@@ -73,7 +74,7 @@ int scene_read_phases(struct model **models, uint32_t *n, const char *path, size
     struct model first;
     int code = read_phase(&first, path, 0, n_sets, sets, &made, error);
     *n = code ? 0 : first.n_phases ? first.n_phases : 1;
-    *models = code ? NULL : scene_build_array(*n, sizeof **models, error);
+    *models = code ? NULL : cloth_alloc(*n, sizeof **models, error);
     if (*models)
         **models = first;
     else {

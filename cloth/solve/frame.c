@@ -3,6 +3,7 @@
 #include "cloth/solve/frame.h"
 
 #include "cloth/base/axes.h"
+#include "cloth/base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -86,11 +87,6 @@ struct solve_frame solve_frame_of_group(size_t n, const struct solve_frame *part
     return frame;
 }
 
-static double frame_dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 void solve_lift(const struct solve_frame *part, const struct solve_frame *group, double to[9])
 {
     double d[3];
@@ -99,11 +95,11 @@ void solve_lift(const struct solve_frame *part, const struct solve_frame *group,
     memset(to, 0, 9 * sizeof *to);
     to[0] = 1;
     for (int k = 0; k < 2; k++) {
-        const double *extent = group->extent[k], square = frame_dot(extent, extent);
+        const double *extent = group->extent[k], square = cloth_dot(extent, extent);
         if (!(square > 0))
             continue;
-        to[1 + k] = frame_dot(d, extent) / square;
-        to[3 + 1 + k] = frame_dot(part->extent[0], extent) / square;
-        to[6 + 1 + k] = frame_dot(part->extent[1], extent) / square;
+        to[1 + k] = cloth_dot(d, extent) / square;
+        to[3 + 1 + k] = cloth_dot(part->extent[0], extent) / square;
+        to[6 + 1 + k] = cloth_dot(part->extent[1], extent) / square;
     }
 }

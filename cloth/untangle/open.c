@@ -1,7 +1,7 @@
 /* Corners, edges, skins and the tree of the soup are made once; boxes and normals are made again in
  * each round. */
 #include "cloth/contact/body_skin.h"
-#include "cloth/mesh/detail/sort.h"
+#include "cloth/mesh/detail/sides.h"
 #include "cloth/untangle/state.h"
 #include "cloth/verify/orient.h"
 

@@ -1,7 +1,7 @@
-/* One axis is cut into strips; a box of a triangle is in each strip that it meets. Each strip is
- * swept along another axis, and boxes whose spans meet there are compared. A pair that is in
- * several strips counts in the first of them. Strips are as wide as the mean box, so a box is in
- * three of them on average at most. */
+/* One axis is cut into strips; a box of a triangle has an entry in each strip that it meets.
+ * Entries are sorted by strip and by their begin along another axis, and boxes whose spans meet
+ * there are compared. A pair that is in several strips counts in the first of them. Strips are as
+ * wide as the mean box, so a box is in three of them on average at most. */
 #include "cloth/verify/orient.h"
 #include "cloth/verify/verify.h"
 
@@ -14,19 +14,18 @@ struct box {
     uint32_t strip[2]; /* the first and the last */
 };
 
-struct start {
-    double low;
-    uint32_t triangle;
+struct entry {
+    double low; /* along the axis that is swept */
+    uint32_t strip, triangle;
 };
 
 struct sweep {
     const struct verify_soup *soup;
     double (*x)[3];
     struct box *box;
-    struct start *order; /* by their begin along the axis that is swept */
+    struct entry *entry;
+    size_t n_entries;
     uint32_t n_strips;
-    uint64_t *first;          /* n_strips + 1: of the triangles of a strip, in `member` */
-    uint32_t *member;         /* in that order */
     int along, across, third; /* axes: swept, cut in strips, the last */
     struct cloth_list *pairs;
     struct cloth_error *error;
@@ -107,46 +106,33 @@ static void choose_axes(struct sweep *sweep, struct span *across)
     sweep->n_strips = strips < n ? (uint32_t)fmax(strips, 1) : (uint32_t)n;
 }
 
-static int sweep_by_low(const void *left, const void *right)
+static int by_strip(const void *left, const void *right)
 {
-    const struct start *a = left, *b = right;
+    const struct entry *a = left, *b = right;
+    if (a->strip != b->strip)
+        return a->strip < b->strip ? -1 : 1;
     if (a->low < b->low || a->low > b->low)
         return a->low < b->low ? -1 : 1;
     return (a->triangle > b->triangle) - (a->triangle < b->triangle);
 }
 
-static void sort_starts(struct sweep *sweep)
-{
-    const uint32_t n = sweep->soup->n_triangles;
-    for (uint32_t t = 0; t < n; t++)
-        sweep->order[t] = (struct start){sweep->box[t].low[sweep->along], t};
-    qsort(sweep->order, n, sizeof *sweep->order, sweep_by_low);
-}
-
 static int fill_strips(struct sweep *sweep, const struct span *across)
 {
     const uint32_t n = sweep->soup->n_triangles;
-    sweep->first = cloth_alloc((size_t)sweep->n_strips + 2, sizeof *sweep->first, sweep->error);
-    if (!sweep->first)
-        return CLOTH_E_MEMORY;
-    uint64_t *end = sweep->first + 1; /* of a strip, so far */
     for (uint32_t t = 0; t < n; t++) {
         struct box *box = sweep->box + t;
         box->strip[0] = strip_of(sweep, across, box->low[sweep->across]);
         box->strip[1] = strip_of(sweep, across, box->high[sweep->across]);
-        for (uint32_t s = box->strip[0]; s <= box->strip[1]; s++)
-            end[s + 1]++;
+        sweep->n_entries += box->strip[1] - box->strip[0] + 1;
     }
-    for (uint32_t s = 0; s < sweep->n_strips; s++)
-        end[s + 1] += end[s];
-    sweep->member = cloth_alloc(end[sweep->n_strips], sizeof *sweep->member, sweep->error);
-    if (!sweep->member)
+    struct entry *next = sweep->entry =
+        cloth_alloc(sweep->n_entries, sizeof *sweep->entry, sweep->error);
+    if (!next)
         return CLOTH_E_MEMORY;
-    for (uint32_t i = 0; i < n; i++) {
-        const uint32_t t = sweep->order[i].triangle;
+    for (uint32_t t = 0; t < n; t++)
         for (uint32_t s = sweep->box[t].strip[0]; s <= sweep->box[t].strip[1]; s++)
-            sweep->member[end[s]++] = t;
-    }
+            *next++ = (struct entry){sweep->box[t].low[sweep->along], s, t};
+    qsort(sweep->entry, sweep->n_entries, sizeof *sweep->entry, by_strip);
     return CLOTH_OK;
 }
 
@@ -187,19 +173,15 @@ static int try_pair(struct sweep *sweep, uint32_t a, uint32_t b)
     return CLOTH_OK;
 }
 
-static int sweep_strip(struct sweep *sweep, uint32_t strip)
+static int sweep_strips(struct sweep *sweep)
 {
-    const uint32_t *member = sweep->member;
-    const int along = sweep->along;
-    for (uint64_t i = sweep->first[strip]; i < sweep->first[strip + 1]; i++) {
-        const double high = sweep->box[member[i]].high[along];
-        for (uint64_t j = i + 1; j < sweep->first[strip + 1]; j++) {
-            if (sweep->box[member[j]].low[along] > high)
-                break;
-            if (sweep_boxes_meet(sweep, member[i], member[j], strip) &&
-                try_pair(sweep, member[i], member[j]))
+    const struct entry *end = sweep->entry + sweep->n_entries;
+    for (const struct entry *a = sweep->entry; a < end; a++) {
+        const double high = sweep->box[a->triangle].high[sweep->along];
+        for (const struct entry *b = a + 1; b < end && b->strip == a->strip && b->low <= high; b++)
+            if (sweep_boxes_meet(sweep, a->triangle, b->triangle, a->strip) &&
+                try_pair(sweep, a->triangle, b->triangle))
                 return CLOTH_E_MEMORY;
-        }
     }
     return CLOTH_OK;
 }
@@ -220,10 +202,8 @@ static int sweep_all(struct sweep *sweep)
         return code;
     take_boxes(sweep);
     choose_axes(sweep, &across);
-    sort_starts(sweep);
     code = fill_strips(sweep, &across);
-    for (uint32_t s = 0; s < sweep->n_strips && !code; s++)
-        code = sweep_strip(sweep, s);
+    code = code ? code : sweep_strips(sweep);
     struct verify_pair *found = sweep->pairs->items;
     if (sweep->pairs->n > before)
         qsort(found + before, sweep->pairs->n - before, sizeof *found, by_triangles);
@@ -239,12 +219,9 @@ int verify_pairs(const struct verify_soup *soup, struct cloth_list *pairs,
         return code;
     sweep.x = cloth_alloc(soup->n_points, sizeof *sweep.x, error);
     sweep.box = cloth_alloc(soup->n_triangles, sizeof *sweep.box, error);
-    sweep.order = cloth_alloc(soup->n_triangles, sizeof *sweep.order, error);
-    code = sweep.x && sweep.box && sweep.order ? sweep_all(&sweep) : CLOTH_E_MEMORY;
+    code = sweep.x && sweep.box ? sweep_all(&sweep) : CLOTH_E_MEMORY;
     free(sweep.x);
     free(sweep.box);
-    free(sweep.order);
-    free(sweep.first);
-    free(sweep.member);
+    free(sweep.entry);
     return code;
 }

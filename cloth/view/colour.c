@@ -6,24 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const WORD[VIEW_COLOURS] = {"cloth",  "block",  "rank",
-                                               "strain", "stress", "contact"};
-static const char *const TITLE[VIEW_COLOURS] = {"cloth",
-                                                "block",
-                                                "rank",
-                                                "largest principal strain, m/m",
-                                                "largest principal stress, N/m",
-                                                "force of contact on a vertex, N"};
-
-const char *view_colour_word(enum view_colour by)
-{
-    return by < VIEW_COLOURS ? WORD[by] : NULL;
-}
-
-const char *view_colour_title(enum view_colour by)
-{
-    return TITLE[by];
-}
+const char *const view_colour_word[VIEW_COLOURS] = {"cloth",  "block",  "rank",
+                                                    "strain", "stress", "contact"};
+const char *const view_colour_title[VIEW_COLOURS] = {"cloth",
+                                                     "block",
+                                                     "rank",
+                                                     "largest principal strain, m/m",
+                                                     "largest principal stress, N/m",
+                                                     "force of contact on a vertex, N"};
 
 /* ,MAX or ,MIN:MAX */
 static bool parse_scale(const char *text, struct view_scale *scale)
@@ -50,7 +40,8 @@ const char *view_colouring_parse(const char *text, struct view_colouring *colour
 {
     const size_t n = strcspn(text, ",");
     enum view_colour by = VIEW_COLOUR_CLOTH;
-    while (by < VIEW_COLOURS && !(strlen(WORD[by]) == n && memcmp(WORD[by], text, n) == 0))
+    while (by < VIEW_COLOURS &&
+           !(strlen(view_colour_word[by]) == n && memcmp(view_colour_word[by], text, n) == 0))
         by++;
     if (by == VIEW_COLOURS)
         return "takes block, rank, strain, stress, contact or cloth";

@@ -27,10 +27,8 @@ struct view_colouring {
     struct view_scale scale;
 };
 
-/* block, rank, ...; NULL behind the last. */
-const char *view_colour_word(enum view_colour by);
-/* The title above a scale, with the unit. */
-const char *view_colour_title(enum view_colour by);
+/* cloth, block, ...; the title above a scale, with the unit. */
+extern const char *const view_colour_word[VIEW_COLOURS], *const view_colour_title[VIEW_COLOURS];
 /* True for colours of parts, which have no order; all others but the cloth's are of numbers on a
  * scale. */
 static inline bool view_colour_is_of_parts(enum view_colour by)

@@ -7,45 +7,20 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { SCALED_FRAMES = 100, SAMPLE = 20000 };
+enum { SAMPLE = 20000 };
 
-struct view_colours {
-    struct output_cache *cache;
-    struct view_values *values;
-    struct view_legend legend;    /* what they are by now, and how */
-    bool has_scale[VIEW_COLOURS]; /* it is known, */
-    struct view_scale scale[VIEW_COLOURS];
-    double *value, *position; /* n_vertices: of the frame; room for the positions of another */
-    double low, high;         /* the least and largest of the frame; NaN: it has none */
-    float *number;            /* of each vertex, for the scene */
-    unsigned char *hue;       /* of each part */
-    unsigned *near;
-    int32_t *part; /* of each vertex */
-};
-
-static int view_colours_take_room(struct view_colours *colours, struct cloth_error *error)
+int view_colours_open(struct view_colours *colours, struct output_cache *cache, const char *folder,
+                      const struct view_colouring *first, struct cloth_error *error)
 {
-    const size_t n = colours->cache->mesh.n_vertices;
+    const size_t n = cache->mesh.n_vertices;
+    colours->has_scale[first->by] = first->has_scale;
+    colours->scale[first->by] = first->scale;
     colours->value = cloth_alloc(n, sizeof *colours->value, error);
     colours->position = cloth_alloc(3 * n, sizeof *colours->position, error);
     colours->number = cloth_alloc(n, sizeof *colours->number, error);
     colours->part = cloth_alloc(n, sizeof *colours->part, error);
-    return colours->value && colours->position && colours->number && colours->part ? CLOTH_OK
-                                                                                   : CLOTH_E_MEMORY;
-}
-
-int view_colours_open(struct view_colours **colours, struct output_cache *cache, const char *folder,
-                      const struct view_colouring *first, struct cloth_error *error)
-{
-    struct view_colours *made = *colours = cloth_alloc(1, sizeof *made, error);
-    if (!made)
-        return CLOTH_E_MEMORY;
-    made->cache = cache;
-    made->has_scale[first->by] = first->has_scale;
-    made->scale[first->by] = first->scale;
-    int code = view_colours_take_room(made, error);
-    code = code ? code : view_values_open(&made->values, cache, folder, error);
-    return code ? code : view_colours_pick(made, first->by, error);
+    const int code = view_values_open(&colours->values, cache, folder, error);
+    return code ? code : view_colours_pick(colours, first->by, error);
 }
 
 /* ---- Scales ---- */
@@ -82,20 +57,19 @@ static double find_high(double *value, size_t n)
 /* Finds the scale over the frames that have numbers. */
 static int find_scale(struct view_colours *colours, enum view_colour by, struct cloth_error *error)
 {
-    const size_t n = colours->cache->mesh.n_vertices;
+    struct output_cache *cache = colours->values.cache;
     double max = 0;
     uint64_t n_frames = 0;
-    int code = view_values_frames(colours->values, by, &n_frames, error);
-    n_frames = n_frames < colours->cache->n_frames ? n_frames : colours->cache->n_frames;
-    const uint64_t looked = n_frames < SCALED_FRAMES ? n_frames : SCALED_FRAMES;
-    for (uint64_t i = 0; i < looked && !code; i++) {
-        const uint64_t frame = looked > 1 ? i * (n_frames - 1) / (looked - 1) : 0;
-        code = output_cache_frame(colours->cache, frame, colours->position, error);
+    int code = view_values_frames(&colours->values, by, &n_frames, error);
+    n_frames = n_frames < cache->n_frames ? n_frames : cache->n_frames;
+    for (uint64_t i = 0; i < view_looks(n_frames) && !code; i++) {
+        const uint64_t frame = view_look(n_frames, i);
+        code = output_cache_frame(cache, frame, colours->position, error);
         if (!code)
-            code = view_values_at(colours->values, by, frame, colours->position, colours->value,
+            code = view_values_at(&colours->values, by, frame, colours->position, colours->value,
                                   error);
         if (!code)
-            max = fmax(max, find_high(colours->value, n));
+            max = fmax(max, find_high(colours->value, cache->mesh.n_vertices));
     }
     colours->has_scale[by] = !code;
     colours->scale[by] = view_scale_up_to(max);
@@ -112,36 +86,23 @@ int view_colours_pick(struct view_colours *colours, enum view_colour by, struct 
     return code;
 }
 
-enum view_colour view_colours_by(const struct view_colours *colours)
-{
-    return colours->legend.by;
-}
-
 /* ---- Frames ---- */
-
-/* Room for as many parts as there are. */
-static int view_colours_take_parts(struct view_colours *colours, uint32_t n,
-                                   struct cloth_error *error)
-{
-    free(colours->hue);
-    free(colours->near);
-    colours->hue = cloth_alloc(n, sizeof *colours->hue, error);
-    colours->near = cloth_alloc(n, sizeof *colours->near, error);
-    return colours->hue && colours->near ? CLOTH_OK : CLOTH_E_MEMORY;
-}
 
 static int find_hues(struct view_colours *colours, struct cloth_error *error)
 {
-    const struct mesh *mesh = &colours->cache->mesh;
+    const struct mesh *mesh = &colours->values.cache->mesh;
     int32_t last = 0;
     for (size_t v = 0; v < mesh->n_vertices; v++) {
         colours->part[v] = isnan(colours->value[v]) ? -1 : (int32_t)colours->value[v];
         last = colours->part[v] > last ? colours->part[v] : last;
     }
     const uint32_t n = (uint32_t)last + 1;
-    const int code = view_colours_take_parts(colours, n, error);
-    if (code)
-        return code;
+    free(colours->hue);
+    free(colours->near);
+    colours->hue = cloth_alloc(n, sizeof *colours->hue, error);
+    colours->near = cloth_alloc(n, sizeof *colours->near, error);
+    if (!colours->hue || !colours->near)
+        return CLOTH_E_MEMORY;
     view_hues_spread(mesh->n_triangles, mesh->triangle, colours->part, n, colours->hue,
                      colours->near);
     colours->legend.n_parts = n;
@@ -155,10 +116,10 @@ int view_colours_frame(struct view_colours *colours, uint64_t frame, const doubl
                        struct cloth_error *error)
 {
     const enum view_colour by = colours->legend.by;
-    const size_t n = colours->cache->mesh.n_vertices;
+    const size_t n = colours->values.cache->mesh.n_vertices;
     if (by == VIEW_COLOUR_CLOTH)
         return CLOTH_OK;
-    const int code = view_values_at(colours->values, by, frame, position, colours->value, error);
+    const int code = view_values_at(&colours->values, by, frame, position, colours->value, error);
     if (code)
         return code;
     view_colours_find_range(colours->value, n, &colours->low, &colours->high);
@@ -183,15 +144,10 @@ void view_colours_paint(const struct view_colours *colours, struct view_scene *s
         view_scene_paint(scene, VIEW_PAINT_SCALE, VIEW_MAP, view_map, colours->number);
 }
 
-const struct view_legend *view_colours_legend(const struct view_colours *colours)
-{
-    return &colours->legend;
-}
-
 void view_colours_say(const struct view_colours *colours)
 {
     const struct view_legend *legend = &colours->legend;
-    const char *title = view_colour_title(legend->by);
+    const char *title = view_colour_title[legend->by];
     if (view_colour_is_of_parts(legend->by))
         printf("colours: %s, 0 to %u\n", title, legend->n_parts - 1);
     else if (view_colour_has_scale(legend->by) && isnan(colours->low))
@@ -204,14 +160,11 @@ void view_colours_say(const struct view_colours *colours)
 
 void view_colours_close(struct view_colours *colours)
 {
-    if (!colours)
-        return;
-    view_values_close(colours->values);
+    view_values_close(&colours->values);
     free(colours->value);
     free(colours->position);
     free(colours->number);
     free(colours->part);
     free(colours->hue);
     free(colours->near);
-    free(colours);
 }

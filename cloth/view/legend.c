@@ -1,15 +1,52 @@
-/* A picture gets the same pixels as a window of its size: both are painted by one function. */
+/* All text of pictures and windows is drawn here. A picture gets the same pixels as a window of its
+ * size: both are painted by one function. */
 #include "config.h"
 
 #include "cloth/view/legend.h"
 
 #ifdef HAVE_CAIRO
 
-#include "cloth/view/letters.h"
-
+#include <cairo.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* ---- Letters ---- */
+
+void view_letters(cairo_t *cairo, double size)
+{
+    cairo_select_font_face(cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cairo, size);
+    cairo_set_line_width(cairo, size / 5);
+}
+
+void view_letters_from(cairo_t *cairo, double x, double y, const char *text)
+{
+    cairo_save(cairo);
+    cairo_new_path(cairo);
+    cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+    cairo_move_to(cairo, x, y);
+    cairo_text_path(cairo, text);
+    cairo_set_source_rgba(cairo, 0, 0, 0, 0.6);
+    cairo_stroke_preserve(cairo);
+    cairo_set_source_rgba(cairo, 1, 1, 1, 1);
+    cairo_fill(cairo);
+    cairo_restore(cairo);
+}
+
+double view_letters_width(cairo_t *cairo, const char *text)
+{
+    cairo_text_extents_t extents;
+    cairo_text_extents(cairo, text, &extents);
+    return extents.x_advance;
+}
+
+void view_letters_to(cairo_t *cairo, double x, double y, const char *text)
+{
+    view_letters_from(cairo, x - view_letters_width(cairo, text), y, text);
+}
+
+/* ---- The legend ---- */
 
 enum { LISTED = 12 }; /* parts that are named one by one */
 
@@ -95,9 +132,8 @@ static void paint_parts(cairo_t *cairo, const struct place *at, const struct vie
     }
 }
 
-void view_legend_paint(const struct view_legend *legend, void *surface, int width, int height)
+void view_legend_paint(const struct view_legend *legend, cairo_t *cairo, int width, int height)
 {
-    cairo_t *cairo = surface;
     const struct place at = legend_place_of(width, height);
     const bool parts = view_colour_is_of_parts(legend->by);
     const bool listed =
@@ -106,10 +142,10 @@ void view_legend_paint(const struct view_legend *legend, void *surface, int widt
     if (legend->by == VIEW_COLOUR_CLOTH)
         return;
     if (parts && !listed)
-        snprintf(title, sizeof title, "%s, 0 to %u (colours repeat)", view_colour_title(legend->by),
+        snprintf(title, sizeof title, "%s, 0 to %u (colours repeat)", view_colour_title[legend->by],
                  legend->n_parts - 1);
     else
-        snprintf(title, sizeof title, "%s", view_colour_title(legend->by));
+        snprintf(title, sizeof title, "%s", view_colour_title[legend->by]);
     view_letters(cairo, at.letter);
     paint_title(cairo, &at, title);
     if (!parts)
@@ -158,11 +194,6 @@ int view_legend_lay(const struct view_legend *legend, struct view_picture *pictu
 }
 
 #else
-
-void view_legend_paint(const struct view_legend *legend, void *cairo, int width, int height)
-{
-    (void)legend, (void)cairo, (void)width, (void)height;
-}
 
 int view_legend_lay(const struct view_legend *legend, struct view_picture *picture,
                     struct cloth_error *error)

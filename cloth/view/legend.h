@@ -19,7 +19,19 @@ struct view_legend {
 int view_legend_lay(const struct view_legend *legend, struct view_picture *picture,
                     struct cloth_error *error);
 
-/* Paints with cairo, on a surface of a picture's size; `cairo`: its cairo_t. */
-void view_legend_paint(const struct view_legend *legend, void *cairo, int width, int height);
+/* --- With cairo alone --- */
+
+struct _cairo; /* cairo_t */
+
+/* Paints on a surface of a picture's size. */
+void view_legend_paint(const struct view_legend *legend, struct _cairo *cairo, int width,
+                       int height);
+/* Letters of a size, pixels: white on a dark rim, so that they are read on any ground. */
+void view_letters(struct _cairo *cairo, double size);
+/* Writes from x on, or up to it; y: the base line. */
+void view_letters_from(struct _cairo *cairo, double x, double y, const char *text);
+void view_letters_to(struct _cairo *cairo, double x, double y, const char *text);
+/* Pixels that a text is wide. */
+double view_letters_width(struct _cairo *cairo, const char *text);
 
 #endif

@@ -8,14 +8,13 @@ libduite_view_a_SOURCES = \
 	cloth/view/colour.h cloth/view/colour.c \
 	cloth/view/colours.h cloth/view/colours.c \
 	cloth/view/film.h cloth/view/film.c \
-	cloth/view/image.c \
 	cloth/view/legend.h cloth/view/legend.c \
 	cloth/view/obstacles.c \
 	cloth/view/picture.c \
 	cloth/view/player.h cloth/view/player.c \
 	cloth/view/scene.h cloth/view/scene.c cloth/view/scene_draw.c \
 	cloth/view/show.h cloth/view/show.c \
-	cloth/view/values.h cloth/view/values.c \
+	cloth/view/values.c \
 	cloth/view/draw/draw.h \
 	cloth/view/draw/ground.c \
 	cloth/view/draw/lights.c \
@@ -24,9 +23,6 @@ libduite_view_a_SOURCES = \
 	cloth/view/draw/shaders.c \
 	cloth/view/draw/sky.c \
 	cloth/view/draw/surfaces.c
-if HAVE_CAIRO
-libduite_view_a_SOURCES += cloth/view/letters.h cloth/view/letters.c
-endif
 if HAVE_WINDOW
 libduite_view_a_SOURCES += cloth/view/overlay.h cloth/view/overlay.c cloth/view/window.h cloth/view/window.c
 endif

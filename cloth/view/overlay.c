@@ -3,18 +3,12 @@
 #include "cloth/view/overlay.h"
 
 #include "cloth/view/draw/draw.h"
-#include "cloth/view/letters.h"
 
 #include <cairo.h>
 #include <math.h>
-#include <stdlib.h>
 
 /* Pixels. */
 static const double MARGIN = 24, BAR = 6, REACH = 14, LETTER = 15, LINE = 24;
-
-struct view_overlay {
-    GLuint program, array, texture;
-};
 
 static const char VERTEX[] = "out vec2 at;\n"
                              "void main()\n"
@@ -42,17 +36,14 @@ double view_overlay_part(double x, double y, int width, int height)
     return fmin(fmax((x - MARGIN) / length, 0), 1);
 }
 
-int view_overlay_new(struct view_overlay **overlay, struct cloth_error *error)
+int view_overlay_make(struct view_overlay *overlay, struct cloth_error *error)
 {
-    struct view_overlay *made = *overlay = calloc(1, sizeof *made);
-    if (!made)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the time line");
-    glGenVertexArrays(1, &made->array);
-    glGenTextures(1, &made->texture);
-    glBindTexture(GL_TEXTURE_2D, made->texture);
+    glGenVertexArrays(1, &overlay->array);
+    glGenTextures(1, &overlay->texture);
+    glBindTexture(GL_TEXTURE_2D, overlay->texture);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    return draw_program(&made->program, VERTEX, FRAGMENT, error);
+    return draw_program(&overlay->program, VERTEX, FRAGMENT, error);
 }
 
 static void line(cairo_t *cairo, double from, double to, double y, double grey, double alpha)
@@ -134,8 +125,8 @@ static void overlay_lay(const struct view_overlay *overlay, cairo_surface_t *sur
     glDisable(GL_BLEND);
 }
 
-int view_overlay_draw(struct view_overlay *overlay, const struct view_overlay_text *text, int width,
-                      int height, struct cloth_error *error)
+int view_overlay_draw(const struct view_overlay *overlay, const struct view_overlay_text *text,
+                      int width, int height, struct cloth_error *error)
 {
     cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height);
     const int code = paint(surface, text, width, height, error);
@@ -145,12 +136,9 @@ int view_overlay_draw(struct view_overlay *overlay, const struct view_overlay_te
     return code;
 }
 
-void view_overlay_free(struct view_overlay *overlay)
+void view_overlay_free(const struct view_overlay *overlay)
 {
-    if (!overlay)
-        return;
     glDeleteProgram(overlay->program);
     glDeleteVertexArrays(1, &overlay->array);
     glDeleteTextures(1, &overlay->texture);
-    free(overlay);
 }

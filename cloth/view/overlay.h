@@ -3,6 +3,8 @@
 
 #include "cloth/view/legend.h"
 
+#include <epoxy/gl.h>
+
 /* Overlay of a window: the legend, a time line and lines of text. Cairo draws it, OpenGL lays it
  * over the bound framebuffer. The context is current in all functions; one thread. */
 
@@ -13,14 +15,16 @@ struct view_overlay_text {
     const struct view_legend *legend;
 };
 
-struct view_overlay;
-/* *overlay: to be freed in any case. Errors: CLOTH_E_MEMORY, CLOTH_E_LIBRARY. */
-int view_overlay_new(struct view_overlay **overlay, struct cloth_error *error);
-int view_overlay_draw(struct view_overlay *overlay, const struct view_overlay_text *text, int width,
-                      int height, struct cloth_error *error);
+struct view_overlay {
+    GLuint program, array, texture;
+};
+/* To be freed in any case; zero is no overlay. Error: CLOTH_E_LIBRARY. */
+int view_overlay_make(struct view_overlay *overlay, struct cloth_error *error);
+int view_overlay_draw(const struct view_overlay *overlay, const struct view_overlay_text *text,
+                      int width, int height, struct cloth_error *error);
 /* The part of a window's time line at x and y (pixels from the top left corner), 0 .. 1; -1: beside
  * it. Pure. */
 double view_overlay_part(double x, double y, int width, int height);
-void view_overlay_free(struct view_overlay *overlay);
+void view_overlay_free(const struct view_overlay *overlay);
 
 #endif

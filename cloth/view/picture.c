@@ -3,8 +3,14 @@
 #include "cloth/view/view.h"
 
 #include <epoxy/gl.h>
+#include <errno.h>
+#include <png.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* ---- Drawing ---- */
 
 struct target {
     GLuint frame, color;
@@ -33,32 +39,27 @@ static void target_free(const struct target *target)
 }
 
 /* OpenGL's rows go up, ours go down. */
-static void flip(struct view_picture *picture, unsigned char *row)
+static void flip(const struct view_picture *picture)
 {
-    size_t n = (size_t)3 * (size_t)picture->width;
-    for (int low = 0, high = picture->height - 1; low < high; low++, high--) {
-        unsigned char *a = picture->rgb + (size_t)low * n, *b = picture->rgb + (size_t)high * n;
-        memcpy(row, a, n);
-        memcpy(a, b, n);
-        memcpy(b, row, n);
-    }
+    const size_t n = (size_t)3 * (size_t)picture->width;
+    unsigned char *low = picture->rgb, *high = low + n * (size_t)(picture->height - 1);
+    for (; low < high; low += n, high -= n)
+        for (size_t k = 0; k < n; k++) {
+            const unsigned char byte = low[k];
+            low[k] = high[k];
+            high[k] = byte;
+        }
 }
 
 static int read_back(struct view_picture *picture, struct cloth_error *error)
 {
-    size_t row_size = (size_t)3 * (size_t)picture->width;
-    unsigned char *row = malloc(row_size);
-    picture->rgb = malloc(row_size * (size_t)picture->height);
-    if (!row || !picture->rgb) {
-        free(row);
-        view_picture_free(picture);
+    picture->rgb = malloc((size_t)3 * (size_t)picture->width * (size_t)picture->height);
+    if (!picture->rgb)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for a picture of %d x %d",
                           picture->width, picture->height);
-    }
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(0, 0, picture->width, picture->height, GL_RGB, GL_UNSIGNED_BYTE, picture->rgb);
-    flip(picture, row);
-    free(row);
+    flip(picture);
     return 0;
 }
 
@@ -108,4 +109,69 @@ int view_window_draw(int width, int height, struct view_scene *scene,
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     code = code ? code : view_scene_draw(scene, camera, width, height, error);
     return code ? code : fail_to_draw(error);
+}
+
+/* ---- Files ---- */
+
+static int fail_to_write(const char *path, const char *reason, struct cloth_error *error)
+{
+    return cloth_fail(error, CLOTH_E_IO, "cannot write %s: %s", path, reason);
+}
+
+/* name: the file that is opened; path: its final name, for sentences. */
+static int write_file(const char *name, const char *path, view_fill *fill, void *context,
+                      struct cloth_error *error)
+{
+    FILE *file = fopen(name, "wbe");
+    if (!file)
+        return fail_to_write(path, strerror(errno), error);
+    errno = 0;
+    const int code = fill(context, path, file, error);
+    bool whole = !fflush(file) && !ferror(file);
+    int reason = errno;
+    if (fclose(file) && whole) {
+        whole = false;
+        reason = errno;
+    }
+    return code || whole ? code : fail_to_write(path, strerror(reason), error);
+}
+
+int view_replace_file(const char *path, view_fill *fill, void *context, struct cloth_error *error)
+{
+    struct stat status;
+    char *part = NULL;
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode))
+        return write_file(path, path, fill, context, error); /* a pipe or a device */
+    if (asprintf(&part, "%s.part", path) < 0)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory to write %s", path);
+    int code = write_file(part, path, fill, context, error);
+    if (!code && rename(part, path) != 0)
+        code = fail_to_write(path, strerror(errno), error);
+    if (code)
+        unlink(part);
+    free(part);
+    return code;
+}
+
+static int fill_png(void *context, const char *path, FILE *file, struct cloth_error *error)
+{
+    const struct view_picture *picture = context;
+    png_image image = {.version = PNG_IMAGE_VERSION,
+                       .width = (png_uint_32)picture->width,
+                       .height = (png_uint_32)picture->height,
+                       .format = PNG_FORMAT_RGB};
+    if (png_image_write_to_stdio(&image, file, 0, picture->rgb, 0, NULL))
+        return CLOTH_OK;
+    return fail_to_write(path, errno ? strerror(errno) : image.message, error);
+}
+
+int view_picture_write(struct view_picture *picture, const char *path, struct cloth_error *error)
+{
+    return view_replace_file(path, fill_png, picture, error);
+}
+
+void view_picture_free(struct view_picture *picture)
+{
+    free(picture->rgb);
+    picture->rgb = NULL;
 }

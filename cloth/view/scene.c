@@ -74,15 +74,6 @@ static int make_grounds(struct view_scene *scene, struct cloth_error *error)
     return code;
 }
 
-/* A mesh and the sky's light on it. */
-static int make_surface(struct draw_mesh *mesh, struct draw_sky *sky,
-                        const struct view_shape *shape, struct cloth_error *error)
-{
-    const int code = draw_mesh_make(mesh, shape->n_vertices, shape->n_triangles, shape->triangle,
-                                    shape->n_lines, shape->line, error);
-    return code ? code : draw_sky_make(sky, shape->n_vertices ? shape->n_vertices : 1, error);
-}
-
 int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
                    struct cloth_error *error)
 {
@@ -97,13 +88,13 @@ int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
     code = code ? code : make_parts(made, shape, error);
     code = code ? code : draw_lights_make(&made->lights, error);
     code = code ? code : make_grounds(made, error);
-    code = code ? code : make_surface(&made->mesh, &made->mesh_sky, shape, error);
-    if (!code && view_scene_has_shapes(made)) {
-        const struct view_shape shapes = {.n_vertices = made->obstacles->n_vertices,
-                                          .n_triangles = made->obstacles->n_triangles,
-                                          .triangle = made->obstacles->triangle[0]};
-        code = make_surface(&made->shapes, &made->shapes_sky, &shapes, error);
-    }
+    code = code ? code
+                : draw_mesh_make(&made->mesh, shape->n_vertices, shape->n_triangles,
+                                 shape->triangle, shape->n_lines, shape->line, error);
+    if (!code && view_scene_has_shapes(made))
+        code =
+            draw_mesh_make(&made->shapes, made->obstacles->n_vertices, made->obstacles->n_triangles,
+                           made->obstacles->triangle[0], 0, NULL, error);
     if (code) {
         view_scene_free(made);
         return code;
@@ -168,10 +159,10 @@ static void light_square(const struct view_scene *scene, const struct draw_groun
     draw_sky_light(&square->light, scene->unsmooth[by].light[0]);
 }
 
-static void light_surface(const struct draw_mesh *mesh, const struct draw_sky *sky)
+static void light_surface(const struct draw_mesh *mesh)
 {
-    draw_sky_place(sky, mesh->vertex, mesh->n_vertices);
-    draw_sky_light(sky, sky->source);
+    draw_sky_place(&mesh->sky, mesh->vertex, mesh->n_vertices);
+    draw_sky_light(&mesh->sky, mesh->sky.source);
 }
 
 /* The sky's light where everything is now. */
@@ -180,9 +171,9 @@ static void light(struct view_scene *scene)
     draw_lights_bind(&scene->lights);
     glBindVertexArray(scene->nothing);
     view_scene_use(scene, VIEW_SKY, 0, 0);
-    light_surface(&scene->mesh, &scene->mesh_sky);
+    light_surface(&scene->mesh);
     if (view_scene_has_shapes(scene))
-        light_surface(&scene->shapes, &scene->shapes_sky);
+        light_surface(&scene->shapes);
     for (size_t i = 0; i < scene->n_grounds; i++) {
         draw_ground_place(scene->ground + i, scene->obstacles->plane[i], scene->mesh.center,
                           scene->mesh.radius, &scene->lights);
@@ -219,14 +210,10 @@ void view_scene_paint(struct view_scene *scene, enum view_paint paint, int n, co
         draw_mesh_values(&scene->mesh, value);
 }
 
-void view_scene_wire(struct view_scene *scene, bool wire)
+void view_scene_style(struct view_scene *scene, bool wired, bool plain)
 {
-    scene->wired = wire;
-}
-
-void view_scene_shadows(struct view_scene *scene, bool shadows)
-{
-    scene->plain = !shadows;
+    scene->wired = wired;
+    scene->plain = plain;
 }
 
 void view_scene_free(struct view_scene *scene)
@@ -235,8 +222,6 @@ void view_scene_free(struct view_scene *scene)
         return;
     draw_mesh_free(&scene->mesh);
     draw_mesh_free(&scene->shapes);
-    draw_sky_free(&scene->mesh_sky);
-    draw_sky_free(&scene->shapes_sky);
     for (int i = 0; i < DRAW_SQUARES; i++)
         draw_sky_free(scene->unsmooth + i);
     for (size_t i = 0; i < scene->n_grounds; i++)

@@ -21,7 +21,6 @@ enum view_program {
 struct view_scene {
     const struct view_obstacles *obstacles; /* NULL: none */
     struct draw_mesh mesh, shapes;          /* the cloth; the obstacles that have a surface */
-    struct draw_sky mesh_sky, shapes_sky;
     size_t n_grounds;
     struct draw_ground *ground;             /* n_grounds */
     struct draw_sky unsmooth[DRAW_SQUARES]; /* of one ground after the other */

@@ -135,7 +135,7 @@ static void draw_shapes(const struct view_scene *scene, GLuint program,
     glEnable(GL_CULL_FACE); /* a shape around the eye would hide everything */
     glUniform1i(glGetUniformLocation(program, "colours"), VIEW_PAINT_CLOTH);
     glUniform1f(glGetUniformLocation(program, "paint"), (float)STONE);
-    draw_sky_bind(&scene->shapes_sky);
+    draw_sky_bind(&scene->shapes.sky);
     draw_mesh_draw(&scene->shapes);
     glDisable(GL_CULL_FACE);
     glDisable(GL_POLYGON_OFFSET_FILL);
@@ -158,7 +158,7 @@ static void draw_surfaces(const struct view_scene *scene, const struct view_came
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);
     const GLuint program = use_to_see(scene, VIEW_SURFACE, camera, width, height);
-    draw_sky_bind(&scene->mesh_sky);
+    draw_sky_bind(&scene->mesh.sky);
     if (scene->wired)
         draw_wired(scene, program);
     else

@@ -1,28 +1,11 @@
-/* A show has one frame at a time. It waits in plain arrays, so that files can be read before there
+/* The frame waits in plain arrays, so that files can be read before there
  * is an OpenGL context; drawing hands it to the scene. */
 #include "cloth/view/show.h"
 
 #include "cloth/contact/surface.h"
-#include "cloth/view/colours.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-enum { FITTED_FRAMES = 100 };
-
-struct view_show {
-    struct output_cache *cache;
-    const struct view_wish *wish;
-    struct view_obstacles obstacles;
-    struct view_sight sight;
-    bool wire, plain;         /* plain: without shadows */
-    struct view_scene *scene; /* NULL until the first drawing */
-    bool moved;               /* the scene has another frame than was read last */
-    unsigned char *used;      /* a vertex: true if a face or an edge uses it */
-    uint64_t frame;           /* read last */
-    double *position;         /* of it */
-    struct view_colours *colours;
-};
 
 /* Vertices that nothing uses are not to be seen, and neither camera nor light is to look for them:
  * they go where the first used one is. */
@@ -39,11 +22,6 @@ static int read_position(struct view_show *show, uint64_t frame, struct cloth_er
     return code;
 }
 
-void view_show_say(const struct view_show *show)
-{
-    view_colours_say(show->colours);
-}
-
 /* Puts them where they are in a frame. */
 static int place_obstacles(struct view_show *show, uint64_t frame, struct cloth_error *error)
 {
@@ -51,17 +29,6 @@ static int place_obstacles(struct view_show *show, uint64_t frame, struct cloth_
     if (!code)
         view_obstacles_at(&show->obstacles, show->cache->time[frame]);
     return code;
-}
-
-static uint64_t fitted_frames(const struct output_cache *cache)
-{
-    return cache->n_frames < FITTED_FRAMES ? cache->n_frames : FITTED_FRAMES;
-}
-
-static uint64_t fitted_frame(const struct output_cache *cache, uint64_t i)
-{
-    const uint64_t n = fitted_frames(cache);
-    return n > 1 ? i * (cache->n_frames - 1) / (n - 1) : 0;
 }
 
 /* The obstacles, after the cloth. */
@@ -86,20 +53,20 @@ static int fit_camera(struct view_show *show, struct cloth_error *error)
     const struct output_cache *cache = show->cache;
     view_fit_start(&show->sight.fit, wish->azimuth, wish->elevation,
                    (double)wish->width / wish->height, wish->zoom);
-    for (uint64_t i = 0; i < fitted_frames(cache); i++) {
-        const int code = read_position(show, fitted_frame(cache, i), error);
+    for (uint64_t i = 0; i < view_looks(cache->n_frames); i++) {
+        const int code = read_position(show, view_look(cache->n_frames, i), error);
         if (code)
             return code;
         view_fit_add(&show->sight.fit, cache->mesh.n_vertices, show->position);
     }
-    for (uint64_t i = 0; i < fitted_frames(cache); i++) {
-        const int code = place_obstacles(show, fitted_frame(cache, i), error);
+    for (uint64_t i = 0; i < view_looks(cache->n_frames); i++) {
+        const int code = place_obstacles(show, view_look(cache->n_frames, i), error);
         if (code)
             return code;
         fit_obstacles(show);
     }
     view_fit_orbit(&show->sight.fit, &show->sight.fitted);
-    view_show_recentre(show);
+    show->sight.orbit = show->sight.fitted;
     return 0;
 }
 
@@ -135,7 +102,7 @@ int view_show_open(struct view_show **show, struct output_cache *cache,
 int view_show_frame(struct view_show *show, uint64_t frame, struct cloth_error *error)
 {
     int code = read_position(show, frame, error);
-    code = code ? code : view_colours_frame(show->colours, frame, show->position, error);
+    code = code ? code : view_colours_frame(&show->colours, frame, show->position, error);
     show->frame = frame;
     show->moved = true;
     return code ? code : place_obstacles(show, frame, error);
@@ -160,14 +127,12 @@ static int move_scene(struct view_show *show, struct cloth_error *error)
 {
     int code = show->scene ? 0 : make_scene(show, error);
     if (!code)
-        view_scene_wire(show->scene, show->wire);
-    if (!code)
-        view_scene_shadows(show->scene, !show->plain);
+        view_scene_style(show->scene, show->wire, show->plain);
     if (code || !show->moved)
         return code;
     code = view_scene_move(show->scene, show->position, error);
     if (!code)
-        view_colours_paint(show->colours, show->scene);
+        view_colours_paint(&show->colours, show->scene);
     show->moved = code;
     return code;
 }
@@ -179,17 +144,7 @@ int view_show_picture(struct view_show *show, struct view_picture *picture,
     view_orbit_camera(&show->sight.orbit, (double)picture->width / picture->height, &camera);
     int code = move_scene(show, error);
     code = code ? code : view_picture_draw(picture, show->scene, &camera, error);
-    return code ? code : view_legend_lay(view_show_legend(show), picture, error);
-}
-
-struct view_orbit *view_show_orbit(struct view_show *show)
-{
-    return &show->sight.orbit;
-}
-
-void view_show_recentre(struct view_show *show)
-{
-    show->sight.orbit = show->sight.fitted;
+    return code ? code : view_legend_lay(&show->colours.legend, picture, error);
 }
 
 void view_show_follow(struct view_show *show)
@@ -203,42 +158,22 @@ void view_show_follow(struct view_show *show)
         sight->orbit = sight->fitted;
 }
 
-struct view_sight *view_show_sight(struct view_show *show)
-{
-    return &show->sight;
-}
-
-void view_show_wire(struct view_show *show, bool wire)
-{
-    show->wire = wire;
-}
-
-const struct view_legend *view_show_legend(const struct view_show *show)
-{
-    return view_colours_legend(show->colours);
-}
-
 /* Skips quantities that the folder lacks; the cloth's own colours are always there. */
 int view_show_next_colour(struct view_show *show, struct cloth_error *error)
 {
-    enum view_colour by = view_colours_by(show->colours);
+    enum view_colour by = show->colours.legend.by;
     int code = CLOTH_E_INPUT;
     while (code == CLOTH_E_INPUT) {
         struct cloth_error left_out = {0};
         by = (by + 1) % VIEW_COLOURS;
-        code = view_colours_pick(show->colours, by, &left_out);
+        code = view_colours_pick(&show->colours, by, &left_out);
         if (!code)
-            code = view_colours_frame(show->colours, show->frame, show->position, &left_out);
+            code = view_colours_frame(&show->colours, show->frame, show->position, &left_out);
         if (code && code != CLOTH_E_INPUT)
             *error = left_out;
     }
     show->moved = true;
     return code;
-}
-
-void view_show_shadows(struct view_show *show, bool shadows)
-{
-    show->plain = !shadows;
 }
 
 int view_show_window(struct view_show *show, int width, int height, struct cloth_error *error)
@@ -263,6 +198,6 @@ void view_show_close(struct view_show *show)
     view_obstacles_free(&show->obstacles);
     free(show->used);
     free(show->position);
-    view_colours_close(show->colours);
+    view_colours_close(&show->colours);
     free(show);
 }

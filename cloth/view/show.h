@@ -1,8 +1,7 @@
 #ifndef CLOTH_VIEW_SHOW_H
 #define CLOTH_VIEW_SHOW_H
 
-#include "cloth/output/output.h"
-#include "cloth/view/legend.h"
+#include "cloth/view/colours.h"
 #include "cloth/view/view.h"
 
 #include <stdbool.h>
@@ -19,7 +18,27 @@ struct view_wish {
     bool wire;                       /* with the edges of the triangles */
 };
 
-struct view_show;
+/* The camera with all that it was fitted to. */
+struct view_sight {
+    struct view_fit fit;
+    struct view_orbit orbit, fitted; /* as it is; as the fit has it */
+};
+
+/* A show has one frame at a time. */
+struct view_show {
+    struct output_cache *cache;
+    const struct view_wish *wish;
+    struct view_obstacles obstacles;
+    struct view_sight sight;     /* anyone may move its orbit */
+    bool wire;                   /* with the edges of triangles; anyone may change it, */
+    bool plain;                  /* and this: without shadows, from the next frame read on */
+    struct view_scene *scene;    /* NULL until the first drawing */
+    bool moved;                  /* the scene has another frame than was read last */
+    unsigned char *used;         /* a vertex: true if a face or an edge uses it */
+    uint64_t frame;              /* read last */
+    double *position;            /* of it */
+    struct view_colours colours; /* of it, with their legend */
+};
 
 /* Fits the camera to all frames, or to a hundred spread evenly over a long run, so that pictures of
  * a folder go together. The caller owns cache and wish, which outlive the show. *show: to be closed
@@ -32,29 +51,12 @@ int view_show_frame(struct view_show *show, uint64_t frame, struct cloth_error *
  * calls up to view_show_undraw. */
 int view_show_picture(struct view_show *show, struct view_picture *picture,
                       struct cloth_error *error);
-/* The camera of view_show_picture, which turns around the cloth. */
-struct view_orbit *view_show_orbit(struct view_show *show);
-/* The camera as it was fitted. */
-void view_show_recentre(struct view_show *show);
-/* Fits it to the frame read last, too; unless somebody moved it, it is as fitted then. */
+/* Fits the camera to the frame read last, too; unless somebody moved it, it is as fitted then. */
 void view_show_follow(struct view_show *show);
-/* The camera with all that it was fitted to, for another show of the same cloth. */
-struct view_sight {
-    struct view_fit fit;
-    struct view_orbit orbit, fitted; /* as it is; as the fit has it */
-};
-struct view_sight *view_show_sight(struct view_show *show);
 /* Draws the frame into a window of that size, without the legend. */
 int view_show_window(struct view_show *show, int width, int height, struct cloth_error *error);
-void view_show_wire(struct view_show *show, bool wire);
 /* Colours by the next quantity of enum view_colour that the folder has. */
 int view_show_next_colour(struct view_show *show, struct cloth_error *error);
-/* The legend of the frame. */
-const struct view_legend *view_show_legend(const struct view_show *show);
-/* Turns shadows on or off for the frames read from now on; they are on at first. */
-void view_show_shadows(struct view_show *show, bool shadows);
-/* The same on standard output. */
-void view_show_say(const struct view_show *show);
 /* Frees the objects of drawing, while its context is current. */
 void view_show_undraw(struct view_show *show);
 void view_show_close(struct view_show *show);

@@ -1,40 +1,21 @@
 /* Shapes at rest are those that count in the frame that was asked for last. */
-#include "cloth/view/values.h"
+#include "cloth/view/colours.h"
 
 #include "cloth/base/memory.h"
-#include "cloth/element/strain.h"
-#include "cloth/output/colours.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-struct view_values {
-    struct output_cache *cache;
-    const char *folder;
-    struct output_colours_read *colours; /* NULL until it is asked for */
-    struct element_strains strains;
-    uint64_t since;             /* from which frame on they count; UINT64_MAX: there are none */
-    double *cell, (*stress)[3]; /* of each triangle and edge */
-    double *weight;             /* of each vertex */
-    int32_t *number;            /* as this; */
-    double *force;              /* x 3 */
-};
-
-int view_values_open(struct view_values **values, struct output_cache *cache, const char *folder,
+int view_values_open(struct view_values *values, struct output_cache *cache, const char *folder,
                      struct cloth_error *error)
 {
     const size_t n = cache->mesh.n_vertices;
-    struct view_values *made = *values = cloth_alloc(1, sizeof *made, error);
-    if (!made)
-        return CLOTH_E_MEMORY;
-    made->cache = cache;
-    made->folder = folder;
-    made->since = UINT64_MAX;
-    made->weight = cloth_alloc(n, sizeof *made->weight, error);
-    made->number = cloth_alloc(n, sizeof *made->number, error);
-    made->force = cloth_alloc(3 * n, sizeof *made->force, error);
-    return made->weight && made->number && made->force ? CLOTH_OK : CLOTH_E_MEMORY;
+    *values = (struct view_values){.cache = cache, .folder = folder, .since = UINT64_MAX};
+    values->weight = cloth_alloc(n, sizeof *values->weight, error);
+    values->number = cloth_alloc(n, sizeof *values->number, error);
+    values->force = cloth_alloc(3 * n, sizeof *values->force, error);
+    return error->code;
 }
 
 static int view_values_open_colours(struct view_values *values, struct cloth_error *error)
@@ -83,42 +64,24 @@ static int view_values_find_forces(const struct view_values *values, uint64_t fr
 static int take_strains(struct element_strains *strains, uint32_t n_vertices,
                         const struct output_rest *rest, struct cloth_error *error)
 {
-    const size_t vector = sizeof(phys_vec);
     *strains = (struct element_strains){
         .n_vertices = n_vertices, .n_triangles = rest->n_triangles, .n_edges = rest->n_edges};
-    strains->corner = cloth_alloc(rest->n_triangles, sizeof *strains->corner, error);
-    strains->gradient = aligned_alloc(vector, ((size_t)rest->n_triangles + 1) * vector);
-    strains->area = cloth_alloc(rest->n_triangles, sizeof *strains->area, error);
-    strains->edge = cloth_alloc(rest->n_edges, sizeof *strains->edge, error);
-    strains->length = cloth_alloc(rest->n_edges, sizeof *strains->length, error);
-    strains->membrane =
-        aligned_alloc(vector, ((size_t)rest->n_materials + 1) * sizeof *strains->membrane);
-    strains->has_stress = cloth_alloc(rest->n_materials, sizeof *strains->has_stress, error);
-    strains->x = aligned_alloc(vector, ((size_t)n_vertices + 1) * vector);
-    return strains->corner && strains->gradient && strains->area && strains->edge &&
-                   strains->length && strains->membrane && strains->has_stress && strains->x
-               ? CLOTH_OK
-               : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the strains of %u triangles",
-                            rest->n_triangles);
-}
-
-static void copy_strains(struct element_strains *strains, const struct output_rest *rest)
-{
+    if (element_strains_room(strains, rest->n_materials, error))
+        return CLOTH_E_MEMORY;
+    memcpy(strains->corner, rest->corner, rest->n_triangles * sizeof *rest->corner);
+    memcpy(strains->area, rest->area, rest->n_triangles * sizeof *rest->area);
+    memcpy(strains->edge, rest->edge, rest->n_edges * sizeof *rest->edge);
+    memcpy(strains->length, rest->length, rest->n_edges * sizeof *rest->length);
+    memcpy(strains->has_stress, rest->has_stress, rest->n_materials * sizeof *rest->has_stress);
     for (uint32_t t = 0; t < rest->n_triangles; t++) {
         const double *g = rest->gradient[t];
-        memcpy(strains->corner[t], rest->corner[t], sizeof *rest->corner);
         strains->gradient[t] = (phys_vec){g[0], g[1], g[2], g[3]};
-        strains->area[t] = rest->area[t];
-    }
-    for (uint32_t e = 0; e < rest->n_edges; e++) {
-        memcpy(strains->edge[e], rest->edge[e], sizeof *rest->edge);
-        strains->length[e] = rest->length[e];
     }
     for (uint32_t m = 0; m < rest->n_materials; m++) {
         const double *c = rest->modulus[m];
         strains->membrane[m] = (struct phys_membrane){.modulus = {c[0], c[1], c[2], c[3]}};
-        strains->has_stress[m] = rest->has_stress[m];
     }
+    return CLOTH_OK;
 }
 
 /* Takes the shapes at rest of the frame. */
@@ -139,7 +102,6 @@ static int make_strains(struct view_values *values, uint64_t frame, struct cloth
     if (!code)
         code = take_strains(&values->strains, values->cache->mesh.n_vertices, &rest, error);
     if (!code) {
-        copy_strains(&values->strains, &rest);
         values->cell = cloth_alloc(n, sizeof *values->cell, error);
         values->stress = cloth_alloc(n, sizeof *values->stress, error);
         code = values->cell && values->stress ? CLOTH_OK : CLOTH_E_MEMORY;
@@ -243,8 +205,6 @@ int view_values_frames(struct view_values *values, enum view_colour by, uint64_t
 
 void view_values_close(struct view_values *values)
 {
-    if (!values)
-        return;
     output_colours_unload(values->colours);
     element_strains_free(&values->strains);
     free(values->cell);
@@ -252,5 +212,4 @@ void view_values_close(struct view_values *values)
     free(values->weight);
     free(values->number);
     free(values->force);
-    free(values);
 }

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 /* Pictures of cloth with desktop OpenGL 3.3 core. Right-handed, metres, +y up. One thread; a
  * context must be open while scenes and pictures are made, drawn and freed. */
@@ -122,16 +123,15 @@ enum { VIEW_MAP_MAX = 16 };
  * negative: there is none, which is grey. Neither is read of VIEW_PAINT_CLOTH. */
 void view_scene_paint(struct view_scene *scene, enum view_paint paint, int n, const float (*map)[3],
                       const float *value);
-/* Draws the edges of the cloth's triangles, too, or not. */
-void view_scene_wire(struct view_scene *scene, bool wire);
-/* Turns shadows on or off from the next move on; a new scene has them. */
-void view_scene_shadows(struct view_scene *scene, bool shadows);
+/* wired: draws the edges of the cloth's triangles, too; plain: without shadows, from the next move
+ * on. A new scene is neither. */
+void view_scene_style(struct view_scene *scene, bool wired, bool plain);
 /* Draws into the bound framebuffer, with four samples a pixel. */
 int view_scene_draw(struct view_scene *scene, const struct view_camera *camera, int width,
                     int height, struct cloth_error *error);
 void view_scene_free(struct view_scene *scene);
 
-/* --- picture.c, image.c --- */
+/* --- picture.c --- */
 
 struct view_picture {
     int width, height;
@@ -143,9 +143,14 @@ int view_picture_draw(struct view_picture *picture, struct view_scene *scene,
 /* Draws the same into the framebuffer of a window of that size, which is bound after it. */
 int view_window_draw(int width, int height, struct view_scene *scene,
                      const struct view_camera *camera, struct cloth_error *error);
-/* A PNG file, written whole or not at all. */
-int view_picture_write(const struct view_picture *picture, const char *path,
-                       struct cloth_error *error);
+/* A PNG file, written whole or not at all. Error: CLOTH_E_IO. */
+int view_picture_write(struct view_picture *picture, const char *path, struct cloth_error *error);
 void view_picture_free(struct view_picture *picture);
+
+/* Writes a file under another name and renames it when it is whole, so that its path never holds
+ * half of it; a pipe or a device is written to as it is. fill returns 0, or a code with the error
+ * filled. Errors: its own; CLOTH_E_IO, CLOTH_E_MEMORY. */
+typedef int view_fill(void *context, const char *path, FILE *file, struct cloth_error *error);
+int view_replace_file(const char *path, view_fill *fill, void *context, struct cloth_error *error);
 
 #endif

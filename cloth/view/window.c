@@ -34,8 +34,7 @@ static const char *const HELP[] = {"space",       "play, pause",
 struct window {
     GLFWwindow *glfw;
     struct view_show *show;
-    struct view_overlay *overlay;
-    const struct output_cache *cache;
+    struct view_overlay overlay;
     const char *folder;
     struct view_player player;
     struct view_live *live; /* NULL: a folder */
@@ -53,9 +52,9 @@ static struct window *window_of(GLFWwindow *glfw)
 static void on_camera_key(struct window *w, int key)
 {
     if (key == GLFW_KEY_R)
-        view_show_recentre(w->show);
+        w->show->sight.orbit = w->show->sight.fitted;
     if (key == GLFW_KEY_W)
-        view_show_wire(w->show, w->wire = !w->wire);
+        w->show->wire = w->wire = !w->wire;
     if (key == GLFW_KEY_C)
         w->recolour++;
     if (key == GLFW_KEY_H || key == GLFW_KEY_F1)
@@ -135,17 +134,17 @@ static void on_mouse(GLFWwindow *glfw, double x, double y)
     if (w->seeking)
         seek(w);
     else if (glfwGetMouseButton(glfw, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS)
-        view_orbit_turn(view_show_orbit(w->show), -TURN * right, -TURN * up);
+        view_orbit_turn(&w->show->sight.orbit, -TURN * right, -TURN * up);
     else if (glfwGetMouseButton(glfw, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS ||
              glfwGetMouseButton(glfw, GLFW_MOUSE_BUTTON_MIDDLE) == GLFW_PRESS)
-        view_orbit_pan(view_show_orbit(w->show), right, up);
+        view_orbit_pan(&w->show->sight.orbit, right, up);
 }
 
 static void on_wheel(GLFWwindow *glfw, double x, double y)
 {
     struct window *w = window_of(glfw);
     (void)x;
-    view_orbit_zoom(view_show_orbit(w->show), y < 0 ? 1 / 1.1 : 1.1);
+    view_orbit_zoom(&w->show->sight.orbit, y < 0 ? 1 / 1.1 : 1.1);
     w->changed = true;
 }
 
@@ -192,13 +191,13 @@ static void name_frame(const struct window *w, size_t size, char line[size])
         return;
     }
     snprintf(line, size, "frame %" PRIu64 " of 0 to %" PRIu64 ", %.4g s, %.4g frames a second",
-             w->player.frame, w->player.n_frames - 1, w->cache->time[w->player.frame],
+             w->player.frame, w->player.n_frames - 1, w->show->cache->time[w->player.frame],
              w->player.rate);
 }
 
 static void set_title(const struct window *w)
 {
-    const struct view_orbit *orbit = view_show_orbit(w->show);
+    const struct view_orbit *orbit = &w->show->sight.orbit;
     char line[120], title[512];
     name_frame(w, sizeof line, line);
     snprintf(title, sizeof title, "%.200s: %s, --camera=%.3g,%.3g,%.3g (h: help)", w->folder, line,
@@ -223,9 +222,9 @@ static int draw_overlay(struct window *w, bool lined, int width, int height,
                         : 1,
         .status = lined ? line : NULL,
         .help = w->help ? HELP : NULL,
-        .legend = view_show_legend(w->show),
+        .legend = &w->show->colours.legend,
     };
-    return view_overlay_draw(w->overlay, &text, width, height, error);
+    return view_overlay_draw(&w->overlay, &text, width, height, error);
 }
 
 static int window_draw(struct window *w, bool lined, struct cloth_error *error)
@@ -235,7 +234,7 @@ static int window_draw(struct window *w, bool lined, struct cloth_error *error)
     if (width <= 0 || height <= 0)
         return 0; /* as an icon */
     int code = view_show_window(w->show, width, height, error);
-    if (!code && (lined || view_show_legend(w->show)->by != VIEW_COLOUR_CLOTH))
+    if (!code && (lined || w->show->colours.legend.by != VIEW_COLOUR_CLOTH))
         code = draw_overlay(w, lined, width, height, error);
     if (!code && glGetError() != GL_NO_ERROR)
         code = cloth_fail(error, CLOTH_E_LIBRARY, "OpenGL failed to draw the window");
@@ -269,7 +268,7 @@ static int window_look(struct window *w, struct cloth_error *error)
     const int code = w->live->look(w->live, error);
     w->show = w->live->show;
     if (w->live->fresh && !code)
-        view_show_wire(w->show, w->wire);
+        w->show->wire = w->wire;
     w->changed = w->changed || w->live->fresh || w->live->waits != waited;
     return code;
 }
@@ -305,16 +304,17 @@ static int window_run(struct window *w, struct cloth_error *error)
     return code;
 }
 
-static int open_and_run(struct window *w, const struct view_wish *wish, struct cloth_error *error)
+static int open_and_run(struct window *w, struct cloth_error *error)
 {
+    const struct view_wish *wish = w->show->wish;
     w->folder = wish->folder;
     w->wire = wish->wire;
     w->moved = -SEEN;
     int code = open_glfw(w, wish, error);
-    code = code ? code : view_overlay_new(&w->overlay, error);
+    code = code ? code : view_overlay_make(&w->overlay, error);
     code = code ? code : window_run(w, error);
     if (w->glfw) {
-        view_overlay_free(w->overlay);
+        view_overlay_free(&w->overlay);
         if (w->show)
             view_show_undraw(w->show);
     }
@@ -322,18 +322,16 @@ static int open_and_run(struct window *w, const struct view_wish *wish, struct c
     return code;
 }
 
-int view_window(struct view_show *show, const struct output_cache *cache,
-                const struct view_wish *wish, uint64_t frame, struct cloth_error *error)
+int view_window(struct view_show *show, uint64_t frame, struct cloth_error *error)
 {
-    struct window w = {.show = show, .cache = cache};
-    view_player_start(&w.player, cache->n_frames, frame, cache->fps);
-    return open_and_run(&w, wish, error);
+    struct window w = {.show = show};
+    view_player_start(&w.player, show->cache->n_frames, frame, show->cache->fps);
+    return open_and_run(&w, error);
 }
 
-int view_window_live(struct view_live *live, const struct view_wish *wish,
-                     struct cloth_error *error)
+int view_window_live(struct view_live *live, struct cloth_error *error)
 {
     struct window w = {.show = live->show, .live = live};
     view_player_start(&w.player, 1, 0, 1);
-    return open_and_run(&w, wish, error);
+    return open_and_run(&w, error);
 }

@@ -72,10 +72,9 @@ static uint32_t graph_take_slot(duite *rt)
     size_t slot = 0;
     while (slot < rt->n_recorded && rt->recorded[slot].record)
         slot++;
-    void *moved = base_grow(rt->recorded, &rt->recorded_capacity, slot + 1, sizeof *rt->recorded);
-    struct plan_record *record = moved ? plan_record_new(&rt->graph) : NULL;
-    if (moved)
-        rt->recorded = moved;
+    struct plan_record *record = BASE_GROW(rt->recorded, rt->recorded_capacity, slot + 1)
+                                     ? plan_record_new(&rt->graph)
+                                     : NULL;
     if (!record)
         return 0;
     if (slot == rt->n_recorded)

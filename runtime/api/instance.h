@@ -4,6 +4,7 @@
 #include "runtime/base/policy.h"
 #include "runtime/comm/comm.h"
 #include "runtime/map/map.h"
+#include "runtime/plan/memo.h"
 #include "runtime/plan/record.h"
 #include "runtime/task/body.h"
 #include "runtime/trace/trace.h"
@@ -20,11 +21,11 @@ struct duite {
     struct comm *comm;   /* NULL: one rank */
     struct check *check; /* NULL: not in checking mode */
     struct work_pool *pool;
-    struct worker *worker;    /* the main thread's; as is: */
-    const void *thread;       /* task_thread_mark() */
-    struct task_taker *taker; /* takes forks before they become tasks; NULL: nothing does */
-    struct trace *trace;      /* NULL: there is none */
-    bool traced;              /* the trace is closed */
+    struct worker *worker;  /* the main thread's; as is: */
+    const void *thread;     /* task_thread_mark() */
+    struct plan_memo *memo; /* takes forks before they become tasks; NULL: nothing does */
+    struct trace *trace;    /* NULL: there is none */
+    bool traced;            /* the trace is closed */
     struct base_monitor monitor;
     struct base_marks *marks; /* NULL: all policies are built in */
     struct map_policy mapping;

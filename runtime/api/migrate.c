@@ -9,7 +9,6 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/map/blocks.h"
-#include "runtime/map/tasks.h"
 
 /* Places in `values`: a rank's report, about itself and then its blocks; rank 0's answer, for all
  * and then the blocks that move. */
@@ -136,62 +135,52 @@ static int migration_report(struct migration *m)
 
 /* ---- Rank 0 decides ---- */
 
-static int migration_add_traffic(void *context, const struct plan_record *record, double rounds)
-{
-    struct migration *m = context;
-    return map_traffic_add(&m->moves.traffic, &m->moves.blocks, record, rounds);
-}
-
 static double migration_byte_seconds(const duite *rt)
 {
     return 1e-6 * (comm_transfer(rt->comm, 1000000) - comm_transfer(rt->comm, 0));
 }
 
-static uint64_t migration_ask(struct migration *m)
+/* Shows a record to the mapping, which writes the homes to be; or (guessed NULL) adds the traffic
+ * of so many of its rounds. *guessed: the mapping is to see it once more when all costs are
+ * measured.
+ */
+static int migration_show(struct migration *m, const struct plan_record *record, double rounds,
+                          bool *guessed)
 {
-    duite *rt = m->rt;
-    const struct instance_migration *last = &rt->migration;
-    duite_blocks blocks = map_moves_shown(&m->moves);
-    blocks.n_ranks = rt->graph.n_ranks;
-    blocks.other = m->other;
-    blocks.byte_seconds = migration_byte_seconds(rt);
-    blocks.seconds = base_seconds() - last->since;
-    blocks.migrate_seconds = last->took;
-    blocks.replays = last->replays;
-    blocks.since = last->replays - last->looked;
-    blocks.mapping = rt->mapping.own;
-    blocks.seed = rt->seed;
-    return work_migrate(rt->pool, &blocks, m->moves.home);
+    struct plan_source source;
+    uint32_t *block = base_alloc((record->n_objects + 1) * sizeof *block);
+    const bool fine = plan_record_source(record, NULL, &source) && block;
+    for (size_t i = 0; i < record->n_objects && fine; i++)
+        block[i] = m->moves.blocks.of[record->object[i].bound.slot];
+    const int code = !fine     ? base_no_memory("the blocks of objects")
+                     : guessed ? map_moves_ask(&m->moves, &source, block, guessed)
+                               : map_traffic_add(&m->moves.traffic, &source, block, rounds);
+    plan_source_free(&source);
+    base_free(block);
+    return code;
 }
 
-/* Shows the mapping the tasks of the graph. *again: some costs were guessed, so it is to see them
- * once more when they are measured. */
-static int migration_ask_mapping(struct migration *m, bool *again)
+static int migration_add_traffic(void *context, const struct plan_record *record, double rounds)
 {
-    duite *rt = m->rt;
-    struct map_tasks tasks;
-    int code = map_tasks_find(&tasks, m->record, &m->moves.blocks, m->moves.seconds);
-    *again = tasks.guessed;
-    tasks.graph.fixed = m->moves.fixed;
-    tasks.graph.n_ranks = rt->graph.n_ranks;
-    tasks.graph.workers = m->moves.workers;
-    tasks.graph.byte_seconds = migration_byte_seconds(rt);
-    tasks.graph.message_seconds = comm_transfer(rt->comm, 0);
-    tasks.graph.seed = rt->seed;
-    if (!code)
-        code = map_ask_tasks(&rt->mapping, &tasks.graph, m->moves.home);
-    map_tasks_free(&tasks);
-    return code;
+    return migration_show(context, record, rounds, NULL);
 }
 
 static int migration_ask_balancer(struct migration *m, uint64_t *next)
 {
+    const struct instance_migration *last = &m->rt->migration;
     int code = api_graphs_each(m->rt, migration_add_traffic, m);
     if (!code)
         code = map_traffic_end(&m->moves.traffic, m->moves.blocks.n);
-    if (!code)
-        *next = migration_ask(m);
-    return code;
+    if (code)
+        return code;
+    duite_blocks blocks = map_moves_shown(&m->moves);
+    blocks.other = m->other;
+    blocks.seconds = base_seconds() - last->since;
+    blocks.migrate_seconds = last->took;
+    blocks.replays = last->replays;
+    blocks.since = last->replays - last->looked;
+    *next = work_migrate(m->rt->pool, &blocks, m->moves.home);
+    return DUITE_OK;
 }
 
 static int migration_decide(struct migration *m)
@@ -199,9 +188,14 @@ static int migration_decide(struct migration *m)
     size_t n_moves = 0;
     uint64_t next = 0;
     bool again = false;
+    m->moves.byte_seconds = migration_byte_seconds(m->rt);
+    m->moves.message_seconds = comm_transfer(m->rt->comm, 0);
+    m->moves.seed = m->rt->seed;
+    m->moves.mapping = &m->rt->mapping;
     for (size_t i = 0; i < m->moves.blocks.n; i++)
         m->moves.bytes[i] = m->moves.blocks.block[i].bytes;
-    int code = m->record ? migration_ask_mapping(m, &again) : migration_ask_balancer(m, &next);
+    int code =
+        m->record ? migration_show(m, m->record, 0, &again) : migration_ask_balancer(m, &next);
     if (code && (code == DUITE_E_MEMORY || !m->record))
         return code;
     m->values[ANSWER_NEXT] = next < NEVER ? (double)next : 0;
@@ -209,7 +203,7 @@ static int migration_decide(struct migration *m)
     m->values[ANSWER_CODE] = code;
     m->values[ANSWER_REFUSED] = 0;
     for (size_t i = 0; i < m->moves.blocks.n && !code; i++) {
-        if (!map_moves_is_allowed(&m->moves, i, m->rt->graph.n_ranks))
+        if (!map_moves_is_allowed(&m->moves, i))
             m->values[ANSWER_REFUSED] = 1;
         else if (m->moves.home[i] != m->moves.blocks.block[i].home)
             m->values[ANSWER_BLOCKS + n_moves++] =

@@ -24,8 +24,7 @@ __attribute__((noinline)) static int main_new(duite *rt, duite_type type, size_t
         task_mix(&rt->graph, max);
     task_mix(&rt->graph, (uint64_t)type);
     task_mixed(&rt->graph, COMM_CALLED, sized ? COMM_CALLED_NEW_SIZED : COMM_CALLED_NEW);
-    code = sized ? data_object_new_sized(&rt->graph.table, type, count, max, object)
-                 : data_object_new(&rt->graph.table, type, count, object);
+    code = data_object_new(&rt->graph.table, type, count, max, sized, object);
     if (!code)
         trace_object(rt->trace, &rt->graph.table, *object);
     return api_remember(rt, code);

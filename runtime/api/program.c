@@ -14,8 +14,8 @@ int api_enter_any(duite *rt, const char *call)
         return base_error(DUITE_E_ARGUMENT, "%s: no runtime", call);
     if (!work_may_fork(rt->pool))
         return base_error(DUITE_E_STATE, "%s is for the main thread, outside of bodies", call);
-    if (rt->taker)
-        rt->taker->other(rt->taker);
+    if (rt->memo)
+        plan_memo_break(rt->memo);
     if (rt->graph.broken)
         return base_error(rt->graph.broken,
                           "%s: an earlier call failed beyond repair (%s); only duite_stop is left",
@@ -178,11 +178,11 @@ static inline int fork_direct(duite *rt, const duite_kernel *kernel, const void 
 }
 
 /* A function apart, since it needs most registers. */
-__attribute__((noinline)) static int fork_taken(duite *rt, const duite_kernel *kernel,
-                                                const void *args, size_t n,
-                                                const duite_object *objects)
+__attribute__((noinline)) static int fork_recognised(duite *rt, const duite_kernel *kernel,
+                                                     const void *args, size_t n,
+                                                     const duite_object *objects)
 {
-    if (!rt->taker->fork(rt->taker, kernel, args, n, objects))
+    if (!plan_memo_fork(rt->memo, kernel, args, n, objects))
         return fork_direct(rt, kernel, args, n, objects);
     if (rt->window)
         api_throttle(rt);
@@ -201,8 +201,8 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
         return fork_ranks(rt, kernel, args, n, objects);
     if (rt->trace)
         return fork_other(rt, kernel, args, n, objects);
-    return rt->taker ? fork_taken(rt, kernel, args, n, objects)
-                     : fork_direct(rt, kernel, args, n, objects);
+    return rt->memo ? fork_recognised(rt, kernel, args, n, objects)
+                    : fork_direct(rt, kernel, args, n, objects);
 }
 
 int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,

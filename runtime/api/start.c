@@ -8,7 +8,6 @@
 #include "runtime/base/memory.h"
 #include "runtime/map/map.h"
 #include "runtime/offload/offload.h"
-#include "runtime/plan/memo.h"
 #include "runtime/sched/sched.h"
 #include "runtime/workers/topology.h"
 
@@ -103,12 +102,12 @@ static int instance_start_graph(duite *rt, const duite_options *options)
 }
 
 /* Starts to recognise repeated forks, if that is wanted and possible. */
-static int instance_start_taker(duite *rt, const duite_options *options)
+static int instance_start_memo(duite *rt, const duite_options *options)
 {
     if (!options->memo || rt->comm || rt->trace || options->check)
         return DUITE_OK;
-    rt->taker = plan_memo_new(&rt->graph, rt->worker, options->memo > 1);
-    return rt->taker ? DUITE_OK : base_no_memory("the runtime");
+    rt->memo = plan_memo_new(&rt->graph, rt->worker, options->memo > 1);
+    return rt->memo ? DUITE_OK : base_no_memory("the runtime");
 }
 
 /* Collective. If other processes may use the rank's cores, its workers sleep when they are more
@@ -173,7 +172,7 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
     work_cores_free(&cores);
     rt->worker = rt->pool ? work_main(rt->pool) : NULL;
     rt->thread = task_thread_mark();
-    return code ? code : instance_start_taker(rt, options);
+    return code ? code : instance_start_memo(rt, options);
 }
 
 /* ---- The end ---- */
@@ -218,8 +217,7 @@ static void instance_end(duite *rt)
         api_give_up(rt);
     work_stop(rt->pool);
     base_marks_stop(rt->marks);
-    if (rt->taker)
-        rt->taker->stop(rt->taker);
+    plan_memo_stop(rt->memo);
     api_graphs_stop(rt); /* closes their channels */
     bool whole = comm_stop(rt->comm);
     trace_free(rt->trace, whole);
@@ -227,7 +225,6 @@ static void instance_end(duite *rt)
         MPI_Comm_free(&rt->mpi);
     if (whole || !comm_is_lost(rt->comm)) /* else MPI_Finalize would wait for the lost rank */
         atomic_fetch_sub(&alive, 1);
-    offload_stop(&rt->graph);
     task_graph_stop(&rt->graph);
     check_stop(rt->check);
     base_free(rt);

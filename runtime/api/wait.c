@@ -173,6 +173,19 @@ static int wait_for_own_tasks(duite *rt, const char *call)
     return DUITE_OK;
 }
 
+/* The word whose failure is first in fork order; of equal ones, that of the lower rank's task. */
+static const struct comm_word *wait_first_word(const duite *rt)
+{
+    const struct comm_word *words = comm_words(rt->comm), *first = words;
+    for (const struct comm_word *one = words + 1; one < words + rt->graph.n_ranks; one++) {
+        const bool same = one->failed == first->failed;
+        if (one->failed && (!first->failed || one->failed < first->failed ||
+                            (same && one->failure.rank < first->failure.rank)))
+            first = one;
+    }
+    return first;
+}
+
 int api_meet(duite *rt, const char *call, struct comm_word *first)
 {
     const struct work_why why = {call, "the tasks of other ranks", NULL};
@@ -183,8 +196,8 @@ int api_meet(duite *rt, const char *call, struct comm_word *first)
     if (rt->comm)
         code = api_collective(rt, &why, COMM_AGREES, &own);
     if (rt->comm && !code && first && comm_words(rt->comm)->failed) {
-        code = api_collective(rt, &why, COMM_FIRSTS, &own);
-        own = *comm_words(rt->comm);
+        code = api_collective(rt, &why, COMM_GATHERS, &own);
+        own = code ? own : *wait_first_word(rt);
     }
     if (first)
         *first = own;
@@ -278,7 +291,7 @@ int duite_count_all(duite *rt, duite_counters *counters)
     code = counters_gather(rt, counters);
     counters->graphs_recorded = rt->graphs_recorded;
     counters->migrated = rt->migration.objects;
-    counters->recognised = rt->taker ? rt->taker->tasks : 0;
-    counters->recognised_rounds = rt->taker ? rt->taker->rounds : 0;
+    if (rt->memo)
+        plan_memo_count(rt->memo, counters);
     return code;
 }

@@ -126,15 +126,9 @@ const duite_balancer balance_scatter = {
 };
 
 /* wander: an adversary for tests. At random replays random blocks move to random ranks, and leaf
- * tasks run on any rank, regardless of costs and loads. */
-static int wander_place(void *state, const duite_leaf *leaf)
-{
-    struct balance_chance *own = state;
-    (void)leaf;
-    return chance_draw(own, own->n_ranks);
-}
-
-/* Moves none, some, or all blocks; mostly asks to be called at the next replay again. */
+ * tasks run on any rank, regardless of costs and loads.
+ *
+ * Moves none, some, or all blocks; mostly asks to be called at the next replay again. */
 static uint64_t wander_migrate(void *state, const duite_blocks *blocks, int *home)
 {
     struct balance_chance *own = state;
@@ -150,6 +144,6 @@ const duite_balancer balance_wander = {
     .summary = "blocks of objects and tasks on random ranks from the seed, for tests",
     .state_size = sizeof(struct balance_chance),
     .start = chance_start,
-    .place = wander_place,
+    .place = scatter_place,
     .migrate = wander_migrate,
 };

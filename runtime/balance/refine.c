@@ -14,8 +14,7 @@
 
 struct parts {
     const duite_blocks *blocks;
-    const int *present;
-    int *home;
+    int *present, *home;
     double *load;    /* a rank */
     double *towards; /* a rank: bytes of one block's edges; zero in between */
     double even, periods, ops;
@@ -170,25 +169,19 @@ static void moves_make(struct parts *parts)
 bool balance_refine(const duite_blocks *blocks, double periods, int *home)
 {
     size_t n = blocks->graph.n, ranks = (size_t)blocks->n_ranks;
-    int *present = base_alloc(n * sizeof *present + 1);
-    double *load = base_alloc(ranks * sizeof *load);
-    double *towards = base_alloc_zero(ranks * sizeof *towards);
-    bool fine = present && load && towards;
-    if (fine) {
-        memcpy(present, home, n * sizeof *present);
-        struct parts parts = {.blocks = blocks,
-                              .present = present,
-                              .home = home,
-                              .load = load,
-                              .towards = towards,
-                              .periods = periods};
-        parts.even = load_add_up(blocks, home, load);
+    struct parts parts = {.blocks = blocks, .home = home, .periods = periods};
+    const struct base_array arrays[] = {BASE_ARRAY(parts.present, n),
+                                        BASE_ARRAY(parts.load, ranks),
+                                        BASE_ZEROS(parts.towards, ranks),
+                                        {0}};
+    void *memory = base_arrays(arrays);
+    if (memory) {
+        memcpy(parts.present, home, n * sizeof *home);
+        parts.even = load_add_up(blocks, home, parts.load);
         moves_make(&parts);
     }
-    base_free(present);
-    base_free(load);
-    base_free(towards);
-    return fine;
+    base_free(memory);
+    return memory;
 }
 
 /* ---- Anew ---- */

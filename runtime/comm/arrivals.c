@@ -44,6 +44,7 @@ void comm_arrivals_start(struct comm_arrivals *arrivals)
 {
     pthread_mutex_init(&arrivals->lock, NULL);
     arrivals->closed = false;
+    atomic_init(&arrivals->refused, 0);
     arrivals->gauge.awaited = 0;
     atomic_init(&arrivals->gauge.clock, 0);
     arrivals->table = NULL;
@@ -97,6 +98,15 @@ static struct comm_arrival *arrival_add(struct comm_arrivals *arrivals, struct d
     return NULL;
 }
 
+/* So many more packets are still to come, or fewer. */
+static void arrival_await(struct comm_arrivals *arrivals, struct comm_arrival *arrival,
+                          int64_t packets)
+{
+    arrival->wanted += (uint32_t)packets;
+    if (!arrival->target.result)
+        gauge_add(&arrivals->gauge, packets);
+}
+
 bool comm_arrivals_expect(struct comm_arrivals *arrivals, struct data_key key,
                           struct comm_target target, uint32_t packets, struct data_packet **early)
 {
@@ -110,14 +120,13 @@ bool comm_arrivals_expect(struct comm_arrivals *arrivals, struct data_key key,
             packets--;
         if (!packets)
             arrival_drop(arrivals, arrival);
-    } else {
+    } else if (!arrivals->closed) {
         arrival = arrival_add(arrivals, key);
     }
     bool kept = arrival != NULL;
     if (kept && packets) {
         arrival->target = target;
-        arrival->wanted = packets;
-        gauge_add(&arrivals->gauge, packets);
+        arrival_await(arrivals, arrival, packets);
     }
     pthread_mutex_unlock(&arrivals->lock);
     return kept;
@@ -129,13 +138,17 @@ enum comm_take comm_arrivals_take(struct comm_arrivals *arrivals, struct data_pa
     enum comm_take take = COMM_LOST;
     pthread_mutex_lock(&arrivals->lock);
     struct comm_arrival *arrival = arrival_find(arrivals, packet->key);
-    if (!arrival && !arrivals->closed)
+    if (!arrival && packet->kind == DATA_RESULT) {
+        take = COMM_REFUSED;
+        atomic_fetch_add(&arrivals->refused, !arrivals->closed);
+    } else if (!arrival && !arrivals->closed) {
         arrival = arrival_add(arrivals, packet->key);
+    }
     if (arrival && arrival->wanted) {
         take = COMM_WANTED;
         *target = arrival->target;
-        gauge_add(&arrivals->gauge, -1);
-        if (--arrival->wanted == 0)
+        arrival_await(arrivals, arrival, -1);
+        if (!arrival->wanted)
             arrival_drop(arrivals, arrival);
     } else if (arrival) {
         take = COMM_KEPT;
@@ -178,8 +191,7 @@ bool comm_arrivals_close(struct comm_arrivals *arrivals, struct comm_target *tar
         found = arrival->wanted > 0;
         if (found) {
             *target = arrival->target;
-            arrival->wanted--;
-            gauge_add(&arrivals->gauge, -1);
+            arrival_await(arrivals, arrival, -1);
         }
         if (!arrival->wanted) {
             arrival_free_packets(arrival->packets);

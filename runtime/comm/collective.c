@@ -1,7 +1,6 @@
-/* Collective calls of the main thread. There are three kinds: a small reduction, which finds
- * whether all ranks forked the same; a gathering of words; a search for the first failure's word.
- * The last two only follow a reduction that let all ranks go on. So even ranks that run different
- * programs are in the same kind of call.
+/* Collective calls of the main thread. There are two kinds: a small reduction, which finds whether
+ * all ranks forked the same; and a gathering of words, which only follows a reduction that let all
+ * ranks go on. So even ranks that run different programs are in the same kind of call.
  *
  * A rank leaves an unfinished call when communication breaks. MPI goes on using the buffers, so
  * they belong to the comm. No rank is more than one call ahead of another. At stop, ranks that
@@ -9,57 +8,17 @@
 #include "runtime/base/error.h"
 #include "runtime/comm/internal.h"
 
-#include <string.h>
-
-/* ---- Words ---- */
-
-/* Keeps the word whose failure is first in fork order; between equal ones, the lower rank's. */
-static void word_first(void *from, void *to, int *n, MPI_Datatype *type)
-{
-    const struct comm_word *one = from;
-    struct comm_word *other = to;
-    (void)type;
-    for (int i = 0; i < *n; i++) {
-        const bool same = one[i].failed == other[i].failed;
-        if (one[i].failed && (!other[i].failed || one[i].failed < other[i].failed ||
-                              (same && one[i].failure.rank < other[i].failure.rank)))
-            other[i] = one[i];
-    }
-}
-
-int comm_collective_start(struct comm *comm)
-{
-    const int code = comm_bytes_type(sizeof(struct comm_word), &comm->word);
-    return code ? code : COMM_MPI(MPI_Op_create, word_first, 1, &comm->first);
-}
-
-void comm_collective_stop(struct comm *comm)
-{
-    if (comm->word != MPI_DATATYPE_NULL)
-        MPI_Type_free(&comm->word);
-    if (comm->first != MPI_OP_NULL)
-        MPI_Op_free(&comm->first);
-}
-
-/* ---- Entering and waiting ---- */
-
 /* Under the lock. */
 static bool collective_enter(struct comm *comm, enum comm_collective kind)
 {
     struct comm_word *own = &comm->words[comm->n_ranks];
-    int mpi;
     comm->entered++;
     comm->kind = kind;
     if (kind == COMM_GATHERS)
-        mpi = MPI_Iallgather(own, 1, comm->word, comm->words, 1, comm->word, comm->mpi,
-                             &comm->request);
-    else if (kind == COMM_FIRSTS)
-        mpi =
-            MPI_Iallreduce(own, comm->words, 1, comm->word, comm->first, comm->mpi, &comm->request);
-    else
-        mpi = MPI_Iallreduce(&comm->own, &comm->max, COMM_REDUCED, MPI_UINT64_T, MPI_MAX, comm->mpi,
-                             &comm->request);
-    return comm_mpi_ok(comm, mpi, kind == COMM_GATHERS ? "MPI_Iallgather" : "MPI_Iallreduce");
+        return COMM_OK(comm, MPI_Iallgather, own, 1, comm->word, comm->words, 1, comm->word,
+                       comm->mpi, &comm->request);
+    return COMM_OK(comm, MPI_Iallreduce, &comm->own, &comm->max, COMM_REDUCED, MPI_UINT64_T,
+                   MPI_MAX, comm->mpi, &comm->request);
 }
 
 /* Under the lock: all ranks came to the agreement. True if they have the same: the largest is the

@@ -14,7 +14,8 @@
 
 /* ---- Start and stop ---- */
 
-int comm_bytes_type(size_t bytes, MPI_Datatype *type)
+/* A type of so many bytes. */
+static int bytes_type(size_t bytes, MPI_Datatype *type)
 {
     const int code = COMM_MPI(MPI_Type_contiguous, (int)bytes, MPI_BYTE, type);
     return code ? code : COMM_MPI(MPI_Type_commit, type);
@@ -28,8 +29,8 @@ static int comm_prepare(struct comm *comm)
     comm->words = base_alloc((size_t)(comm->n_ranks + 1) * sizeof *comm->words);
     if (!comm_control_start(comm) || !comm_calls_start(&comm->calls) || !comm->words)
         return base_no_memory("communication");
-    if (comm_bytes_type(sizeof(struct data_packet), &comm->line) || comm_channels_start(comm) ||
-        comm_collective_start(comm))
+    if (bytes_type(sizeof(struct data_packet), &comm->line) ||
+        bytes_type(sizeof(struct comm_word), &comm->word) || comm_channels_start(comm))
         return DUITE_E_MPI;
     return comm_heartbeat_start(comm, comm->setup.monitor);
 }
@@ -42,7 +43,6 @@ int comm_start(struct comm **out, MPI_Comm mpi, const struct comm_setup *setup)
     comm->setup = *setup;
     comm->mpi = mpi;
     comm->line = comm->word = MPI_DATATYPE_NULL;
-    comm->first = MPI_OP_NULL;
     comm->request = MPI_REQUEST_NULL;
     atomic_flag_test_and_set(&comm->lock); /* until comm_open */
     atomic_init(&comm->posts, NULL);
@@ -77,7 +77,8 @@ bool comm_stop(struct comm *comm)
         return false;
     if (comm->line != MPI_DATATYPE_NULL)
         MPI_Type_free(&comm->line);
-    comm_collective_stop(comm);
+    if (comm->word != MPI_DATATYPE_NULL)
+        MPI_Type_free(&comm->word);
     base_free(comm->requests.request);
     base_free(comm->requests.of);
     base_free(comm->requests.index);
@@ -225,6 +226,11 @@ void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)
 uint64_t comm_movement(struct comm *comm)
 {
     return atomic_load(&comm->messages) + atomic_load(&comm->came);
+}
+
+uint64_t comm_refused(struct comm *comm)
+{
+    return atomic_load(&comm->arrivals.refused);
 }
 
 /* A poll holds the lock for microseconds, or as long as its thread has no core. A thread that

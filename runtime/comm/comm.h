@@ -19,11 +19,8 @@ struct comm_owner {
     struct data_packet *(*packet)(struct comm_letter *letter);
     /* A letter is sent, or never will be. */
     void (*sent)(void *context, struct worker *worker, struct comm_letter *letter);
-    /* A packet came that nobody expects by its key, as its kind says. False without memory: then it
-     * stays the caller's. */
+    /* A task of another rank came. False without memory: then the packet stays the caller's. */
     bool (*came)(void *context, struct worker *worker, struct data_packet *packet);
-    /* Nothing comes any more (comm_give_up). */
-    void (*lost)(void *context, struct worker *worker);
     /* Communication broke: whoever waits for messages is to look. */
     void (*broke)(void *context);
     /* A channel writes its message and returns the bytes; reads its message; or none will come.
@@ -107,6 +104,9 @@ bool comm_look(struct comm *comm, const struct comm_looker *looker);
 /* A number that changes with each message that comes or goes. */
 uint64_t comm_movement(struct comm *comm);
 
+/* Results of tasks on other ranks that named no task of this rank: an error of their sender. */
+uint64_t comm_refused(struct comm *comm);
+
 /* ---- The machine, at start ---- */
 
 /* The ranks of one host that share their cores with this one. */
@@ -178,11 +178,8 @@ enum comm_collective {
      * if a task failed on any rank, else 0. One small reduction. If ranks differ communication
      * breaks, with DUITE_E_DIFFERENT and a message that names the first difference. */
     COMM_AGREES,
-    /* Gathers the words of all ranks. All ranks agreed on this call before, as on the next. */
-    COMM_GATHERS,
-    /* words[0] becomes the word whose failed task is first in fork order. Some rank has one. One
-     * reduction. */
-    COMM_FIRSTS
+    /* Gathers the words of all ranks, which agreed on this call before. */
+    COMM_GATHERS
 };
 
 /* A collective call: enters it, then asks again and again, and works meanwhile. comm_is_entered:

@@ -110,7 +110,8 @@ struct comm_gauge {
 struct comm_arrivals {
     pthread_mutex_t lock;
     bool closed;
-    struct comm_gauge gauge; /* of the packets that are expected and not there */
+    _Atomic uint64_t refused; /* results that nobody expected */
+    struct comm_gauge gauge;  /* of the packets that are expected and not there, but for results */
     struct comm_arrival
         *table; /* uthash by key: expected and not all there, or there and not expected yet */
 };
@@ -119,14 +120,15 @@ void comm_arrivals_start(struct comm_arrivals *arrivals);
 void comm_arrivals_stop(struct comm_arrivals *arrivals); /* frees packets never wanted */
 
 /* Notes a target for so many packets; *early gets those that came already, linked by next. False
- * without memory. */
+ * without memory, and once it is closed. */
 bool comm_arrivals_expect(struct comm_arrivals *arrivals, struct data_key key,
                           struct comm_target target, uint32_t packets, struct data_packet **early);
 
 enum comm_take {
-    COMM_WANTED, /* *target is set: deliver it */
-    COMM_KEPT,   /* until it is expected */
-    COMM_LOST    /* it is wanted nowhere, or there is no memory: the caller frees it */
+    COMM_WANTED,  /* *target is set: deliver it */
+    COMM_KEPT,    /* until it is expected */
+    COMM_LOST,    /* it is wanted nowhere, or there is no memory: the caller frees it */
+    COMM_REFUSED, /* a result, which is expected before it can come: likewise */
 };
 
 /* A packet came. */
@@ -265,7 +267,6 @@ struct comm {
     MPI_Comm mpi;
     MPI_Datatype line; /* 64 bytes: see data_packet_lines */
     MPI_Datatype word; /* struct comm_word */
-    MPI_Op first;      /* of two words: see comm_first */
     struct comm_setup setup;
     int rank, n_ranks;
     atomic_flag lock;
@@ -305,11 +306,6 @@ static inline void comm_found_over(struct comm_found *found, struct comm_post *p
     found->over = post;
 }
 
-/* A type of so many bytes. */
-int comm_bytes_type(size_t bytes, MPI_Datatype *type);
-/* Makes and frees the MPI objects of collective calls. Errors: MPI's. */
-int comm_collective_start(struct comm *comm);
-void comm_collective_stop(struct comm *comm);
 /* Joins the collective calls that other ranks entered before communication broke. All ranks are at
  * their end. */
 void comm_catch_up(struct comm *comm);

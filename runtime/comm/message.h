@@ -39,6 +39,7 @@ struct comm_target {
     comm_arrived *arrived;
     void *what;
     int from;
+    bool result; /* of a task there: until it comes, no time counts as awaiting messages */
 };
 
 /* ---- Channels ---- */
@@ -80,8 +81,8 @@ enum { COMM_NEEDS_TAGS = 1 };
 void comm_send(struct comm *comm, struct comm_letter *letter);
 bool comm_has_posts(struct comm *comm);
 
-/* Sets the target of the packets of that key; those that came already are delivered. Main thread.
- */
+/* Sets the target of the packets of that key; those that came already are delivered. Any thread.
+ * Errors: memory, also if nothing comes any more. */
 int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
                 struct comm_target target, uint32_t packets);
 

@@ -13,16 +13,10 @@ bool comm_requests_room(struct comm *comm, size_t n)
 {
     struct comm_requests *requests = &comm->requests;
     const size_t needed = (size_t)requests->n + requests->reserved + n;
-    void *moved[4] = {
-        base_grow(requests->request, &requests->capacity[0], needed, sizeof *requests->request),
-        base_grow(requests->of, &requests->capacity[1], needed, sizeof *requests->of),
-        base_grow(requests->index, &requests->capacity[2], needed, sizeof *requests->index),
-        base_grow(requests->status, &requests->capacity[3], needed, sizeof *requests->status)};
-    requests->request = moved[0] ? moved[0] : requests->request;
-    requests->of = moved[1] ? moved[1] : requests->of;
-    requests->index = moved[2] ? moved[2] : requests->index;
-    requests->status = moved[3] ? moved[3] : requests->status;
-    return moved[0] && moved[1] && moved[2] && moved[3];
+    return BASE_GROW(requests->request, requests->capacity[0], needed) &&
+           BASE_GROW(requests->of, requests->capacity[1], needed) &&
+           BASE_GROW(requests->index, requests->capacity[2], needed) &&
+           BASE_GROW(requests->status, requests->capacity[3], needed);
 }
 
 MPI_Request *comm_request_next(struct comm *comm)

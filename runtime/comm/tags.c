@@ -22,10 +22,8 @@ int comm_tags_take(struct comm_tags *tags, int n, int *first)
         *first = taken->first + taken->n;
     if (*first > tags->last - n)
         return COMM_NEEDS_TAGS;
-    void *moved = base_grow(tags->range, &tags->capacity, tags->n + 1, sizeof *tags->range);
-    if (!moved)
+    if (!BASE_GROW(tags->range, tags->capacity, tags->n + 1))
         return base_no_memory("the tags of a recorded graph");
-    tags->range = moved;
     tags->range[tags->n++] = (struct comm_tag_range){*first, n, false};
     tags->next = *first + n;
     return DUITE_OK;

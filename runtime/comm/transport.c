@@ -230,12 +230,12 @@ static void message_deliver_to(struct comm *comm, struct worker *worker, struct 
     target.arrived(comm->setup.context, worker, target.what, packet);
 }
 
-/* A packet that has no key to expect it by. Once communication is broken no rank waits for what a
- * task of another rank makes. */
-static void message_deliver_unexpected(struct comm *comm, struct worker *worker,
-                                       struct data_packet *packet)
+/* A task of another rank, which has no key to expect it by. Once communication is broken no rank
+ * waits for its result. */
+static void message_deliver_task(struct comm *comm, struct worker *worker,
+                                 struct data_packet *packet)
 {
-    const bool dropped = packet->kind == DATA_OFFLOADED && comm_is_broken(comm);
+    const bool dropped = comm_is_broken(comm);
     if (!dropped && comm->setup.owner->came(comm->setup.context, worker, packet))
         return;
     data_packet_free(packet);
@@ -253,6 +253,9 @@ static void message_deliver_value(struct comm *comm, struct worker *worker,
         break;
     case COMM_KEPT:
         break;
+    case COMM_REFUSED:
+        data_packet_free(packet);
+        break;
     case COMM_LOST:
         data_packet_free(packet);
         comm_break_memory(comm, "a message that came early");
@@ -265,8 +268,8 @@ void comm_transport_deliver(struct comm *comm, struct worker *worker, struct com
     while (found->packets) {
         struct data_packet *packet = found->packets;
         found->packets = packet->next;
-        if (packet->kind == DATA_OFFLOADED || packet->kind == DATA_RESULT)
-            message_deliver_unexpected(comm, worker, packet);
+        if (packet->kind == DATA_OFFLOADED)
+            message_deliver_task(comm, worker, packet);
         else
             message_deliver_value(comm, worker, packet);
     }
@@ -306,5 +309,4 @@ void comm_give_up(struct comm *comm, struct worker *worker)
     comm_let_go(comm);
     while (comm_arrivals_close(&comm->arrivals, &target))
         message_deliver_to(comm, worker, target, NULL);
-    comm->setup.owner->lost(comm->setup.context, worker);
 }

@@ -17,11 +17,10 @@ int data_table_start(struct data_table *table, int n_ranks)
     table->n_slots = 1;
     struct data_object *object =
         base_grow_lines(NULL, &table->capacity, table->n_slots, sizeof *table->object);
-    uint64_t *copies = base_grow(NULL, &table->copies_capacity, table->words, sizeof *copies);
     table->object = object;
-    table->copies = copies;
     table->blocks = calloc((size_t)n_ranks, sizeof *table->blocks);
-    if (!object || !copies || !table->blocks)
+    if (!object || !table->blocks ||
+        !BASE_GROW(table->copies, table->copies_capacity, table->words))
         return base_no_memory("the table of objects");
     object[0] = (struct data_object){.leaves = DATA_VACANT};
     return DUITE_OK;
@@ -77,8 +76,8 @@ int data_object_refuse(duite_type type, size_t count, size_t max)
     return DUITE_OK;
 }
 
-static int object_add(struct data_table *table, duite_type type, size_t count, size_t max,
-                      bool sized, duite_object *name)
+int data_object_new(struct data_table *table, duite_type type, size_t count, size_t max, bool sized,
+                    duite_object *name)
 {
     const size_t size = data_type_size(type);
     *name = (duite_object){0, 0};
@@ -109,17 +108,6 @@ static int object_add(struct data_table *table, duite_type type, size_t count, s
     table->n_alive++;
     *name = (duite_object){slot, generation};
     return DUITE_OK;
-}
-
-int data_object_new(struct data_table *table, duite_type type, size_t count, duite_object *name)
-{
-    return object_add(table, type, count, count, false, name);
-}
-
-int data_object_new_sized(struct data_table *table, duite_type type, size_t count, size_t max,
-                          duite_object *name)
-{
-    return object_add(table, type, count, max, true, name);
 }
 
 struct data_object *data_object_missing(const struct data_table *table, duite_object name)

@@ -79,8 +79,10 @@ static inline int data_object_check(duite_type type, size_t count, size_t max)
     return fits && count <= max ? 0 : data_object_refuse(type, count, max);
 }
 
-/* Makes an object without a home. Errors: type, count, memory. */
-int data_object_new(struct data_table *table, duite_type type, size_t count, duite_object *name);
+/* Makes an object without a home, of `count` zeros. sized: its versions have 0 to `max` elements;
+ * else max is count. Errors: type, count, memory. */
+int data_object_new(struct data_table *table, duite_type type, size_t count, size_t max, bool sized,
+                    duite_object *name);
 
 /* Zeroes the object in two parts: for all its bytes at once gcc uses a string instruction, which
  * starts more slowly than these few words are written. */
@@ -90,10 +92,6 @@ static inline void data_object_clear(struct data_object *object)
     memset(object, 0, HALF);
     memset((char *)object + HALF, 0, sizeof *object - HALF);
 }
-
-/* As data_object_new, with versions of 0 to `max` elements, `count` at first. */
-int data_object_new_sized(struct data_table *table, duite_type type, size_t count, size_t max,
-                          duite_object *name);
 
 /* Sets the error message for a name without an object. Returns NULL. */
 struct data_object *data_object_missing(const struct data_table *table, duite_object name);

@@ -85,24 +85,19 @@ bool map_traffic_read(struct map_traffic *traffic, uint32_t own, uint32_t other,
             traffic_add_edge(traffic, other, own, bytes));
 }
 
-int map_traffic_add(struct map_traffic *traffic, const struct map_blocks *blocks,
-                    const struct plan_record *record, double rounds)
+int map_traffic_add(struct map_traffic *traffic, const struct plan_source *source,
+                    const uint32_t *block, double rounds)
 {
-    const struct data_object *objects = record->graph->table.object;
     bool fine = true;
-    for (size_t i = 0; i < record->n_forks && fine; i++) {
-        const struct plan_recorded_fork *fork = &record->fork[i];
-        uint32_t owner = plan_recorded_owner(record, fork);
-        if (owner == PLAN_NONE)
+    for (size_t i = 0; i < source->n_forks && fine; i++) {
+        const struct plan_source_fork *fork = &source->fork[i];
+        const struct plan_access *access = source->access + fork->first;
+        if (fork->owner == PLAN_NONE || fork->replicated || fork->rank != PLAN_BY_OWNER)
             continue;
-        uint32_t own = blocks->of[record->object[owner].bound.slot];
-        for (uint32_t k = 0; k < fork->n && fine; k++) {
-            const struct plan_access *access = &record->access[fork->first + k];
-            uint32_t slot = record->object[access->object].bound.slot;
-            if (access->mode != DUITE_W)
-                fine = map_traffic_read(traffic, own, blocks->of[slot],
-                                        rounds * (double)objects[slot].room);
-        }
+        for (uint32_t k = 0; k < fork->n && fine; k++)
+            if (access[k].mode != DUITE_W)
+                fine = map_traffic_read(traffic, block[fork->owner], block[access[k].object],
+                                        rounds * (double)source->bytes[access[k].object]);
     }
     return fine ? DUITE_OK : base_no_memory("the blocks of objects");
 }
@@ -155,7 +150,7 @@ void map_traffic_free(struct map_traffic *traffic)
 
 int map_moves_new(const struct data_table *table, struct map_moves *moves)
 {
-    *moves = (struct map_moves){0};
+    *moves = (struct map_moves){.n_ranks = table->n_ranks};
     int code = blocks_find(table, &moves->blocks);
     if (code)
         return code;
@@ -184,10 +179,10 @@ void map_moves_free(struct map_moves *moves)
     base_free(moves->memory);
 }
 
-bool map_moves_is_allowed(const struct map_moves *moves, size_t block, int n_ranks)
+bool map_moves_is_allowed(const struct map_moves *moves, size_t block)
 {
     const int from = moves->blocks.block[block].home, to = moves->home[block];
-    return to == from || (to >= 0 && to < n_ranks && !moves->fixed[block]);
+    return to == from || (to >= 0 && to < moves->n_ranks && !moves->fixed[block]);
 }
 
 int map_moves_refused(const char *kind, const char *name)
@@ -206,7 +201,11 @@ duite_blocks map_moves_shown(const struct map_moves *moves)
                                     .edge_weight = moves->traffic.bytes},
                           .bytes = moves->bytes,
                           .fixed = moves->fixed,
-                          .workers = moves->workers};
+                          .n_ranks = moves->n_ranks,
+                          .workers = moves->workers,
+                          .byte_seconds = moves->byte_seconds,
+                          .mapping = moves->mapping->own,
+                          .seed = moves->seed};
 }
 
 void map_moves_number(struct map_moves *moves, struct data_table *table)

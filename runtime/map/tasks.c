@@ -1,6 +1,6 @@
-/* Tasks as mappings see them: the tasks of a record, the block that each runs for, and its cost.
- * The cost is the fork's, else the measured one, else a guess. */
-#include "runtime/map/tasks.h"
+/* Tasks as mappings see them: those of a round, the block that each runs for, and its cost. The
+ * cost is the fork's, else the measured one, else a guess. */
+#include "runtime/map/blocks.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -13,21 +13,21 @@ static bool task_lacks_cost(const struct plan_tasks *tasks, size_t i)
 }
 
 /* Splits the measured seconds of each block evenly over its tasks whose forks named no cost. */
-static bool tasks_share_out(struct map_tasks *tasks, size_t n_blocks, const double *seconds)
+static bool tasks_share_out(struct plan_tasks *tasks, const struct map_moves *moves, bool *guessed)
 {
-    struct plan_tasks *all = &tasks->tasks;
-    double *lacking = base_alloc_zero((n_blocks + 1) * sizeof *lacking);
+    const uint32_t *block = tasks->owner;
+    double *lacking = base_alloc_zero((moves->blocks.n + 1) * sizeof *lacking);
     if (!lacking)
         return false;
-    for (size_t i = 0; i < all->n; i++) {
-        bool is = task_lacks_cost(all, i);
-        tasks->guessed |= is;
-        if (is && tasks->block[i] != DUITE_NO_BLOCK)
-            lacking[tasks->block[i]]++;
+    for (size_t i = 0; i < tasks->n; i++) {
+        bool is = task_lacks_cost(tasks, i);
+        *guessed |= is;
+        if (is && block[i] != DUITE_NO_BLOCK)
+            lacking[block[i]]++;
     }
-    for (size_t i = 0; i < all->n; i++)
-        if (task_lacks_cost(all, i) && tasks->block[i] != DUITE_NO_BLOCK)
-            all->cost[i] = seconds[tasks->block[i]] / lacking[tasks->block[i]];
+    for (size_t i = 0; i < tasks->n; i++)
+        if (task_lacks_cost(tasks, i) && block[i] != DUITE_NO_BLOCK)
+            tasks->cost[i] = moves->seconds[block[i]] / lacking[block[i]];
     base_free(lacking);
     return true;
 }
@@ -44,42 +44,42 @@ static void tasks_guess(struct plan_tasks *tasks)
             tasks->cost[i] = known > 0 ? sum / known : GUESSED_SECONDS;
 }
 
-int map_tasks_complete(struct map_tasks *tasks, size_t n_blocks, const double *seconds)
+static int tasks_ask(const struct plan_tasks *tasks, const struct map_moves *moves)
 {
-    struct plan_tasks *all = &tasks->tasks;
-    if (!tasks_share_out(tasks, n_blocks, seconds))
-        return base_no_memory("the tasks of a recorded graph");
-    tasks_guess(all);
-    tasks->graph = (duite_task_graph){.n = all->n,
-                                      .cost = all->cost,
-                                      .block = tasks->block,
-                                      .start = all->start,
-                                      .from = all->from,
-                                      .bytes = all->bytes,
-                                      .n_blocks = n_blocks};
-    return DUITE_OK;
+    const duite_task_graph graph = {.n = tasks->n,
+                                    .cost = tasks->cost,
+                                    .block = tasks->owner,
+                                    .start = tasks->start,
+                                    .from = tasks->from,
+                                    .bytes = tasks->bytes,
+                                    .n_blocks = moves->blocks.n,
+                                    .fixed = moves->fixed,
+                                    .n_ranks = moves->n_ranks,
+                                    .workers = moves->workers,
+                                    .byte_seconds = moves->byte_seconds,
+                                    .message_seconds = moves->message_seconds,
+                                    .seed = moves->seed};
+    return map_ask_tasks(moves->mapping, &graph, moves->home);
 }
 
-int map_tasks_find(struct map_tasks *tasks, const struct plan_record *record,
-                   const struct map_blocks *blocks, const double *seconds)
-{
-    struct plan_tasks *all = &tasks->tasks;
-    *tasks = (struct map_tasks){0};
-    int code = plan_record_tasks(record, all);
-    if (code)
-        return code;
-    tasks->block = base_alloc((all->n + 1) * sizeof *tasks->block);
-    if (!tasks->block)
-        return base_no_memory("the tasks of a recorded graph");
-    for (size_t i = 0; i < all->n; i++)
-        tasks->block[i] = all->owner[i] == PLAN_NONE
-                              ? DUITE_NO_BLOCK
-                              : blocks->of[record->object[all->owner[i]].bound.slot];
-    return map_tasks_complete(tasks, blocks->n, seconds);
-}
+_Static_assert(PLAN_NONE == DUITE_NO_BLOCK, "a task that runs for no object runs for no block");
 
-void map_tasks_free(struct map_tasks *tasks)
+int map_moves_ask(struct map_moves *moves, const struct plan_source *source, const uint32_t *block,
+                  bool *guessed)
 {
-    plan_tasks_free(&tasks->tasks);
-    base_free(tasks->block);
+    struct plan_round round = {0};
+    struct plan_tasks tasks = {0};
+    bool fine = plan_lower(&round, source) && plan_tasks_find(&tasks, &round);
+    for (size_t i = 0; i < tasks.n && fine; i++)
+        if (tasks.owner[i] != PLAN_NONE)
+            tasks.owner[i] = block[tasks.owner[i]];
+    *guessed = false;
+    fine = fine && tasks_share_out(&tasks, moves, guessed);
+    if (fine)
+        tasks_guess(&tasks);
+    const int code =
+        fine ? tasks_ask(&tasks, moves) : base_no_memory("the tasks of a recorded graph");
+    plan_tasks_free(&tasks);
+    plan_round_free(&round);
+    return code;
 }

@@ -8,7 +8,7 @@
  * Everything after the first table begins on a cache line of its own.
  *
  * The way there is a packet of kind DATA_OFFLOADED; key.slot is the rank it comes from, key.number
- * its name there (offload_name). It has an offload_message, an offload_param for each parameter,
+ * its name there, a number. It has an offload_message, an offload_param for each parameter,
  * the arguments, and the values that the body reads.
  *
  * The way back is a DATA_RESULT (key.number: that name). MESSAGE_RAN, the body ran: it has an
@@ -51,8 +51,18 @@ static inline size_t message_lines(size_t bytes)
  * empty. */
 static inline size_t message_value(uint32_t declared, size_t bytes)
 {
-    const duite_mode mode = task_immediate((duite_mode)declared);
-    return mode == DUITE_R || mode == DUITE_RW ? message_lines(bytes ? bytes : 1) : 0;
+    return data_order_reads(task_immediate((duite_mode)declared)) ? message_lines(bytes ? bytes : 1)
+                                                                  : 0;
+}
+
+/* Room for the value that the body, or its children, leave of a parameter; or for the failure in
+ * place of the children's. */
+static inline size_t message_room(uint32_t declared, const struct offload_param *param)
+{
+    const bool left = task_immediate((duite_mode)declared) != DUITE_R;
+    const size_t bytes = left ? param->max * data_type_size((duite_type)param->type) : 0;
+    return declared > DUITE_RP && bytes < sizeof(struct data_failure) ? sizeof(struct data_failure)
+                                                                      : bytes;
 }
 
 /* The place of the arguments. */
@@ -71,15 +81,6 @@ static inline size_t message_values_at(size_t n)
  * place behind them. */
 size_t offload_message_put(struct data_packet *packet, size_t at, const void *from, size_t bytes);
 
-/* At home: a delegated task, until its result came. */
-struct offload_pending {
-    struct comm_letter send; /* first: the task's */
-    struct task *task;
-    struct task_scope *inner;   /* the task's, while `send` has its place */
-    _Atomic int left;           /* it is sent; it came back */
-    struct data_packet *result; /* NULL: lost */
-};
-
 /* A task of another rank. */
 struct offload_task {
     struct task_scope above;   /* first: the top of its reference order; the failures of its subtree
@@ -93,32 +94,5 @@ struct offload_task {
     bool ran; /* its body was called */
     struct comm_letter send;
 };
-
-/* Names of tasks that run on another rank: a number, never an address, travels with a task and
- * comes back with its result. A name is a slot and its generation, which grows whenever the slot is
- * given back. So a name that came twice, or was never given, names no task. Callers lock. */
-
-struct offload_name {
-    struct offload_pending *pending; /* NULL: the slot is free */
-    uint32_t generation;             /* of the task that has the slot, or will have it next */
-    uint32_t next;                   /* of the free ones: index + 1, or 0 */
-};
-
-/* Empty: all zero. */
-struct offload_names {
-    struct offload_name *slot;
-    size_t capacity;
-    uint32_t n;       /* slots that were ever used */
-    uint64_t refused; /* names that came and named no task */
-    uint32_t free;    /* index + 1 of the first free one, or 0 */
-};
-
-/* Gives the task a name, which is never 0. 0: no memory. */
-uint64_t offload_name_give(struct offload_names *names, struct offload_pending *pending);
-
-/* Gives up the name and returns its task; NULL: it names none, which `refused` counts. */
-struct offload_pending *offload_name_take(struct offload_names *names, uint64_t name);
-
-void offload_names_free(struct offload_names *names);
 
 #endif

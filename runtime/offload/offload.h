@@ -15,32 +15,13 @@
 /* True if a ready task may run on another rank; *bytes: how many go there and come back. */
 bool offload_may_go(const struct task_graph *graph, const struct task *task, size_t *bytes);
 
-/* Sends a ready task that may go to rank `to`. False without memory, or if everything is being
- * given up: then the task stays as it was. */
+/* Sends a ready task that may go to rank `to`, where its result is expected from. False without
+ * memory, or once nothing comes any more: then the task stays as it was. */
 bool offload_send(struct task_graph *graph, struct worker *worker, struct task *task, int to);
-
-/* The result of a delegated task came; the callee owns it. A result that names no delegated task is
- * dropped. After offload_lost its task was given up. Before, each delegated task has one result, so
- * such a result is an error of its sender. It is counted (offload_look), and a standstill's
- * report names the count. */
-void offload_result_arrived(struct task_graph *graph, struct worker *worker,
-                            struct data_packet *packet);
-
-/* Communication broke: no task comes home any more, and none goes. */
-void offload_lost(struct task_graph *graph, struct worker *worker);
-
-/* Frees everything, when no task is left and no message comes any more. */
-void offload_stop(struct task_graph *graph);
-
-/* Calls back with each delegated task, which stays so during the call. Returns how many results
- * came that named no delegated task. */
-uint64_t offload_look(struct task_graph *graph,
-                      void (*look)(void *context, const struct task *task, int rank),
-                      void *context);
 
 /* A task of another rank came; the packet becomes the callee's. False without memory: then it stays
  * the caller's. */
-bool offload_arrived(struct task_graph *graph, struct worker *worker, struct data_packet *packet);
+bool offload_arrived(void *graph, struct worker *worker, struct data_packet *packet);
 
 /* Runs an offloaded task; returns whether a body ran. */
 bool offload_run(struct task_graph *graph, struct worker *worker, struct task *task,

@@ -44,8 +44,9 @@ static void offloaded_init(struct offload_task *own, struct task_graph *graph,
     own->above.place = &own->place;
 }
 
-bool offload_arrived(struct task_graph *graph, struct worker *worker, struct data_packet *packet)
+bool offload_arrived(void *context, struct worker *worker, struct data_packet *packet)
 {
+    struct task_graph *graph = context;
     const struct offload_message *message = data_payload(packet);
     struct offload_task *own = base_pool_take(sizeof *own);
     if (!own)
@@ -75,15 +76,9 @@ bool offload_arrived(struct task_graph *graph, struct worker *worker, struct dat
 
 /* ---- Running ---- */
 
-/* Room for the value that the body, or its children, leave of a parameter. */
-static size_t result_room(const struct task *task, size_t i)
+static size_t result_lines(const struct task *task, size_t i)
 {
-    const struct offload_param *param = &param_of(task->offloaded)[i];
-    const duite_mode mode = (duite_mode)task->access[i].waiter.mode;
-    const size_t bytes =
-        task_immediate(mode) == DUITE_R ? 0 : param->max * data_type_size((duite_type)param->type);
-    return mode > DUITE_RP && bytes < sizeof(struct data_failure) ? sizeof(struct data_failure)
-                                                                  : bytes;
+    return message_lines(message_room(task->access[i].waiter.mode, &param_of(task->offloaded)[i]));
 }
 
 /* Sets the value that the body finds: unspecified under w, the one that came under rw, the law's
@@ -135,7 +130,7 @@ static bool params_lay_out(struct task *task, duite_param *param, const void **a
     uint32_t stamp = task->n ? task_new_stamp() : 0;
     size_t bytes = message_values_at(task->n) + 2 * message_lines(sizeof(struct data_failure));
     for (size_t i = 0; i < task->n; i++)
-        bytes += message_lines(result_room(task, i));
+        bytes += result_lines(task, i);
     own->result = data_packet_new(bytes, false);
     if (!own->result || !scope_make(task))
         return false;
@@ -158,7 +153,7 @@ static bool params_lay_out(struct task *task, duite_param *param, const void **a
                               .type = type,
                               .max = came->max};
             result_fill(task, i, in, out);
-            out += message_lines(result_room(task, i));
+            out += result_lines(task, i);
         }
         param[i].object = (duite_object){TASK_LOCAL_NAME | i, stamp};
         in += message_value(mode, came->bytes);
@@ -198,9 +193,10 @@ static bool offloaded_run_body(struct task_graph *graph, struct worker *worker, 
         return false;
     if (!graph->kernels[task->kernel]->args_size)
         args = NULL;
-    duite_call template = *call;
-    template.round = ((const struct offload_message *)data_payload(own->message))->round;
-    own->failure = task_call_body(graph, worker, task, args, param, &own->inner, &template);
+    struct task_frame frame;
+    task_frame_init(&frame, graph, worker, call);
+    frame.call.round = message_of(own)->round;
+    own->failure = task_frame_call(&frame, task, args, param, &own->inner);
     result_close_up(task, param);
     if (own->failure && own->inner)
         task_scope_fail(own->inner, own->failure);

@@ -1,55 +1,13 @@
 /* Delegated tasks, at home. The versions that such a task reads and takes over stay here, held by
- * it as before, so nothing changes for the tasks that wait for it. The task goes on when two things
- * happened, in any order: its packet is sent, and the answer came. */
+ * it as before, so nothing changes for the tasks that wait for it. Its result is expected like any
+ * other packet, under a name: a number, never an address, which no other task gets. The task goes
+ * on when two things happened, in any order: its packet is sent, and the result came. */
 #include "runtime/offload/message.h"
 
 #include "runtime/base/memory.h"
 #include "runtime/data/law.h"
 
 #include <string.h>
-
-/* ---- Names ---- */
-
-uint64_t offload_name_give(struct offload_names *names, struct offload_pending *pending)
-{
-    uint32_t i = names->free - 1;
-    if (!names->free) {
-        i = names->n;
-        struct offload_name *slot =
-            base_grow(names->slot, &names->capacity, (size_t)i + 1, sizeof *slot);
-        if (!slot)
-            return 0;
-        names->slot = slot;
-        names->slot[i] = (struct offload_name){.generation = 1};
-        names->n++;
-    }
-    struct offload_name *slot = &names->slot[i];
-    names->free = slot->next;
-    slot->pending = pending;
-    return (uint64_t)slot->generation << 32 | i;
-}
-
-struct offload_pending *offload_name_take(struct offload_names *names, uint64_t name)
-{
-    uint32_t i = (uint32_t)name;
-    struct offload_name *slot = i < names->n ? &names->slot[i] : NULL;
-    if (!slot || !slot->pending || slot->generation != name >> 32) {
-        names->refused++;
-        return NULL;
-    }
-    struct offload_pending *pending = slot->pending;
-    slot->pending = NULL;
-    slot->generation += slot->generation == UINT32_MAX ? 2 : 1; /* never 0 */
-    slot->next = names->free;
-    names->free = i + 1;
-    return pending;
-}
-
-void offload_names_free(struct offload_names *names)
-{
-    base_free(names->slot);
-    *names = (struct offload_names){0};
-}
 
 /* ---- Going ---- */
 
@@ -72,18 +30,12 @@ static const struct data_object *access_lent(const struct task *task, size_t i)
                : NULL;
 }
 
-static bool access_reads(const struct task_access *access)
-{
-    const duite_mode mode = task_immediate((duite_mode)access->waiter.mode);
-    return mode == DUITE_R || mode == DUITE_RW;
-}
-
 /* The value that is sent along, if the body or a child may read it, else NULL. The version that a
  * ready task changes has the value already. */
 static const struct data_version *access_value(const struct task *task, size_t i)
 {
     const struct data_object *lent = access_lent(task, i);
-    if (!access_reads(&task->access[i]))
+    if (!data_order_reads(task_immediate((duite_mode)task->access[i].waiter.mode)))
         return NULL;
     return lent ? lent->current : task->access[i].waiter.version;
 }
@@ -94,16 +46,24 @@ static bool value_may_go(const struct task *task, size_t i, const struct data_ve
     return (!access_lent(task, i) || data_version_ready(value)) && data_version_packet(value);
 }
 
-static size_t access_room(const struct task *task, size_t i)
+static struct offload_param access_param(const struct task *task, size_t i)
 {
     const struct task_access *access = &task->access[i];
     const struct data_object *lent = access_lent(task, i);
-    const struct data_version *out = task_written(access);
+    const struct data_version *in = access_value(task, i), *out = task_written(access);
+    const struct data_version *version = in ? in : out;
     if (lent)
-        return access->waiter.mode == DUITE_RP ? 0 : lent->room;
-    if (out)
-        return data_version_room(out);
-    return access->waiter.mode == DUITE_CW ? data_sum_bytes(access->leaf->sum) : 0;
+        return (struct offload_param){.bytes = in ? in->packet->bytes : 0,
+                                      .max = lent->max,
+                                      .type = lent->type,
+                                      .sized = lent->sized};
+    if (!version)
+        return (struct offload_param){.max = access->leaf->sum->count,
+                                      .type = access->leaf->sum->type};
+    return (struct offload_param){.bytes = in ? in->packet->bytes : 0,
+                                  .max = version->max,
+                                  .type = version->type,
+                                  .sized = version->sized};
 }
 
 /* True if the task's place is not cut off: places tell the ranks which task comes first. */
@@ -128,31 +88,12 @@ bool offload_may_go(const struct task_graph *graph, const struct task *task, siz
         const struct data_version *in = access_value(task, i);
         if (in && !value_may_go(task, i, in))
             return false;
+        const struct offload_param param = access_param(task, i);
         there += in ? message_lines(in->packet->bytes) + 64 : 0;
-        back += message_lines(access_room(task, i));
+        back += message_lines(message_room(task->access[i].waiter.mode, &param));
     }
     *bytes = there + back + 2 * sizeof(struct data_packet);
     return there < DATA_MAX_BYTES && back < DATA_MAX_BYTES && place_is_whole(task);
-}
-
-static struct offload_param access_param(const struct task *task, size_t i)
-{
-    const struct task_access *access = &task->access[i];
-    const struct data_object *lent = access_lent(task, i);
-    const struct data_version *in = access_value(task, i), *out = task_written(access);
-    const struct data_version *version = in ? in : out;
-    if (lent)
-        return (struct offload_param){.bytes = in ? in->packet->bytes : 0,
-                                      .max = lent->max,
-                                      .type = lent->type,
-                                      .sized = lent->sized};
-    if (!version)
-        return (struct offload_param){.max = access->leaf->sum->count,
-                                      .type = access->leaf->sum->type};
-    return (struct offload_param){.bytes = in ? in->packet->bytes : 0,
-                                  .max = version->max,
-                                  .type = version->type,
-                                  .sized = version->sized};
 }
 
 static struct offload_message message_of_task(const struct task *task)
@@ -197,19 +138,29 @@ static struct data_packet *message_pack(const struct task_graph *graph, struct t
     return packet;
 }
 
-/* Gives the task the name under which its result will come back; 0 without memory, or if
- * communication broke. */
-static uint64_t pending_enter(struct task_graph *graph, struct offload_pending *pending)
+/* At home: a delegated task, until its result came. */
+struct offload_pending {
+    struct comm_letter send;    /* first: the task's */
+    struct task_scope *inner;   /* the task's, while `send` has its place */
+    _Atomic int left;           /* it is sent; it came back */
+    struct data_packet *result; /* NULL: lost */
+};
+
+static struct offload_pending *pending_of(struct task *task)
 {
-    uint64_t name = 0;
-    pthread_mutex_lock(&graph->lock);
-    if (!graph->offload_names && !graph->offload_closed)
-        graph->offload_names = base_alloc_zero(sizeof *graph->offload_names);
-    if (graph->offload_names)
-        name = offload_name_give(graph->offload_names, pending);
-    pthread_mutex_unlock(&graph->lock);
-    return name;
+    return (struct offload_pending *)task->send;
 }
+
+/* The task is here again. */
+static void pending_end(struct offload_pending *pending)
+{
+    struct task *task = pending->send.sender;
+    task->state = TASK_LOCAL;
+    task->inner = pending->inner;
+    base_pool_give(pending, sizeof *pending);
+}
+
+static comm_arrived result_arrived;
 
 bool offload_send(struct task_graph *graph, struct worker *worker, struct task *task, int to)
 {
@@ -219,21 +170,22 @@ bool offload_send(struct task_graph *graph, struct worker *worker, struct task *
         data_packet_free(packet);
         return false;
     }
-    *pending = (struct offload_pending){.send = {.sender = task, .to = to, .packet = packet},
-                                        .task = task,
-                                        .inner = task->inner,
-                                        .left = 2};
-    uint64_t name = pending_enter(graph, pending);
-    if (!name) {
-        data_packet_free(packet);
-        base_pool_give(pending, sizeof *pending);
-        return false;
-    }
     packet->kind = DATA_OFFLOADED;
-    packet->key = (struct data_key){.slot = (uint32_t)graph->rank, .number = name};
-    pending->send.key = packet->key;
+    packet->key = (struct data_key){.slot = (uint32_t)graph->rank,
+                                    .number = 1 + atomic_fetch_add(&graph->delegated, 1)};
+    *pending = (struct offload_pending){
+        .send = {.key = packet->key, .packet = packet, .sender = task, .to = to},
+        .inner = task->inner,
+        .left = 2};
     task->state = TASK_DELEGATED;
     task->send = &pending->send;
+    const struct comm_target home = {
+        .arrived = result_arrived, .what = task, .from = to, .result = true};
+    if (comm_expect(graph->comm, worker, packet->key, home, 1)) {
+        pending_end(pending);
+        data_packet_free(packet);
+        return false;
+    }
     task_ready(graph, worker, task);
     return true;
 }
@@ -317,14 +269,11 @@ static const struct data_failure *result_take(const struct task *task, duite_par
 static void pending_one_less(struct task_graph *graph, struct worker *worker,
                              struct offload_pending *pending)
 {
-    struct task *task = pending->task;
-    struct data_packet *result;
+    struct task *task = pending->send.sender;
     if (atomic_fetch_sub_explicit(&pending->left, 1, memory_order_acq_rel) != 1)
         return;
-    result = pending->result;
-    task->state = TASK_LOCAL;
-    task->inner = pending->inner;
-    base_pool_give(pending, sizeof *pending);
+    struct data_packet *result = pending->result;
+    pending_end(pending);
     task_run_result(graph, task, result_take, result);
     if (result && result->pieces & MESSAGE_RAN)
         result_unpack_below(task, worker, result);
@@ -334,58 +283,14 @@ static void pending_one_less(struct task_graph *graph, struct worker *worker,
 
 void offload_sent(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    pending_one_less(graph, worker, (struct offload_pending *)task->send);
+    pending_one_less(graph, worker, pending_of(task));
 }
 
-void offload_result_arrived(struct task_graph *graph, struct worker *worker,
-                            struct data_packet *packet)
+/* The result came; NULL: it will not. */
+static void result_arrived(void *graph, struct worker *worker, void *what,
+                           struct data_packet *packet)
 {
-    struct offload_pending *pending = NULL;
-    pthread_mutex_lock(&graph->lock);
-    if (graph->offload_names)
-        pending = offload_name_take(graph->offload_names, packet->key.number);
-    pthread_mutex_unlock(&graph->lock);
-    if (!pending) { /* it was given up; or the name is none of ours, which was counted */
-        data_packet_free(packet);
-        return;
-    }
+    struct offload_pending *pending = pending_of(what);
     pending->result = packet;
     pending_one_less(graph, worker, pending);
-}
-
-void offload_lost(struct task_graph *graph, struct worker *worker)
-{
-    pthread_mutex_lock(&graph->lock);
-    struct offload_names *names = graph->offload_names;
-    graph->offload_names = NULL;
-    graph->offload_closed = true;
-    pthread_mutex_unlock(&graph->lock);
-    for (uint32_t i = 0; names && i < names->n; i++)
-        if (names->slot[i].pending)
-            pending_one_less(graph, worker, names->slot[i].pending);
-    if (names)
-        offload_names_free(names);
-    base_free(names);
-}
-
-uint64_t offload_look(struct task_graph *graph,
-                      void (*look)(void *context, const struct task *task, int rank), void *context)
-{
-    pthread_mutex_lock(&graph->lock);
-    for (uint32_t i = 0; graph->offload_names && i < graph->offload_names->n; i++) {
-        const struct offload_pending *pending = graph->offload_names->slot[i].pending;
-        if (pending)
-            look(context, pending->task, pending->send.to);
-    }
-    const uint64_t refused = graph->offload_names ? graph->offload_names->refused : 0;
-    pthread_mutex_unlock(&graph->lock);
-    return refused;
-}
-
-void offload_stop(struct task_graph *graph)
-{
-    if (graph->offload_names)
-        offload_names_free(graph->offload_names);
-    base_free(graph->offload_names);
-    graph->offload_names = NULL;
 }

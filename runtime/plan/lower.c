@@ -48,7 +48,6 @@ bool plan_round_room(struct plan_round *round, size_t nodes, size_t uses, size_t
 void plan_round_free(struct plan_round *round)
 {
     base_free(round->memory);
-    base_free(round->channel);
     base_free(round->edge);
     *round = (struct plan_round){0};
 }

@@ -8,14 +8,13 @@
 #include "runtime/base/memory.h"
 
 /* Forks that must repeat earlier ones; forks skipped after the first failure, and at most;
- * comparisons granted; bodies per mean; forks within which a plan must be there. */
+ * comparisons granted; bodies per mean. */
 enum {
     MEMO_REPEATED = 64,
     MEMO_PENALTY = 256,
     MEMO_LARGEST_PENALTY = 1 << 20,
     MEMO_GRANTED = 16384,
-    MEMO_BODIES = 32,
-    MEMO_PATIENCE = 1 << 16
+    MEMO_BODIES = 32
 };
 
 /* With longer bodies forks do not matter, and calls outside a replay would wait for it. */
@@ -52,7 +51,6 @@ static void memo_enter(struct plan_memo *memo, enum plan_memo_state state)
 {
     memo->state = state;
     memo->since = memo->pos;
-    memo->seen = 0;
     memo->due = 0;
 }
 
@@ -61,8 +59,8 @@ static void memo_close(struct plan_memo *memo)
     const uint64_t tasks = memo->round * memo->plan->n_calls + memo->at;
     plan_replay_close(memo->plan, memo->worker, memo->first);
     memo->step = NULL;
-    memo->taker.tasks += tasks;
-    memo->taker.rounds += memo->round;
+    memo->tasks += tasks;
+    memo->rounds += memo->round;
     if (memo->round < 4 || tasks < MEMO_REPEATED) {
         memo_punish(memo);
         return;
@@ -71,10 +69,9 @@ static void memo_close(struct plan_memo *memo)
     memo_watch(memo);
 }
 
-/* Another call than the expected fork: closes an open replay and begins the history again. */
-static void memo_break(struct task_taker *taker)
+/* Closes an open replay, and begins the history again. */
+void plan_memo_break(struct plan_memo *memo)
 {
-    struct plan_memo *memo = (struct plan_memo *)taker;
     if (memo->step)
         memo_close(memo);
     else
@@ -158,7 +155,6 @@ static void memo_later(struct plan_memo *memo)
 
 static void memo_begin(struct plan_memo *memo, uint64_t period)
 {
-    bool fails = false;
     memo->period = (size_t)period;
     memo->found = memo_round_find(memo, memo_key(memo, period), memo->period);
     if (!memo_pays(memo)) {
@@ -166,10 +162,10 @@ static void memo_begin(struct plan_memo *memo, uint64_t period)
         return;
     }
     if (memo->found) {
-        if (memo_round_is_made(memo->found, &fails) && !fails && !memo_round_is_idle(memo->found))
-            memo_later(memo); /* the main program is too far ahead of its last replay */
-        else
+        if (memo_round_is_idle(memo->found))
             memo_enter(memo, MEMO_SEEK);
+        else
+            memo_later(memo); /* the main program is too far ahead of its last replay */
         return;
     }
     memo_enter(memo, MEMO_RECORD);
@@ -236,18 +232,13 @@ static bool seek_finds(const struct plan_memo *memo, const duite_kernel *kernel,
 static bool memo_seek(struct plan_memo *memo, const duite_kernel *kernel, const void *args,
                       size_t n, const duite_object *objects)
 {
-    struct plan_memo_round *round = memo->found;
-    const uint64_t sought = memo->pos - memo->since;
     const bool found = seek_finds(memo, kernel, args, n, objects);
-    bool fails = false, made = found && memo_round_is_made(round, &fails);
-    if (found && made && !fails && memo_round_open(memo, round)) {
+    if (found && memo_round_open(memo, memo->found)) {
         memo_take(memo, memo->step, args);
         return true;
     }
-    if (made || sought > MEMO_PATIENCE || (!found && sought > memo->seen + 2 * memo->period))
+    if (found || memo->pos - memo->since > 2 * memo->period)
         memo_punish(memo);
-    else if (found)
-        memo->seen = sought;
     return false;
 }
 
@@ -284,7 +275,7 @@ __attribute__((noinline)) static bool memo_other_fork(struct plan_memo *memo,
                                                       size_t n, const duite_object *objects)
 {
     if (memo->step)
-        memo_break(&memo->taker);
+        plan_memo_break(memo);
     if (memo->skip) {
         memo->skip--;
         return false;
@@ -296,11 +287,9 @@ __attribute__((noinline)) static bool memo_other_fork(struct plan_memo *memo,
     return memo_look(memo, hash, kernel, args, n, objects);
 }
 
-/* A fork without options by the main program, outside builds and with homes settled. */
-static bool memo_fork(struct task_taker *taker, const duite_kernel *kernel, const void *args,
-                      size_t n, const duite_object *objects)
+bool plan_memo_fork(struct plan_memo *memo, const duite_kernel *kernel, const void *args, size_t n,
+                    const duite_object *objects)
 {
-    struct plan_memo *memo = (struct plan_memo *)taker;
     const struct plan_memo_step *step = memo->step;
     if (!step || !memo_is_step(step, kernel, args, n, objects))
         return memo_other_fork(memo, kernel, args, n, objects);
@@ -310,27 +299,31 @@ static bool memo_fork(struct task_taker *taker, const duite_kernel *kernel, cons
 
 /* ---- Start and stop ---- */
 
-static void memo_stop(struct task_taker *taker)
+void plan_memo_stop(struct plan_memo *memo)
 {
-    struct plan_memo *memo = (struct plan_memo *)taker;
-    for (size_t i = 0; i < MEMO_PLANS; i++) {
+    for (size_t i = 0; i < MEMO_PLANS && memo; i++) {
         memo_round_free(&memo->rounds_kept[i], NULL);
         base_free(memo->rounds_kept[i].gate);
     }
-    if (memo->record)
+    if (memo && memo->record)
         plan_record_free(memo->record, NULL);
     base_free(memo);
 }
 
-struct task_taker *plan_memo_new(struct task_graph *graph, struct worker *worker, bool always)
+struct plan_memo *plan_memo_new(struct task_graph *graph, struct worker *worker, bool always)
 {
     struct plan_memo *memo = base_alloc_zero(sizeof *memo);
     if (!memo)
         return NULL;
-    memo->taker = (struct task_taker){.fork = memo_fork, .other = memo_break, .stop = memo_stop};
     memo->graph = graph;
     memo->worker = worker;
     memo->always = always;
     memo->penalty = MEMO_PENALTY;
-    return &memo->taker;
+    return memo;
+}
+
+void plan_memo_count(const struct plan_memo *memo, duite_counters *counters)
+{
+    counters->recognised += memo->tasks;
+    counters->recognised_rounds += memo->rounds;
 }

@@ -5,13 +5,8 @@
 #include "runtime/plan/memo_round.h"
 
 #include "runtime/base/memory.h"
-#include "runtime/base/thread.h"
 #include "runtime/data/object.h"
 #include "runtime/task/internal.h"
-
-/* Rounds of up to so many forks are compiled at once, in about 0.1 ms: a thread would take longer
- * to start while workers hold all cores. */
-enum { ROUND_SHORT = 256 };
 
 /* Bytes of a ring; rounds in it, at least and at most. */
 enum { RING_BYTES = 1 << 20, RING_LEAST = 4, RING_MOST = 1 << 16 };
@@ -26,28 +21,14 @@ struct plan_memo_round *memo_round_find(struct plan_memo *memo, uint64_t key, si
     return NULL;
 }
 
-bool memo_round_is_made(struct plan_memo_round *round, bool *fails)
+bool memo_round_is_idle(const struct plan_memo_round *round)
 {
-    const int made = atomic_load_explicit(&round->made, memory_order_relaxed);
-    if (made && round->compiles) { /* the join makes the plan visible */
-        pthread_join(round->thread, NULL);
-        round->compiles = false;
-    }
-    *fails = made < 0;
-    return made;
-}
-
-bool memo_round_is_idle(struct plan_memo_round *round)
-{
-    bool fails;
-    return memo_round_is_made(round, &fails) && !fails && plan_is_over(round->record->plan);
+    return plan_is_over(round->record->plan);
 }
 
 void memo_round_free(struct plan_memo_round *round, struct worker *worker)
 {
     struct plan_gate *gate = round->gate;
-    if (round->compiles)
-        pthread_join(round->thread, NULL);
     if (round->record)
         plan_record_free(round->record, worker);
     base_free(round->first);
@@ -113,7 +94,7 @@ static bool round_make_ring(struct plan *plan, const struct plan_record *record)
         return true;
     while (rounds < RING_MOST && 2 * rounds * record->args_bytes <= RING_BYTES)
         rounds *= 2;
-    return rounds * record->args_bytes <= RING_BYTES && plan_ring(plan, rounds, record->args_bytes);
+    return plan_ring(plan, rounds, record->args_bytes);
 }
 
 /* Forked tasks have no paths, so these tasks get none. */
@@ -132,26 +113,15 @@ static bool round_compile(const struct plan_memo_round *round)
     return round_make_ring(record->plan, record);
 }
 
-static void *round_thread(void *context)
-{
-    struct plan_memo_round *round = context;
-    const int made = round_compile(round) ? 1 : -1;
-    atomic_store_explicit(&round->made, made, memory_order_relaxed);
-    return NULL;
-}
-
 /* The least recently used round that is not in use. */
 static struct plan_memo_round *round_place(struct plan_memo *memo)
 {
     struct plan_memo_round *place = NULL;
     for (size_t i = 0; i < MEMO_PLANS; i++) {
         struct plan_memo_round *round = &memo->rounds_kept[i];
-        bool fails;
         if (!round->record)
             return round;
-        if (!memo_round_is_made(round, &fails) || (!fails && !plan_is_over(round->record->plan)))
-            continue;
-        if (!place || round->used < place->used)
+        if (memo_round_is_idle(round) && (!place || round->used < place->used))
             place = round;
     }
     return place;
@@ -169,8 +139,8 @@ static bool round_fill(struct plan_memo_round *round, const struct plan_memo *me
         round->hash[i] = memo->hash[(memo->pos - round->n + i) % MEMO_HISTORY];
     if (!round->gate)
         round->gate = base_alloc_zero(sizeof *round->gate);
-    return !record->forked && !record->trails && round->hash && round->gate &&
-           round_fill_steps(round);
+    return !record->forked && !record->trails && RING_LEAST * record->args_bytes <= RING_BYTES &&
+           round->hash && round->gate && round_fill_steps(round);
 }
 
 struct plan_memo_round *memo_round_make(struct plan_memo *memo, uint64_t key)
@@ -184,33 +154,20 @@ struct plan_memo_round *memo_round_make(struct plan_memo *memo, uint64_t key)
     round->key = key;
     round->n = round->record->n_calls;
     round->used = ++memo->openings;
-    if (!round_fill(round, memo)) {
-        memo_round_free(round, memo->worker);
-        return NULL;
-    }
-    round->compiles = !memo->always && round->n > ROUND_SHORT &&
-                      !base_thread_start(&round->thread, "compiling thread", round_thread, round);
-    if (!round->compiles)
-        round_thread(round);
-    return round;
+    if (round_fill(round, memo) && round_compile(round))
+        return round;
+    memo_round_free(round, memo->worker);
+    return NULL;
 }
 
 /* ---- Replays ---- */
 
-/* Returns whether all objects live: one may have been freed, and its slot reused. */
-static bool round_lives(const struct plan_memo *memo, struct plan_memo_round *round)
-{
-    if (plan_record_fits(round->record))
-        return true;
-    if (memo_round_is_idle(round))
-        memo_round_free(round, memo->worker);
-    return false;
-}
-
 bool memo_round_open(struct plan_memo *memo, struct plan_memo_round *round)
 {
-    if (!round_lives(memo, round))
+    if (!plan_record_fits(round->record)) { /* an object was freed; its slot may be another's now */
+        memo_round_free(round, memo->worker);
         return false;
+    }
     struct plan *plan = round->record->plan;
     memo->first = memo->graph->root.forks + 1;
     if (plan_replay_open(round->record, memo->worker, round->gate))

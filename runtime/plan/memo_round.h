@@ -4,7 +4,6 @@
 #include "runtime/plan/memo.h"
 #include "runtime/plan/plan.h"
 
-#include <pthread.h>
 #include <string.h>
 
 /* The watch, recognised rounds and their plans, for memo.c and memo_round.c alone. */
@@ -33,15 +32,11 @@ struct plan_memo_round {
     size_t n;
     uint64_t used;          /* its last opening, by number */
     struct plan_gate *gate; /* outlives the round, see plan_gate */
-    pthread_t thread;       /* compiles the plan */
-    bool compiles;          /* the thread is not joined yet */
-    _Atomic int made;       /* 1: the plan is there; -1: it failed */
 };
 
 enum plan_memo_state { MEMO_WATCH, MEMO_RECORD, MEMO_SEEK };
 
 struct plan_memo {
-    struct task_taker taker; /* first; counts what closed replays took */
     struct task_graph *graph;
     struct worker *worker;
     /* The open replay. */
@@ -64,11 +59,11 @@ struct plan_memo {
     double seconds, mean;            /* of those bodies; of a recent body */
     enum plan_memo_state state;
     size_t period;
-    uint64_t since, seen; /* where this state began; MEMO_SEEK: forks from there to the last begin
-                             of the round */
+    uint64_t since;                /* where this state began */
     struct plan_memo_round *found; /* MEMO_SEEK: its round */
     struct plan_record *record;    /* MEMO_RECORD */
     uint64_t openings;
+    uint64_t tasks, rounds; /* of closed replays */
     struct plan_memo_round rounds_kept[MEMO_PLANS];
     uint32_t hash[MEMO_HISTORY];
 };
@@ -91,13 +86,11 @@ struct plan_memo_round *memo_round_find(struct plan_memo *memo, uint64_t key, si
 /* Records a fork before it is made. False: not recognisable, or no memory. */
 bool memo_round_add(struct plan_memo *memo, const duite_kernel *kernel, const void *args, size_t n,
                     const duite_object *objects);
-/* Takes over memo->record and begins to compile it, in place of the least recently used round.
- * NULL: all rounds are in use, no plan is possible, or no memory. */
+/* Takes over memo->record and compiles it, in place of the least recently used round. NULL: all
+ * rounds are in use, no plan is possible, or no memory. */
 struct plan_memo_round *memo_round_make(struct plan_memo *memo, uint64_t key);
-/* Returns whether compiling is over; *fails: without a plan. */
-bool memo_round_is_made(struct plan_memo_round *round, bool *fails);
-/* Returns whether its plan is there and no replay of it goes on. */
-bool memo_round_is_idle(struct plan_memo_round *round);
+/* Returns whether no replay of it goes on. */
+bool memo_round_is_idle(const struct plan_memo_round *round);
 /* Opens a replay of an idle round; the next fork is its first. False: an object is gone, or no
  * memory. */
 bool memo_round_open(struct plan_memo *memo, struct plan_memo_round *round);

@@ -73,20 +73,13 @@ static int message_compare(const void *a, const void *b, void *context)
     return left != right ? (left > right) - (left < right) : (l > r) - (l < r);
 }
 
-/* Makes the part's channels, and buffers for the items received. */
-static void part_channels(struct plan_parting *p)
+/* Orders the messages to send, and makes buffers for the items received. */
+static void part_items(struct plan_parting *p)
 {
     const struct plan_messages *m = p->m;
-    for (uint32_t i = 0; i < m->n_messages; i++) {
-        bool sends = plan_part_sends(p, i);
-        p->part->channel[i] =
-            (struct plan_round_channel){.peer = sends ? m->message[i].to : m->message[i].from,
-                                        .phase = m->message[i].phase,
-                                        .sends = sends};
-        if (sends)
+    for (uint32_t i = 0; i < m->n_messages; i++)
+        if (plan_part_sends(p, i))
             p->order[p->n_sends++] = i;
-    }
-    p->part->n_channels = m->n_messages;
     qsort_r(p->order, p->n_sends, sizeof *p->order, message_compare, m->message);
     for (size_t i = 0; i < m->n_items; i++) {
         const struct plan_item *item = &m->item[i];
@@ -106,8 +99,12 @@ static void part_message(struct plan_parting *p, uint32_t message, size_t fork)
 {
     bool sends = plan_part_sends(p, message);
     struct plan_round_node *node = plan_round_add(p->part, sends ? PLAN_SEND : PLAN_RECEIVE, fork);
+    const struct plan_message *of = &p->m->message[message];
     node->channel = message;
-    for (size_t i = p->m->message[message].first; i; i = p->m->item[i - 1].next)
+    node->peer = sends ? of->to : of->from;
+    node->phase = of->phase;
+    p->part->n_channels++;
+    for (size_t i = of->first; i; i = p->m->item[i - 1].next)
         plan_round_use(p->part, node, p->place[i - 1], sends, !sends);
 }
 
@@ -278,12 +275,11 @@ bool plan_part(struct plan_round *part, const struct plan_messages *messages)
     const struct plan_assignment *a = messages->assignment;
     struct plan_parting p = {.m = messages, .a = a, .round = a->round, .part = part};
     part->source = a->round->source;
-    part->channel = base_alloc((messages->n_messages + 1) * sizeof *part->channel);
     void *memory = part_room(&p);
-    const bool fine = memory && part->channel && part_round_room(&p);
+    const bool fine = memory && part_round_room(&p);
     if (fine) {
         part_find_spoilt(&p);
-        part_channels(&p);
+        part_items(&p);
         part_nodes(&p);
     }
     base_free(memory);

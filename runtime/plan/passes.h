@@ -93,9 +93,15 @@ struct plan_round_node {
     uint32_t fork;             /* that it runs, or that it comes before */
     uint32_t owner;            /* the object that it runs for, or PLAN_NONE */
     uint32_t n_uses, n_merges; /* merges: SUM, PARTIAL */
-    uint32_t channel;          /* SEND, RECEIVE */
+    uint32_t channel;          /* SEND, RECEIVE: the message's number on this rank */
     size_t first_use, first_merge;
-    const duite_law *law;    /* of the merges */
+    union {
+        const duite_law *law; /* SUM, PARTIAL: of the merges */
+        struct {              /* SEND, RECEIVE: the message carries the node's uses in order */
+            int peer;
+            uint32_t phase;
+        };
+    };
     uint32_t within, cyclic; /* predecessors in its round; in the previous round */
     uint32_t n_next, n_next_cyclic;
 };
@@ -111,13 +117,6 @@ struct plan_round_edge {
     bool cyclic; /* from a round to the next one */
 };
 
-/* A message of each round to or from another rank; it carries its node's uses in order. */
-struct plan_round_channel {
-    int peer;
-    uint32_t phase;
-    bool sends;
-};
-
 /* A round in its intermediate form. */
 struct plan_round {
     const struct plan_source *source;
@@ -130,8 +129,7 @@ struct plan_round {
     size_t n_merges;
     struct plan_round_edge *edge;
     size_t n_edges;
-    struct plan_round_channel *channel; /* of several ranks */
-    size_t n_channels;
+    size_t n_channels; /* SENDs and RECEIVEs */
 };
 
 /* From a source to the nodes of a round for all ranks, without edges:

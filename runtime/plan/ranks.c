@@ -83,12 +83,12 @@ int plan_open(struct plan *plan, const struct plan_round *part)
         struct task *task = plan_task(plan, i);
         if (!task_is_channel(task))
             continue;
-        const struct plan_round_channel *from = &part->channel[part->node[i].channel];
-        struct comm_channel *channel = &channels->channel[part->node[i].channel];
+        const struct plan_round_node *from = &part->node[i];
+        struct comm_channel *channel = &channels->channel[from->channel];
         *channel = (struct comm_channel){.node = task,
                                          .peer = from->peer,
                                          .tag = (int)from->phase,
-                                         .sends = from->sends,
+                                         .sends = from->kind == PLAN_SEND,
                                          .bytes = plan_channel_room(plan, task)};
         task->node->channel = channel;
     }

@@ -119,22 +119,13 @@ static inline uint32_t record_use(struct plan_record *record, duite_object name,
     return index;
 }
 
-uint32_t plan_recorded_owner(const struct plan_record *record,
-                             const struct plan_recorded_fork *fork)
-{
-    if (fork->kernel == PLAN_SETS ||
-        !task_owner_decides(fork->options.at, record->graph->kernels[fork->kernel]->replicated))
-        return PLAN_NONE;
-    return fork->owner;
-}
-
-/* The object that the fork runs for keeps its home, as does any object bound to it. */
+/* The object that the task runs for keeps its home, as does any object bound to it. */
 static void record_fix_owner(struct plan_record *record, const struct plan_recorded_fork *fork)
 {
-    uint32_t owner = plan_recorded_owner(record, fork);
-    if (owner == PLAN_NONE)
+    const bool replicated = record->graph->kernels[fork->kernel]->replicated;
+    if (fork->owner == PLAN_NONE || !task_owner_decides(fork->options.at, replicated))
         return;
-    struct plan_recorded_object *object = &record->object[owner];
+    struct plan_recorded_object *object = &record->object[fork->owner];
     object->fixed = true;
     record->graph->table.object[object->bound.slot].fixed = true;
 }

@@ -41,11 +41,6 @@ struct plan_recorded_object {
 
 struct plan;
 
-/* The place in record->object that a fork runs for by the owner rule; PLAN_NONE: it is a set, has
- * no owner, names a rank, or runs everywhere. */
-uint32_t plan_recorded_owner(const struct plan_record *record,
-                             const struct plan_recorded_fork *fork);
-
 /* Arguments that changed since the last replay; one block of memory. */
 struct plan_change {
     struct plan_change *next;
@@ -126,9 +121,6 @@ void plan_source_free(struct plan_source *source);
 
 /* The place of a flag among the objects; n_objects if it is none of them. */
 uint32_t plan_record_flag(const struct plan_record *record, duite_object flag);
-
-/* The rows of a round for mappings. Errors: memory; plan_tasks_free is due all the same. */
-int plan_record_tasks(const struct plan_record *record, struct plan_tasks *tasks);
 
 /* Returns whether it was recorded and all bound objects exist. */
 bool plan_record_fits(struct plan_record *record);

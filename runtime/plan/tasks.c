@@ -1,8 +1,7 @@
 /* A round for mappings and schedulers: rows with the results that each node reads, and the paths to
  * the round's end. Paths count every dependence, even those without data. */
-#include "runtime/plan/record.h"
+#include "runtime/plan/passes.h"
 
-#include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 
 /* ---- Rows ---- */
@@ -83,18 +82,6 @@ bool plan_tasks_find(struct plan_tasks *tasks, const struct plan_round *round)
         return false;
     tasks_fill_nodes(tasks, round);
     return tasks_fill_rows(tasks, round);
-}
-
-int plan_record_tasks(const struct plan_record *record, struct plan_tasks *tasks)
-{
-    struct plan_source source;
-    struct plan_round round = {0};
-    *tasks = (struct plan_tasks){0};
-    bool fine = plan_record_source(record, NULL, &source) && plan_lower(&round, &source) &&
-                plan_tasks_find(tasks, &round);
-    plan_round_free(&round);
-    plan_source_free(&source);
-    return fine ? DUITE_OK : base_no_memory("the tasks of a recorded graph");
 }
 
 /* ---- Paths ---- */

@@ -13,7 +13,7 @@ const struct data_failure *task_body_failure(const struct duite_call_private *bo
 /* Why nothing runs any more, or NULL. */
 static inline const struct data_failure *task_given_up(struct task_graph *graph)
 {
-    return __builtin_expect(task_has_given_up(graph), 0) ? &task_lost_failure : NULL;
+    return task_has_given_up(graph) ? &task_lost_failure : NULL;
 }
 
 /* A body's call, and the state behind the calls that it makes. One frame may serve many bodies, one
@@ -69,18 +69,6 @@ task_frame_call(struct task_frame *frame, struct task *task, const void *args,
 /* Runs a ready BODY that is LOCAL, in an initialised frame. True if its body was called; else its
  * outputs are poisoned. task_finish then ends the task. */
 bool task_run_body(struct task_frame *frame, struct task *task);
-
-/* Calls a body with a frame of its own. */
-__attribute__((always_inline)) static inline const struct data_failure *
-task_call_body(struct task_graph *graph, struct worker *worker, struct task *task, const void *args,
-               const duite_param *param, struct task_scope **scope, const duite_call *template)
-{
-    struct task_frame frame;
-    task_frame_init(&frame, graph, worker, template);
-    if (task->later)
-        frame.call.round = task_later_round(task);
-    return task_frame_call(&frame, task, args, param, scope);
-}
 
 #pragma GCC visibility pop
 

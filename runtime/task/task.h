@@ -234,12 +234,11 @@ struct task_graph {
     /* Seldom used. */
     _Alignas(64) _Atomic int broken; /* memory ran out in a fork: the code of every later call */
     _Atomic uint64_t offloaded;      /* tasks of other ranks that are here */
+    _Atomic uint64_t delegated; /* tasks of this rank that went to others so far: their names */
     task_top_over *offloaded_over;
     pthread_mutex_t lock; /* of the rest, and of the failures of scopes */
     struct task_failure *failures;
-    struct offload_names *offload_names; /* tasks on other ranks, or NULL */
-    bool offload_closed;                 /* no more of them */
-    struct data_sum *unclosed;           /* sums of ended tasks, kept for want of memory */
+    struct data_sum *unclosed; /* sums of ended tasks, kept for want of memory */
 };
 
 /* Checks `kernels`, which NULL ends, and copies the list; checks `laws`, likewise or NULL, and does
@@ -305,15 +304,6 @@ int task_fork_main(struct task_graph *graph, struct worker *worker, const duite_
                    const void *args, size_t n, const duite_object *objects);
 int task_fork_nested(struct task_scope *scope, struct worker *worker, const duite_kernel *kernel,
                      const void *args, size_t n, const duite_object *objects);
-/* Takes forks of the main program that need not become tasks. Main thread. */
-struct task_taker {
-    /* A usual fork without options. True: it is made. */
-    bool (*fork)(struct task_taker *taker, const duite_kernel *kernel, const void *args, size_t n,
-                 const duite_object *objects);
-    void (*other)(struct task_taker *taker); /* any other call comes */
-    void (*stop)(struct task_taker *taker);  /* no task is left: frees the taker */
-    uint64_t tasks, rounds;                  /* taken so far; in whole rounds of a plan */
-};
 
 /* Overwrites the object with a copy of *count values, or with zeros if `values` is NULL; waits for
  * nothing. `count` NULL: the object's maximum. Errors: objects, DUITE_E_SIZE, memory. */

@@ -98,13 +98,9 @@ void trace_settles(struct trace *trace, const struct data_table *table)
 {
     if (!trace || !trace->word)
         return;
-    void *moved =
-        base_grow(trace->slot, &trace->slots_capacity, table->n_unsettled + 1, sizeof *trace->slot);
-    trace->n_slots = moved ? table->n_unsettled : 0;
-    if (moved)
-        trace->slot = moved;
-    else
-        trace->words_lost += table->n_unsettled;
+    const bool fine = BASE_GROW(trace->slot, trace->slots_capacity, table->n_unsettled + 1);
+    trace->n_slots = fine ? table->n_unsettled : 0;
+    trace->words_lost += table->n_unsettled - trace->n_slots;
     for (size_t i = 0; i < trace->n_slots; i++)
         trace->slot[i] = table->unsettled[i].slot;
 }

@@ -52,19 +52,6 @@ static void message_sent(void *graph, struct worker *worker, struct comm_letter 
     work_finish(graph, worker, letter->sender);
 }
 
-static bool message_unexpected(void *graph, struct worker *worker, struct data_packet *packet)
-{
-    if (packet->kind == DATA_OFFLOADED)
-        return offload_arrived(graph, worker, packet);
-    offload_result_arrived(graph, worker, packet);
-    return true;
-}
-
-static void messages_lost(void *graph, struct worker *worker)
-{
-    offload_lost(graph, worker);
-}
-
 static void messages_broke(void *graph)
 {
     queue_notify(((const struct task_graph *)graph)->pool);
@@ -77,8 +64,7 @@ static void message_through(void *graph, struct worker *worker, struct comm_chan
 
 const struct comm_owner work_messages = {.packet = task_send_packet,
                                          .sent = message_sent,
-                                         .came = message_unexpected,
-                                         .lost = messages_lost,
+                                         .came = offload_arrived,
                                          .broke = messages_broke,
                                          .pack = plan_channel_pack,
                                          .unpack = plan_channel_unpack,

@@ -205,6 +205,15 @@ static unsigned report_policies(struct report *report)
 
 /* ---- Messages ---- */
 
+/* A task that another rank runs; it stays away as long as it is looked at. */
+static void report_away(struct report *report, const struct task *task, int rank)
+{
+    report_line(report, "%s is on rank %d, which has not sent what it leaves",
+                report_words(report, task).text, rank);
+    for (uint32_t i = 0; i < task->n; i++)
+        report_waiters(report, task, i);
+}
+
 static void report_awaited(void *context, const struct data_key *key,
                            const struct comm_target *target, uint32_t packets)
 {
@@ -214,6 +223,10 @@ static void report_awaited(void *context, const struct data_key *key,
         report_line(report,
                     "contributions of %u ranks to object %u.%u, version %llu, have not come",
                     packets, key->slot, key->generation, number);
+        return;
+    }
+    if (target->result) {
+        report_away(report, target->what, target->from);
         return;
     }
     const struct data_waiter *waiter = data_version_waiters(target->what);
@@ -251,16 +264,6 @@ static void report_channel(void *context, const struct comm_channel *channel)
     words_add_more(&words, more);
     report_line(report, "%s of a recorded graph waits for a message that has not come from rank %d",
                 words.text, channel->peer);
-}
-
-/* A task that another rank runs; it stays away as long as it is looked at. */
-static void report_away(void *context, const struct task *task, int rank)
-{
-    struct report *report = context;
-    report_line(report, "%s is on rank %d, which has not sent what it leaves",
-                report_words(report, task).text, rank);
-    for (uint32_t i = 0; i < task->n; i++)
-        report_waiters(report, task, i);
 }
 
 /* ---- All of it ---- */
@@ -308,7 +311,7 @@ static void standstill_report(struct work_pool *pool, double seconds)
     const unsigned bodies = policies + report_bodies(&report, report_hold_workers(pool));
     const unsigned before = report.lines;
     const bool looked = !pool->setup.comm || comm_look(pool->setup.comm, &looker);
-    const uint64_t refused = offload_look(pool->setup.graph, report_away, &report);
+    const uint64_t refused = pool->setup.comm ? comm_refused(pool->setup.comm) : 0;
     if (refused)
         report_line(&report, "%llu results of tasks on other ranks named no delegated task",
                     (unsigned long long)refused);

@@ -1,5 +1,5 @@
 /* What limited a run, of reports that are made here: the largest share of its time decides. */
-#include "cloth/app/report/summary_time.h"
+#include "cloth/app/report/summary.h"
 
 #include "tests/support/unit.h"
 
@@ -26,7 +26,7 @@ static void start(void)
                                   .counters = {.tasks = 5000}};
     report.seconds_force = report.seconds_acceleration = report.seconds_velocity =
         report.seconds_position = report.seconds_correction = NAN;
-    options = (struct simulate_options){.trace_end = UINT64_MAX};
+    options = (struct simulate_options){.runtime = {.trace_end = UINT64_MAX}};
     phases = (struct phases){.n = 1};
     summary = (struct summary){.options = &options,
                                .report = &report,
@@ -107,15 +107,15 @@ UNIT_TEST(path)
     takes(12, 7, 0);
     summary.critical_path = 8;
     check_says(busy);
-    options.trace = "a.trace";
+    options.runtime.trace = "a.trace";
     check_says(
         "Limited by the critical path: tasks that wait for one another took 80 % of the time.\n");
-    options.trace_first = 3;
+    options.runtime.trace_first = 3;
     check_says(busy);
-    options.trace_first = 0;
-    options.trace_end = 90;
+    options.runtime.trace_first = 0;
+    options.runtime.trace_end = 90;
     check_says(busy);
-    options.trace_end = UINT64_MAX;
+    options.runtime.trace_end = UINT64_MAX;
     phases.n = 2;
     check_says(busy);
     phases.n = 1;

@@ -9,7 +9,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
     struct cloth_error error = {0};
     struct model model = {0};
-    struct model_cloth *cloth = scene_build_array(1, sizeof *cloth, &error);
+    struct model_cloth *cloth = cloth_alloc(1, sizeof *cloth, &error);
     if (!cloth)
         return 0;
     model.cloths = cloth;

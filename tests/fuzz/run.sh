@@ -29,7 +29,7 @@ words() { # FILE...
 }
 sources() { # NAME
     case $1 in
-        obj) set -- cloth/mesh/obj.c cloth/mesh/detail/naming.c ;;
+        obj) set -- cloth/mesh/obj.c cloth/mesh/detail/obj_*.c ;;
         pattern | seams) set -- cloth/scene/pattern/*.c cloth/scene/build/seams_file.c ;;
         output | live) set -- cloth/output/cache.c cloth/output/files/*.c cloth/contact/*.c ;;
         scene) set -- cloth/scene/schema/*.c cloth/scene/yaml/*.c cloth/mannequin/measures.c cloth/garment/own/*.c ;;

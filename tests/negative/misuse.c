@@ -60,6 +60,8 @@ const duite_kernel EVERYWHERE = {
     .name = "everywhere", .body = copy_body, .access = {DUITE_R, DUITE_W}, .replicated = 1};
 const duite_kernel UNLISTED = {.name = "unlisted", .body = empty_body, .access = {DUITE_RW}};
 
+int rank, ranks;
+
 static void finalise(void)
 {
     MPI_Finalize();
@@ -70,10 +72,12 @@ void misuse_mpi_at(int level)
     int is, given;
 
     MPI_Initialized(&is);
-    if (is)
-        return;
-    MPI_Init_thread(NULL, NULL, level, &given);
-    atexit(finalise);
+    if (!is) {
+        MPI_Init_thread(NULL, NULL, level, &given);
+        atexit(finalise);
+    }
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
 }
 
 void misuse_mpi(void)
@@ -94,16 +98,22 @@ duite_options misuse_options(MPI_Comm comm)
     return options;
 }
 
-duite *misuse_start(MPI_Comm comm, unsigned threads)
+duite *misuse_start_with(const duite_options *options)
 {
-    duite_options options = misuse_options(comm);
     duite *rt = NULL;
 
     misuse_mpi();
-    options.threads = threads;
-    if (duite_start(&rt, &options))
+    if (duite_start(&rt, options))
         fprintf(stderr, "# start: %s\n", duite_message());
     return rt;
+}
+
+duite *misuse_start(MPI_Comm comm, unsigned threads)
+{
+    duite_options options = misuse_options(comm);
+
+    options.threads = threads;
+    return misuse_start_with(&options);
 }
 
 duite_object misuse_new(duite *rt, size_t count)
@@ -146,9 +156,8 @@ int misuse_all_told(const char *text)
 
 void tap_case(int right, const char *name)
 {
-    int rank, all;
+    int all;
 
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Allreduce(&right, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
     n_cases++;
     n_wrong += !all;
@@ -161,9 +170,6 @@ void tap_case(int right, const char *name)
 
 int tap_done(void)
 {
-    int rank;
-
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     if (rank == 0)
         printf("1..%d\n", n_cases);
     return n_wrong != 0;

@@ -11,14 +11,19 @@
  * EVERYWHERE is COPY, replicated; UNLISTED is not listed. */
 extern const duite_kernel SET, COPY, ADD, FAIL, MANY, EMPTY, EVERYWHERE, UNLISTED;
 
+/* This process in the world, and how many there are; misuse_mpi finds them. */
+extern int rank, ranks;
+
 /* Initialises MPI unless it is, to be finalised at exit; with MPI_THREAD_MULTIPLE, since tap_case
  * calls MPI while workers do, or with another level of thread support. */
 void misuse_mpi(void);
 void misuse_mpi_at(int level);
 /* Options with all kernels listed on a communicator. */
 duite_options misuse_options(MPI_Comm comm);
-/* Initialises MPI and starts a runtime with them and this many threads; NULL if it does not start.
+/* Initialises MPI and starts a runtime with such options; NULL if it does not start, which it says.
  */
+duite *misuse_start_with(const duite_options *options);
+/* The same with all kernels and this many threads. */
 duite *misuse_start(MPI_Comm comm, unsigned threads);
 /* An object of count integers (DUITE_I32). */
 duite_object misuse_new(duite *rt, size_t count);

@@ -7,10 +7,9 @@
 
 #include <stdint.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
-static int rank, ranks, answers_late;
+static int answers_late;
 
 /* The last rank has no core for a while when it is asked what it did. */
 int MPI_Isend(const void *buffer, int count, MPI_Datatype type, int to, int tag, MPI_Comm comm,
@@ -36,11 +35,9 @@ static const duite_kernel *const KERNELS[] = {&SET, &COPY, &ADD, &SLOW, NULL};
 static duite *begin(void)
 {
     duite_options options = misuse_options(MPI_COMM_WORLD);
-    duite *rt = NULL;
 
     options.kernels = KERNELS;
-    duite_start(&rt, &options);
-    return rt;
+    return misuse_start_with(&options);
 }
 
 static int build(duite *rt, void *context)
@@ -163,8 +160,6 @@ RANKS_CASE(blocking)
     char name[60];
 
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     for (int call = 0; call < N_CALLS; call++)
         differ((enum call)call, (enum call)call, NAMES[call]);
     for (int call = 0; call < N_CALLS; call++)

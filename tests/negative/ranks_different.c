@@ -7,8 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static int rank, ranks;
-
 static int start_with(const duite_kernel *const *kernels)
 {
     duite_options options = misuse_options(MPI_COMM_WORLD);
@@ -287,8 +285,6 @@ static void long_ago(int calls, const char *text, const char *name)
 RANKS_CASE(different)
 {
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     different_kernels();
     different_laws();
     different_options();

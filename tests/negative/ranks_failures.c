@@ -10,7 +10,6 @@
 
 enum { OBJECTS = 8 };
 
-static int rank, ranks;
 static duite_object a[OBJECTS];
 
 static int says(const char *sentence)
@@ -102,8 +101,6 @@ static void failing_contribution(duite *rt)
 RANKS_CASE(failures)
 {
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     duite *rt = misuse_start(MPI_COMM_WORLD, 2);
 
     tap_case(rt != NULL, "start");

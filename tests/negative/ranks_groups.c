@@ -4,9 +4,6 @@
 #include "tests/support/ranks.h"
 
 #include <stdint.h>
-#include <stdio.h>
-
-static int rank, ranks;
 
 /* A chain through all ranks of the group, and contributions of all; returns whether the answers are
  * right. */
@@ -76,8 +73,6 @@ RANKS_CASE(groups)
     int right = 1;
 
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     tap_case(live(MPI_COMM_WORLD, 2), "the world");
     tap_case(live(MPI_COMM_WORLD, 0), "threads by default");
     MPI_Comm_split(MPI_COMM_WORLD, 0, -rank, &reversed);

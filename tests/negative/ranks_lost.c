@@ -14,8 +14,6 @@
 
 enum { LONG = 1 << 22 }; /* elements of the last object: sent when its reader asks for it */
 
-static int rank, ranks;
-
 static void nap(double seconds)
 {
     struct timespec left = {(time_t)seconds, (long)(1e9 * (seconds - (double)(time_t)seconds))};
@@ -55,7 +53,6 @@ static duite *start(const char *how)
 {
     static const duite_kernel *const LIST[] = {&NAP, &ASK, &TREE, &SET, &COPY, &ADD, &MANY, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
-    duite *rt = NULL;
     options.kernels = LIST;
     options.lost_seconds = rank                     ? 1e9
                            : strcmp(how, "stopped") ? 0.5
@@ -65,9 +62,7 @@ static duite *start(const char *how)
         options.balance = duite_balancer_find("migrate");
     if (!strcmp(how, "subtree"))
         options.balance = duite_balancer_find("scatter");
-    if (duite_start(&rt, &options))
-        fprintf(stderr, "start: %s\n", duite_message());
-    return rt;
+    return misuse_start_with(&options);
 }
 
 /* The tasks of rank 1 never run. */
@@ -219,8 +214,6 @@ RANKS_CASE(lost)
     int process[3], own = getpid();
     duite_object object[3];
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     if (ranks != 3)
         return 2;
     MPI_Allgather(&own, 1, MPI_INT, process, 1, MPI_INT, MPI_COMM_WORLD);

@@ -11,8 +11,6 @@
 
 enum { OBJECTS = 6, COUNT = 40, PIECE = 64 };
 
-static int ranks;
-
 static int expected(int object)
 {
     return object == OBJECTS - 1 ? 7 : 4;
@@ -143,7 +141,6 @@ static int run(void)
 RANKS_CASE(memory)
 {
     misuse_mpi();
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     if (argc > 1)
         comm_piece_bytes = PIECE;
     starve("tasks", run);

@@ -6,11 +6,9 @@
 #include "tests/support/ranks.h"
 
 #include <stdint.h>
-#include <stdio.h>
 
 enum { COUNT = 20, ROUNDS = 4, SUM = 0 + 3 * ((1 + 3 * 1) + 3 * 1) };
 
-static int ranks;
 static const char *balance = "none";
 
 /* value[i] = 10 value[i] + the argument. */
@@ -167,7 +165,6 @@ RANKS_CASE(memory_graphs)
     if (argc > 1)
         balance = argv[1];
     misuse_mpi();
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     starve("graphs", run);
     return tap_done();
 }

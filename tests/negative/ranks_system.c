@@ -12,7 +12,6 @@
 #include <string.h>
 #include <sys/mman.h>
 
-static int rank, ranks;
 static int threads_left; /* until one is refused */
 static int full;         /* there is no room for a stack either */
 
@@ -114,8 +113,6 @@ static void wrong_mapping(int wrong, int code, const char *name)
 RANKS_CASE(system)
 {
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     no_room_for_a_thread();
     threads_refused();
     if (ranks > 1) { /* one rank needs no mapping */

@@ -71,7 +71,7 @@ static int chosen(const char *variable)
     return value && !strcmp(value, "1");
 }
 
-static long stride_of(int ranks)
+static long stride_of(void)
 {
     if (chosen("DUITE_LONG"))
         return 1;
@@ -79,9 +79,9 @@ static long stride_of(int ranks)
 }
 
 /* The allocations of one rank fail, one a run. */
-static void each_on(int victim, int ranks, int rank, const char *what, int (*run)(void))
+static void each_on(int victim, const char *what, int (*run)(void))
 {
-    const long stride = stride_of(ranks);
+    const long stride = stride_of();
     int wrong = 0, reached = 1;
     long k = 1 + victim % stride - stride;
     while (reached && k < MOST) {
@@ -106,9 +106,6 @@ static void each_on(int victim, int ranks, int rank, const char *what, int (*run
 
 void starve(const char *what, int (*run)(void))
 {
-    int rank, ranks;
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     for (int victim = 0; victim < ranks; victim++)
-        each_on(victim, ranks, rank, what, run);
+        each_on(victim, what, run);
 }

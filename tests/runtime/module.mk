@@ -36,7 +36,7 @@ LEAK_TESTS += tests/runtime/test_window tests/runtime/test_memo tests/runtime/te
     tests/runtime/test_makespan tests/runtime/test_check tests/runtime/test_busy tests/runtime/test_environment tests/runtime/test_nested_tasks \
     tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_sums \
     tests/runtime/test_lines
-TSAN_TESTS += tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_offload_names tests/runtime/test_settle \
+TSAN_TESTS += tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_comm tests/runtime/test_settle \
     tests/runtime/test_balance tests/runtime/test_monitor tests/runtime/test_passes tests/runtime/test_passes_random
 PLAIN_TESTS += tests/runtime/test_stack
 MEMO_FILES = tests/runtime/repeated.c tests/runtime/repeated.h tests/negative/misuse.c tests/negative/misuse.h
@@ -52,7 +52,7 @@ tests_runtime_test_check_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_nested_tasks_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_busy_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_stack_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_offload_names_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_comm_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_owner_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_late_LDADD = tests/support/libunit.a $(CHECK_LIBS)
 EXTRA_tests_runtime_test_late_DEPENDENCIES = libduite.la

@@ -2,11 +2,13 @@
 
 #include "tests/runtime/moving.h"
 
+#include "tests/runtime/delegation.h"
+
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
 
-int rank, ranks, wanted;
+int wanted;
 atomic_int ran;
 struct moving_seen seen;
 
@@ -77,16 +79,6 @@ static int third_body(const duite_call *call)
 const duite_kernel THIRD = {
     .name = "third", .body = third_body, .access = {DUITE_CW}, .args_size = sizeof(int32_t)};
 
-static int grow_body(const duite_call *call)
-{
-    const size_t n = duite_count(call, 0) + 1;
-    const int code = duite_resize(call, 0, n);
-
-    duite_out(call, 0, int32_t)[n - 1] = (int32_t)n;
-    return code;
-}
-const duite_kernel GROW = {.name = "grow", .body = grow_body, .access = {DUITE_RW}};
-
 static int countdown_body(const duite_call *call)
 {
     duite_out(call, 0, int32_t)[0]--;
@@ -101,16 +93,13 @@ static const duite_kernel *const LIST[] = {&STEP, &STAYS, &DOZE, &PARENT,    &TH
 duite *moving_start(const duite_balancer *balancer)
 {
     duite_options options = misuse_options(MPI_COMM_WORLD);
-    duite *rt = NULL;
 
     options.kernels = LIST;
     options.mapping = duite_mapping_find("cyclic");
     options.balance = balancer;
-    if (duite_start(&rt, &options))
-        printf("# %s\n", duite_message());
     wanted = STAY;
     atomic_store(&ran, 0);
-    return rt;
+    return misuse_start_with(&options);
 }
 
 /* ---- Graphs ---- */

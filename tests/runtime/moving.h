@@ -18,7 +18,6 @@ enum {
 
 enum { MOVING_BLOCKS = 64, MOVING_RANKS = 16 };
 
-extern int rank, ranks;
 extern int wanted;
 extern atomic_int ran; /* bodies of STEP and STAYS, here */
 
@@ -35,11 +34,11 @@ extern struct moving_seen {
 extern const duite_balancer TOLD;
 
 /* STEP and STAYS add to an object what they read and 1. DOZE takes 2 ms, PARENT forks it on its
- * second object. THIRD contributes 1 / its argument; GROW adds an element; COUNTDOWN, replicated,
+ * second object. THIRD contributes 1 / its argument; COUNTDOWN, replicated,
  * subtracts 1. */
-extern const duite_kernel STEP, STAYS, DOZE, PARENT, THIRD, GROW, COUNTDOWN;
+extern const duite_kernel STEP, STAYS, DOZE, PARENT, THIRD, COUNTDOWN;
 
-/* Starts with all of these and SET and FAIL, objects dealt out one after the other. */
+/* Starts with all of these, GROW, SET and FAIL, objects dealt out one after the other. */
 duite *moving_start(const duite_balancer *balancer);
 
 /* A graph of `tasks` forks of a kernel on n objects. */

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-static int rank, ranks, counts;         /* whether MPI's calls are counted: in this case */
+static int counts;                      /* whether MPI's calls are counted: in this case */
 static _Atomic int control, values;     /* packets that this rank sent */
 static _Atomic long collectives, bytes; /* calls, and bytes of one rank in them */
 
@@ -108,8 +108,6 @@ RANKS_CASE(control)
 
     counts = 1;
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     options = misuse_options(MPI_COMM_WORLD);
     options.threads = 1;
     options.kernels = (const duite_kernel *const[]){&SET, &SLOW, NULL};

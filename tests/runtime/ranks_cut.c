@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-static int ranks, cuts; /* whether receives are too short: in this case */
+static int cuts; /* whether receives are too short: in this case */
 
 int MPI_Irecv(void *buffer, int count, MPI_Datatype type, int from, int tag, MPI_Comm comm,
               MPI_Request *request)
@@ -25,7 +25,6 @@ static int build(duite *rt, void *context)
 RANKS_CASE(cut)
 {
     misuse_mpi();
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     duite *rt = misuse_start(MPI_COMM_WORLD, 2);
     duite_object pair[] = {misuse_new(rt, 1), misuse_new(rt, 1)};
     duite_graph graph;

@@ -6,30 +6,12 @@
 #include "tests/support/ranks.h"
 
 #include <stdatomic.h>
-#include <stdio.h>
 #include <string.h>
 #include <time.h>
 
-enum { TASKS = 40, MOST = 50 };
+enum { MOST = 50 };
 
 static atomic_int ran[4]; /* on this rank: plain, pinned, stays, files */
-static int rank;
-
-/* Adds what it reads and its argument to 1: a sum over what all three kinds of parameters hold. */
-static int mix_body(const duite_call *call)
-{
-    const int32_t add = *(const int32_t *)call->args;
-
-    atomic_fetch_add(&ran[0], 1);
-    duite_out(call, 1, int32_t)[0] += duite_in(call, 0, int32_t)[0] + add;
-    duite_out(call, 2, int32_t)[0] = add;
-    duite_out(call, 3, int32_t)[0] += add;
-    return 0;
-}
-static const duite_kernel MIX = {.name = "mix",
-                                 .body = mix_body,
-                                 .access = {DUITE_R, DUITE_RW, DUITE_W, DUITE_CW},
-                                 .args_size = sizeof(int32_t)};
 
 static int count_body(const duite_call *call)
 {
@@ -49,18 +31,6 @@ static const duite_kernel FILES = {.name = "files",
                                    .access = {DUITE_RW},
                                    .args_size = sizeof(int32_t),
                                    .side_effects = 1};
-
-/* Of an object that changes its size: 1 more than it had, each as large as their number. */
-static int grow_body(const duite_call *call)
-{
-    const size_t n = duite_count(call, 0) + 1;
-    const int code = duite_resize(call, 0, n);
-
-    for (size_t i = 0; !code && i < n; i++)
-        duite_out(call, 0, int32_t)[i] = (int32_t)n;
-    return code;
-}
-static const duite_kernel GROW = {.name = "grow", .body = grow_body, .access = {DUITE_RW}};
 
 static int shrink_body(const duite_call *call)
 {
@@ -130,36 +100,16 @@ static duite *start(const char *balance)
     return delegation_start(LIST, balance);
 }
 
-/* All values are those of fork order. */
+static void mix_and_parent(duite *rt, int32_t number, const duite_object object[4])
+{
+    duite_fork(rt, &MIX, &number, 4, object);
+    DUITE_FORK(rt, &PARENT, NULL, object[1]);
+}
+
 static void values(const char *balance)
 {
     duite *rt = start(balance);
-    duite_object in = misuse_new(rt, 1), object[TASKS], last = delegation_beside(rt, in),
-                 sum = delegation_beside(rt, in);
-    int right = 1;
-
-    DUITE_FORK(rt, &SET, &(int32_t){7}, in);
-    for (int32_t i = 0; i < TASKS; i++)
-        object[i] = delegation_beside(rt, in);
-    for (int32_t i = 0; i < TASKS; i++) {
-        DUITE_FORK(rt, &MIX, &i, in, object[i], last, sum);
-        DUITE_FORK(rt, &PARENT, NULL, object[i]);
-    }
-    for (int32_t i = 0; i < TASKS; i++)
-        right &= delegation_value(rt, object[i]) == 7 + i + 3;
-    delegation_say(balance, "every task has its value", right);
-    delegation_say(balance, "the last write is left", delegation_value(rt, last) == TASKS - 1);
-    delegation_say(balance, "contributions come home",
-                   delegation_value(rt, sum) == TASKS * (TASKS - 1) / 2);
-    const int moves = !strcmp(balance, "scatter") && duite_ranks(rt) > 1;
-
-    delegation_say(balance, "tasks ran elsewhere if they could",
-                   (delegation_count(rt) > 0) == moves);
-    for (int i = 0; i < TASKS; i++)
-        duite_free(rt, object[i]);
-    duite_free(rt, in);
-    duite_free(rt, last);
-    duite_free(rt, sum);
+    delegation_values(rt, balance, &(struct delegation_values){mix_and_parent, 7 + 3, 1, 1, NULL});
     delegation_say(balance, "stop", duite_stop(&rt) == DUITE_OK);
 }
 
@@ -304,7 +254,6 @@ static void different(void)
 RANKS_CASE(delegate)
 {
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     values("none");
     values("scatter");
     pinned();

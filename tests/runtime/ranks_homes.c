@@ -11,7 +11,7 @@ enum { MOST = 16 };
 static duite *rt;
 static duite_graph graph;
 static duite_object a[MOST], freed;
-static int made, ranks;
+static int made;
 
 static int build_nothing(duite *runtime, void *context)
 {
@@ -100,7 +100,6 @@ RANKS_CASE(homes)
     misuse_mpi();
     options.mapping = duite_mapping_find("cyclic");
     tap_case(duite_start(&rt, &options) == DUITE_OK, "starts");
-    ranks = duite_ranks(rt);
     while (made < ranks)
         a[made++] = misuse_new(rt, 1);
     duite_graph_new(rt, build_nothing, NULL, &graph);

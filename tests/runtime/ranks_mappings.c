@@ -9,7 +9,6 @@
 
 enum { OBJECTS = 8, ALL = -1 };
 
-static int rank;
 static int where;                              /* the rank that is wrong, or ALL */
 static enum { FAILS, NO_RANK, DIFFERS } wrong; /* what is wrong there */
 
@@ -85,7 +84,6 @@ RANKS_CASE(mappings)
     static const char *const other = "the mapping gave objects other homes on rank ";
 
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     wrong = FAILS;
     where = ALL;
     check(by_get, DUITE_E_SYSTEM, "mapping wrong failed with code ", "map fails on all ranks");

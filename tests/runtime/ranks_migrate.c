@@ -247,8 +247,6 @@ static void balanced(void)
 RANKS_CASE(migrate)
 {
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     shown();
     memory();
     owners();

@@ -1,6 +1,7 @@
 /* Objects that move between replays have the values, contributions and failures that they would
  * have if they stayed. */
 
+#include "tests/runtime/delegation.h"
 #include "tests/runtime/moving.h"
 #include "tests/support/ranks.h"
 
@@ -82,8 +83,6 @@ static void flags(void)
 RANKS_CASE(migrate_values)
 {
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     contributions();
     values();
     flags();

@@ -8,8 +8,6 @@
 
 enum { OBJECTS = 4, TIMES = 200, COUNT = 100 };
 
-static int rank, ranks;
-
 /* Values go round: this rank's number to the next one, and the sum of all. */
 static int own_mpi(int time)
 {
@@ -76,8 +74,6 @@ static int fork_refused(void)
 RANKS_CASE(mpi)
 {
     misuse_mpi_at(MPI_THREAD_SERIALIZED);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     tap_case(run(8, 1), "when no task is left");
     tap_case(run(8, 0), "while tasks and messages are on their way");
     tap_case(run(2, 1), "between many heartbeats");

@@ -49,6 +49,18 @@ static int scale(const duite_call *call)
     return 0;
 }
 
+static int give(const duite_call *call)
+{
+    duite_out(call, 0, double)[0] += *(const double *)call->args;
+    return 0;
+}
+
+static int keep(const duite_call *call)
+{
+    duite_out(call, 1, double)[0] = duite_in(call, 0, double)[0];
+    return 0;
+}
+
 static const duite_kernel START = {
     .name = "start", .body = start, .access = {DUITE_W}, .args_size = sizeof(int)};
 static const duite_kernel MEAN = {
@@ -56,6 +68,9 @@ static const duite_kernel MEAN = {
 static const duite_kernel JUDGE = {
     .name = "judge", .body = judge, .access = {DUITE_R, DUITE_RW, DUITE_RW}, .replicated = 1};
 static const duite_kernel SCALE = {.name = "scale", .body = scale, .access = {DUITE_R, DUITE_RW}};
+static const duite_kernel GIVE = {
+    .name = "give", .body = give, .access = {DUITE_CW}, .args_size = sizeof(double)};
+static const duite_kernel KEEP = {.name = "keep", .body = keep, .access = {DUITE_R, DUITE_W}};
 
 struct rod {
     duite_object x[2][BLOCKS], sum, scale, flag;
@@ -216,23 +231,45 @@ static int agrees(duite *rt, struct rod *rod, duite_graph graph)
     return same && sums[0][0] == sums[1][0] && sums[0][1] == sums[1][1] && sums[0][1] > 0;
 }
 
+/* Seven leaves of the first rank, ((0 1) (2 3)) ((4 5) 6): it folds them alone, for the last rank.
+ * From the left each of the two small ones would be lost beside 1. */
+static int seven_leaves(duite *rt, void *context)
+{
+    static const double leaf[] = {1, 0, 0, 0, 0x1p-53, 0, 0x1p-53};
+    struct rod *rod = context;
+
+    duite_set(rt, rod->sum, NULL);
+    for (int i = 0; i < 7; i++)
+        duite_fork_at(rt, 0, &GIVE, &leaf[i], 1, &rod->sum);
+    return duite_fork_at(rt, duite_ranks(rt) - 1, &KEEP, NULL, 2,
+                         (duite_object[]){rod->sum, rod->scale});
+}
+
+static int folds(duite *rt, struct rod *rod)
+{
+    duite_graph graph;
+    double sum = 0;
+    int fine = !duite_graph_new(rt, seven_leaves, rod, &graph) && !duite_replay(rt, graph, 2) &&
+               !duite_get(rt, rod->scale, &sum);
+
+    return !duite_graph_free(rt, graph) && fine && sum == 1 + 0x1p-52;
+}
+
 RANKS_CASE(plans)
 {
-    const duite_kernel *const list[] = {&START, &MEAN, &JUDGE, &SCALE, NULL};
+    const duite_kernel *const list[] = {&START, &MEAN, &JUDGE, &SCALE, &GIVE, &KEEP, NULL};
     struct rod rod;
     duite_graph graph;
-    duite *rt;
-
-    misuse_mpi();
     duite_options options = misuse_options(MPI_COMM_WORLD);
-
     options.kernels = list;
-    if (duite_start(&rt, &options))
+    duite *rt = misuse_start_with(&options);
+    if (!rt)
         return 1;
     make(rt, &rod);
     tap_case(!duite_graph_new(rt, rounds, &rod, &graph), "record");
     count(rt, &rod, graph);
     tap_case(agrees(rt, &rod, graph), "replays leave what forks leave");
+    tap_case(folds(rt, &rod), "leaves of one rank fold from the right for another one");
     duite_graph_free(rt, graph);
     unmake(rt, &rod);
     tap_case(duite_stop(&rt) == DUITE_OK, "stop");

@@ -6,8 +6,6 @@
 
 enum { OBJECTS = 20, LARGE = 1 << 18, FORKS = 100000 };
 
-static int rank;
-
 static int touch_body(const duite_call *call)
 {
     duite_out(call, 1, int32_t)[0] += duite_in(call, 0, int32_t)[0] + *(const int32_t *)call->args;
@@ -153,13 +151,10 @@ RANKS_CASE(prune)
 {
     const duite_kernel *const list[] = {&SET, &MANY, &TOUCH, &CONTRIBUTE, &SAME, &COPY, NULL};
     duite_object large[OBJECTS], small[6];
-    duite *rt;
-
-    misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     duite_options options = misuse_options(MPI_COMM_WORLD);
     options.kernels = list;
-    if (duite_start(&rt, &options))
+    duite *rt = misuse_start_with(&options);
+    if (!rt)
         return 1;
     for (int i = 0; i < OBJECTS; i++) {
         large[i] = misuse_new(rt, LARGE);

@@ -45,8 +45,8 @@ static void without_messages(duite *rt, int n_ranks)
     DUITE_FORK(rt, &NEXT, NULL, a, b);
     DUITE_FORK(rt, &NEXT, NULL, b, c);
     DUITE_FORK(rt, &NEXT, NULL, c, b);
-    for (int rank = 0; rank < n_ranks; rank++)
-        duite_fork_at(rt, rank, &READ, &(int32_t){8}, 1, &b);
+    for (int at = 0; at < n_ranks; at++)
+        duite_fork_at(rt, at, &READ, &(int32_t){8}, 1, &b);
     tap_case(duite_wait(rt) == DUITE_OK, "each rank reads what it computed itself");
     tap_case(messages(rt) - before == (uint64_t)n_ranks - 1, "only the input was sent");
     tap_case(atomic_load(&ran) == 3, "each task ran once on each rank");
@@ -67,13 +67,10 @@ static void without_messages(duite *rt, int n_ranks)
 RANKS_CASE(replicated)
 {
     const duite_kernel *const list[] = {&NEXT, &READ, &SET, NULL};
-    duite *rt;
-
-    misuse_mpi();
     duite_options options = misuse_options(MPI_COMM_WORLD);
-
     options.kernels = list;
-    if (duite_start(&rt, &options))
+    duite *rt = misuse_start_with(&options);
+    if (!rt)
         return 1;
     without_messages(rt, duite_ranks(rt));
     tap_case(duite_stop(&rt) == DUITE_OK, "stop");

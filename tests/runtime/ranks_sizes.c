@@ -5,7 +5,6 @@
 #include "tests/support/ranks.h"
 
 #include <stdint.h>
-#include <stdio.h>
 
 enum { MOST = 1000000, ROUNDS = 12 };
 
@@ -61,7 +60,6 @@ static size_t size_of(int round)
 
 static int go_round(duite *rt, duite_object list, duite_object numbers)
 {
-    const int ranks = duite_ranks(rt);
     static int64_t values[MOST];
     int right = 1;
 

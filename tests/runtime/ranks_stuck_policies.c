@@ -14,7 +14,6 @@ enum { TASKS = 20, MOST_WAITS = 120000 };
 
 #define SECONDS 0.2
 
-static int rank;
 static const char *kind;            /* of the policy that hangs */
 static _Atomic(const char *) hangs; /* the function that does on this rank; NULL: none any more */
 static _Atomic int entered;         /* that function was called */
@@ -288,7 +287,6 @@ static void one_hangs(const char *what, const char *function, int where,
 RANKS_CASE(stuck_policies)
 {
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     static const char *const SCHEDULES[] = {"place", "serve", "victim", "chain", "start", "locate"};
     for (int where = 0; where < 2; where++)
         one_hangs("mapping", "map", where, &(duite_options){.mapping = &MAPPING});

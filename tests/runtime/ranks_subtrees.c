@@ -5,30 +5,11 @@
 #include "tests/support/ranks.h"
 
 #include <stdatomic.h>
-#include <stdio.h>
 #include <string.h>
 
-enum { TASKS = 40, ROUNDS = 16 };
+enum { ROUNDS = 16 };
 
-static atomic_int wholes, mixes; /* on this rank */
-static int rank;
-
-/* Adds what it reads and its argument: a sum over what all kinds of parameters hold. */
-static int mix_body(const duite_call *call)
-{
-    const int32_t add = *(const int32_t *)call->args;
-    atomic_fetch_add(&mixes, 1);
-    for (size_t i = 0; i < duite_count(call, 0); i++) {
-        duite_out(call, 1, int32_t)[i] += duite_in(call, 0, int32_t)[i] + add;
-        duite_out(call, 2, int32_t)[i] = add;
-        duite_out(call, 3, int32_t)[i] += add;
-    }
-    return 0;
-}
-static const duite_kernel MIX = {.name = "mix",
-                                 .body = mix_body,
-                                 .access = {DUITE_R, DUITE_RW, DUITE_W, DUITE_CW},
-                                 .args_size = sizeof(int32_t)};
+static atomic_int wholes; /* on this rank */
 
 /* All that it may touch its children do. */
 static int whole_body(const duite_call *call)
@@ -99,17 +80,6 @@ static int fall_body(const duite_call *call)
 }
 static const duite_kernel FALL = {.name = "fall", .body = fall_body, .access = {DUITE_RWP}};
 
-/* One element more than there were, each as large as their number. */
-static int grow_body(const duite_call *call)
-{
-    const size_t n = duite_count(call, 0) + 1;
-    const int code = duite_resize(call, 0, n);
-    for (size_t i = 0; !code && i < n; i++)
-        duite_out(call, 0, int32_t)[i] = (int32_t)n;
-    return code;
-}
-static const duite_kernel GROW = {.name = "grow", .body = grow_body, .access = {DUITE_RW}};
-
 static int grows_body(const duite_call *call)
 {
     for (int i = 0; i < 3; i++)
@@ -153,40 +123,18 @@ static const duite_kernel *const LIST[] = {&MIX,  &WHOLE, &ONE_MORE, &TORN, &DRO
 static duite *start(const char *balance)
 {
     atomic_store(&wholes, 0);
-    atomic_store(&mixes, 0);
     return delegation_start(LIST, balance);
 }
 
-/* All values are those of fork order. */
+static void whole(duite *rt, int32_t number, const duite_object object[4])
+{
+    duite_fork(rt, &WHOLE, &number, 4, object);
+}
+
 static void values(const char *balance)
 {
     duite *rt = start(balance);
-    duite_object in = misuse_new(rt, 1), object[TASKS], last = delegation_beside(rt, in),
-                 sum = delegation_beside(rt, in);
-    const int here = duite_home(rt, in) == rank;
-    const int moves = !strcmp(balance, "scatter") && duite_ranks(rt) > 1;
-    int right = 1;
-    duite_set(rt, in, &(int32_t){7});
-    for (int32_t i = 0; i < TASKS; i++)
-        object[i] = delegation_beside(rt, in);
-    for (int32_t i = 0; i < TASKS; i++)
-        DUITE_FORK(rt, &WHOLE, &i, in, object[i], last, sum);
-    for (int32_t i = 0; i < TASKS; i++)
-        right &= delegation_value(rt, object[i]) == 3 * 7 + 6 * i;
-    delegation_say(balance, "every subtree has its value", right);
-    delegation_say(balance, "the last write is left",
-                   delegation_value(rt, last) == 3 * (TASKS - 1));
-    delegation_say(balance, "contributions come home",
-                   delegation_value(rt, sum) == 3 * TASKS * (TASKS - 1));
-    delegation_say(balance, "tasks ran elsewhere if they could",
-                   (delegation_count(rt) > 0) == moves);
-    delegation_say(balance, "whole", here || (atomic_load(&wholes) > 0) == moves);
-    delegation_say(balance, "and their children", here || (atomic_load(&mixes) > 0) == moves);
-    for (int i = 0; i < TASKS; i++)
-        duite_free(rt, object[i]);
-    duite_free(rt, in);
-    duite_free(rt, last);
-    duite_free(rt, sum);
+    delegation_values(rt, balance, &(struct delegation_values){whole, 3 * 7, 6, 3, &wholes});
     delegation_say(balance, "stop", duite_stop(&rt) == DUITE_OK);
 }
 
@@ -306,7 +254,6 @@ static void memory(void)
 RANKS_CASE(subtrees)
 {
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     values("none");
     values("scatter");
     onward();

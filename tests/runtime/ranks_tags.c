@@ -10,7 +10,7 @@
 
 enum { FEW_TAGS = COMM_CHANNELS + 8 };
 
-static int rank, ranks, tags; /* 0: MPI's own */
+static int tags; /* 0: MPI's own */
 
 int MPI_Comm_get_attr(MPI_Comm comm, int key, void *value, int *known)
 {
@@ -59,11 +59,8 @@ static duite *start(struct pair *pair, int n)
 {
     static const duite_kernel *const LIST[] = {&SET, &COPY, &SLOW, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
-    duite *rt = NULL;
     options.kernels = LIST;
-    options.threads = 2;
-    if (duite_start(&rt, &options))
-        return NULL;
+    duite *rt = misuse_start_with(&options);
     for (int i = 0; i < n; i++)
         pair[i] = (struct pair){misuse_new(rt, 1), misuse_new(rt, 1), i == 0};
     return rt;
@@ -117,8 +114,6 @@ static int too_many(void)
 RANKS_CASE(tags)
 {
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     for (tags = FEW_TAGS; tags < FEW_TAGS + 30; tags += 9)
         tap_case(many(), "tags are handed out again");
     tags = FEW_TAGS;

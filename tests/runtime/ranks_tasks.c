@@ -9,8 +9,6 @@
 
 enum { CHAINS = 12, LENGTH = 6, WIDTH = 100 };
 
-static int rank, ranks;
-
 /* ---- What is shown ---- */
 
 static struct {
@@ -67,12 +65,12 @@ static duite *start(const duite_mapping *mapping)
 {
     static const duite_kernel *const KERNELS[] = {&SET, &ADD_UP, &LINK, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
-    duite *rt = NULL;
 
     options.kernels = KERNELS;
     options.mapping = mapping;
     options.threads = 1;
-    tap_case(duite_start(&rt, &options) == DUITE_OK, mapping->name);
+    duite *rt = misuse_start_with(&options);
+    tap_case(rt != NULL, mapping->name);
     return rt;
 }
 
@@ -220,8 +218,6 @@ static void chains(void)
 RANKS_CASE(tasks)
 {
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     shown(5, 1, "with all costs it is asked once");
     shown(0, 2, "else twice");
     refused(1, 0,

@@ -3,7 +3,6 @@
 #include "tests/negative/misuse.h"
 #include "tests/support/ranks.h"
 
-#include <stdio.h>
 #include <string.h>
 
 enum { READS = 37, WRITE = READS, SUM, LARGEST, WIDTH, ROUNDS = 7 };
@@ -187,16 +186,12 @@ static void full_run(duite *rt)
 RANKS_CASE(wide)
 {
     const duite_kernel *const list[] = {&WIDE, &PLAIN, &FULL, &LAST, &CLEAR, &ADD_ONE, NULL};
-    duite *rt;
-
-    misuse_mpi();
     duite_options options = misuse_options(MPI_COMM_WORLD);
     options.kernels = list;
     options.trace = argc > 1 ? argv[1] : NULL;
-    if (duite_start(&rt, &options)) {
-        fprintf(stderr, "# start: %s\n", duite_message());
+    duite *rt = misuse_start_with(&options);
+    if (!rt)
         return 1;
-    }
     wide_run(rt, 0);
     wide_run(rt, 1);
     full_run(rt);

@@ -130,8 +130,8 @@ const char *rounds_nodes(const struct plan_round *round)
         const struct plan_round_node *node = &round->node[n];
         put(&text, "%s%s", gap(&text), name[node->kind]);
         if (node->kind == PLAN_SEND || node->kind == PLAN_RECEIVE)
-            put(&text, " %s %d in %u", node->kind == PLAN_SEND ? "to" : "from",
-                round->channel[node->channel].peer, round->channel[node->channel].phase);
+            put(&text, " %s %d in %u", node->kind == PLAN_SEND ? "to" : "from", node->peer,
+                node->phase);
         for (size_t i = 0; i < node->n_uses; i++) {
             const struct plan_node_use *use = &round->use[node->first_use + i];
             put(&text, "%s%c%u", i ? " " : "(", use->writes ? use->reads ? 'u' : 'w' : 'r',

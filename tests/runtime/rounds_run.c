@@ -92,9 +92,8 @@ static struct queue *queue_of(struct run *run, int from, int to, uint32_t phase)
 
 static struct queue *queue_of_node(struct run *run, int at, const struct plan_round_node *node)
 {
-    const struct plan_round_channel *channel = &run->rank[at].part.channel[node->channel];
-    return channel->sends ? queue_of(run, at, channel->peer, channel->phase)
-                          : queue_of(run, channel->peer, at, channel->phase);
+    return node->kind == PLAN_SEND ? queue_of(run, at, node->peer, node->phase)
+                                   : queue_of(run, node->peer, at, node->phase);
 }
 
 static void run_message(struct run *run, int at, const struct plan_round_node *node)

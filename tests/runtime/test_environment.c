@@ -92,7 +92,7 @@ static void forget_limits(void)
 
 /* Of so many cores that the process may use, with these variables (ended by NULL, each with its
  * value) and these cgroups. */
-static struct work_share share_of(unsigned cores, unsigned ranks, unsigned asked,
+static struct work_share share_of(unsigned cores, unsigned n_ranks, unsigned asked,
                                   const char *const *variables, const char *folder)
 {
     struct work_share share;
@@ -101,22 +101,28 @@ static struct work_share share_of(unsigned cores, unsigned ranks, unsigned asked
     for (; *variables; variables += 2)
         setenv(variables[0], variables[1], 1);
     snprintf(cgroups, sizeof cgroups, "%s/cgroup", folder);
-    work_share_find(
-        &(struct work_surroundings){
-            .cores = cores, .ranks = ranks, .asked = asked, .cgroups = cgroups, .mounted = folder},
-        &share);
+    work_share_find(&(struct work_surroundings){.cores = cores,
+                                                .ranks = n_ranks,
+                                                .asked = asked,
+                                                .cgroups = cgroups,
+                                                .mounted = folder},
+                    &share);
     forget_limits();
     return share;
 }
 
-static void says(const struct work_share *share, unsigned cores, unsigned workers, bool limited,
-                 const char *from)
+/* A share that does not come from the cores that the process may use is limited. */
+static void says(const struct work_share *share, unsigned cores, unsigned workers, const char *from)
 {
+    const bool limited = strncmp(from, "affinity", strlen("affinity")) != 0;
     ck_assert_msg(share->cores == cores && share->workers == workers && share->limited == limited &&
                       !strcmp(share->from, from),
                   "%u cores, %u workers, %d, %s; not %u, %u, %d, %s", share->cores, share->workers,
                   share->limited, share->from, cores, workers, limited, from);
 }
+
+#define TASK         "SLURM_CPUS_PER_TASK"
+#define BY(variable) "affinity, 8 cores; workers by " variable
 
 UNIT_TEST(the_least_of_all_is_the_share)
 {
@@ -124,58 +130,29 @@ UNIT_TEST(the_least_of_all_is_the_share)
         unsigned ranks, asked;
         const char *variables[7];
         unsigned cores, workers;
-        bool limited;
         const char *from;
-    } rows[] = {{1, 0, {NULL}, 8, 8, false, "affinity, 8 cores"},
-                {3, 0, {NULL}, 2, 2, false, "affinity, 8 cores for 3 ranks"},
-                {9, 0, {NULL}, 1, 1, false, "affinity, 8 cores for 9 ranks"},
-                {1, 0, {"SLURM_CPUS_PER_TASK", "3"}, 3, 3, true, "SLURM_CPUS_PER_TASK=3"},
-                {2, 0, {"SLURM_CPUS_PER_TASK", "3"}, 3, 3, true, "SLURM_CPUS_PER_TASK=3"},
-                {4, 0, {"SLURM_CPUS_PER_TASK", "3"}, 2, 2, false, "affinity, 8 cores for 4 ranks"},
-                {1, 0, {"SLURM_CPUS_PER_TASK", "9"}, 8, 8, false, "affinity, 8 cores"},
-                {1, 0, {"SLURM_CPUS_ON_NODE", "1"}, 1, 1, true, "SLURM_CPUS_ON_NODE=1"},
-                {2, 0, {"SLURM_CPUS_ON_NODE", "6"}, 3, 3, true, "SLURM_CPUS_ON_NODE=6 for 2 ranks"},
-                {1,
-                 0,
-                 {"SLURM_CPUS_ON_NODE", "6", "SLURM_CPUS_PER_TASK", "2"},
-                 2,
-                 2,
-                 true,
-                 "SLURM_CPUS_PER_TASK=2"},
-                {1, 4, {"SLURM_CPUS_PER_TASK", "2"}, 2, 4, true, "SLURM_CPUS_PER_TASK=2"},
-                {1,
-                 0,
-                 {"OMP_NUM_THREADS", "2"},
-                 8,
-                 2,
-                 false,
-                 "affinity, 8 cores; workers by OMP_NUM_THREADS=2"},
-                {1,
-                 0,
-                 {"OMP_NUM_THREADS", "4,2", "OMP_THREAD_LIMIT", "3"},
-                 8,
-                 3,
-                 false,
-                 "affinity, 8 cores; workers by OMP_THREAD_LIMIT=3"},
-                {1, 4, {"OMP_NUM_THREADS", "2"}, 8, 4, false, "affinity, 8 cores"},
-                {1,
-                 0,
-                 {"OMP_NUM_THREADS", "many", "SLURM_CPUS_PER_TASK", "0"},
-                 8,
-                 8,
-                 false,
-                 "affinity, 8 cores"},
-                {1,
-                 0,
-                 {"OMP_NUM_THREADS", "-2", "SLURM_CPUS_PER_TASK", "2x"},
-                 8,
-                 8,
-                 false,
-                 "affinity, 8 cores"}};
+    } rows[] = {
+        {1, 0, {NULL}, 8, 8, "affinity, 8 cores"},
+        {3, 0, {NULL}, 2, 2, "affinity, 8 cores for 3 ranks"},
+        {9, 0, {NULL}, 1, 1, "affinity, 8 cores for 9 ranks"},
+        {1, 0, {TASK, "3"}, 3, 3, "SLURM_CPUS_PER_TASK=3"},
+        {2, 0, {TASK, "3"}, 3, 3, "SLURM_CPUS_PER_TASK=3"},
+        {4, 0, {TASK, "3"}, 2, 2, "affinity, 8 cores for 4 ranks"},
+        {1, 0, {TASK, "9"}, 8, 8, "affinity, 8 cores"},
+        {1, 0, {"SLURM_CPUS_ON_NODE", "1"}, 1, 1, "SLURM_CPUS_ON_NODE=1"},
+        {2, 0, {"SLURM_CPUS_ON_NODE", "6"}, 3, 3, "SLURM_CPUS_ON_NODE=6 for 2 ranks"},
+        {1, 0, {"SLURM_CPUS_ON_NODE", "6", TASK, "2"}, 2, 2, "SLURM_CPUS_PER_TASK=2"},
+        {1, 4, {TASK, "2"}, 2, 4, "SLURM_CPUS_PER_TASK=2"},
+        {1, 0, {"OMP_NUM_THREADS", "2"}, 8, 2, BY("OMP_NUM_THREADS=2")},
+        {1, 0, {"OMP_NUM_THREADS", "4,2", "OMP_THREAD_LIMIT", "3"}, 8, 3, BY("OMP_THREAD_LIMIT=3")},
+        {1, 4, {"OMP_NUM_THREADS", "2"}, 8, 4, "affinity, 8 cores"},
+        {1, 0, {"OMP_NUM_THREADS", "many", TASK, "0"}, 8, 8, "affinity, 8 cores"},
+        {1, 0, {"OMP_NUM_THREADS", "-2", TASK, "2x"}, 8, 8, "affinity, 8 cores"},
+    };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         const struct work_share share =
             share_of(8, rows[i].ranks, rows[i].asked, rows[i].variables, "/nowhere");
-        says(&share, rows[i].cores, rows[i].workers, rows[i].limited, rows[i].from);
+        says(&share, rows[i].cores, rows[i].workers, rows[i].from);
     }
 }
 
@@ -228,11 +205,11 @@ UNIT_TEST(quotas_of_cgroups)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         put(folder, "cgroup", rows[i].cgroups);
         const struct work_share share = share_of(8, rows[i].ranks, 0, none, folder);
-        says(&share, rows[i].cores, rows[i].cores, rows[i].cores < 8, rows[i].from);
+        says(&share, rows[i].cores, rows[i].cores, rows[i].from);
     }
     put(folder, "cgroup", rows[0].cgroups);
     const struct work_share share = share_of(8, 1, 0, task, folder);
-    says(&share, 1, 1, true, "SLURM_CPUS_PER_TASK=1");
+    says(&share, 1, 1, "SLURM_CPUS_PER_TASK=1");
     snprintf(command, sizeof command, "rm -r %s", folder);
     ck_assert_int_eq(system(command), 0);
 }

@@ -216,20 +216,7 @@ struct sums {
     duite_object x, sum;
 };
 
-/* sum = 0; x = 2 x + 1 and a contribution, LEAVES times. */
-static int sums_build(duite *rt, void *context)
-{
-    const struct sums *sums = context;
-
-    duite_set(rt, sums->sum, NULL);
-    for (int i = 0; i < LEAVES; i++) {
-        DUITE_FORK(rt, &TWICE, NULL, sums->x);
-        DUITE_FORK(rt, &GIVE, NULL, sums->x, sums->sum);
-    }
-    return 0;
-}
-
-/* The same without the first line: contributions of one round and of the next are one sum. */
+/* x = 2 x + 1 and a contribution, LEAVES times: those of one round and of the next are one sum. */
 static int open_sums_build(duite *rt, void *context)
 {
     const struct sums *sums = context;
@@ -239,6 +226,13 @@ static int open_sums_build(duite *rt, void *context)
         DUITE_FORK(rt, &GIVE, NULL, sums->x, sums->sum);
     }
     return 0;
+}
+
+/* sum = 0 before. */
+static int sums_build(duite *rt, void *context)
+{
+    duite_set(rt, ((const struct sums *)context)->sum, NULL);
+    return open_sums_build(rt, context);
 }
 
 /* Replays, and forks the same by hand; both leave the same bits. */
@@ -297,6 +291,15 @@ static int loop_build(duite *rt, void *context)
     return 0;
 }
 
+static void loop_end(duite *rt, duite_graph graph, const struct loop *loop)
+{
+    ck_assert_int_eq(duite_graph_free(rt, graph), 0);
+    ck_assert_int_eq(duite_free(rt, loop->flag), 0);
+    ck_assert_int_eq(duite_free(rt, loop->x), 0);
+    ck_assert_int_eq(duite_free(rt, loop->y), 0);
+    stop(rt);
+}
+
 static uint64_t doubled(unsigned times)
 {
     uint64_t x = 0;
@@ -323,11 +326,7 @@ static void check_loop(unsigned threads, int32_t from, uint64_t max, uint64_t ex
         ck_assert_uint_eq(value_of(rt, loop.x), doubled(again * (unsigned)expected));
         ck_assert_uint_eq(value_of(rt, loop.y), doubled(3 * again * (unsigned)expected));
     }
-    ck_assert_int_eq(duite_graph_free(rt, graph), 0);
-    ck_assert_int_eq(duite_free(rt, loop.flag), 0);
-    ck_assert_int_eq(duite_free(rt, loop.x), 0);
-    ck_assert_int_eq(duite_free(rt, loop.y), 0);
-    stop(rt);
+    loop_end(rt, graph, &loop);
 }
 
 UNIT_TEST(while_a_flag_holds)
@@ -374,9 +373,5 @@ UNIT_TEST(flags_of_every_type)
         }
         ck_assert_int_eq(duite_free(rt, flag), 0);
     }
-    ck_assert_int_eq(duite_graph_free(rt, graph), 0);
-    ck_assert_int_eq(duite_free(rt, loop.flag), 0);
-    ck_assert_int_eq(duite_free(rt, loop.x), 0);
-    ck_assert_int_eq(duite_free(rt, loop.y), 0);
-    stop(rt);
+    loop_end(rt, graph, &loop);
 }

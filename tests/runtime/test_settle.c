@@ -41,7 +41,7 @@ static const duite_mapping RECORDER = {.name = "recorder", .summary = "", .map =
 static void make(int first, int n)
 {
     for (int i = first; i < first + n; i++)
-        ck_assert_int_eq(data_object_new(&table, DUITE_F64, 1, &object[i]), DUITE_OK);
+        ck_assert_int_eq(data_object_new(&table, DUITE_F64, 1, 1, false, &object[i]), DUITE_OK);
 }
 
 static void settle(void)
@@ -155,10 +155,10 @@ UNIT_TEST(long_chain)
     enum { LONG = 300000 };
     duite_object first, last, next;
 
-    ck_assert_int_eq(data_object_new(&table, DUITE_F64, 1, &first), DUITE_OK);
+    ck_assert_int_eq(data_object_new(&table, DUITE_F64, 1, 1, false, &first), DUITE_OK);
     last = first;
     for (int i = 0; i < LONG; i++) {
-        ck_assert_int_eq(data_object_new(&table, DUITE_F64, 1, &next), DUITE_OK);
+        ck_assert_int_eq(data_object_new(&table, DUITE_F64, 1, 1, false, &next), DUITE_OK);
         ck_assert_int_eq(map_colocate(&table, last, next), DUITE_OK);
         last = next;
     }

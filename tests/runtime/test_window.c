@@ -32,14 +32,13 @@ static duite *start(size_t window, unsigned threads)
 {
     static const duite_kernel *const KERNELS[] = {&STEP, &ADD_ONE, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
-    duite *rt = NULL;
 
-    misuse_mpi();
     options.kernels = KERNELS;
     options.threads = threads;
     options.window = window;
     atomic_store(&n_over, 0);
-    ck_assert_int_eq(duite_start(&rt, &options), DUITE_OK);
+    duite *rt = misuse_start_with(&options);
+    ck_assert_ptr_nonnull(rt);
     return rt;
 }
 

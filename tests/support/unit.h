@@ -56,19 +56,24 @@ void unit_register(struct unit_cases *cases);
         tcase_add_checked_fixture(unit_tcase, SETUP, TEARDOWN);                                    \
     }
 
-/* A call of the cloth's, which is given &error, that has to succeed: else its sentence is why the
- * test fails. The error is the macro's own, whatever the test has of that name. */
-#define UNIT_FINE(CALL)                                                                            \
+/* The text has the part. */
+#define unit_says(TEXT, PART)                                                                      \
+    ck_assert_msg(strstr(TEXT, PART) != NULL, "'%s' does not say '%s'", TEXT, PART)
+
+/* A call of the cloth's, which is given &error: an error of the macro's own, whatever the test has
+ * of that name. Then what is asserted of them. */
+#define UNIT_CALL(CALL, ...)                                                                       \
     do {                                                                                           \
         _Pragma("GCC diagnostic push")                                                             \
             _Pragma("GCC diagnostic ignored \"-Wshadow\"") struct cloth_error error = {0};         \
         _Pragma("GCC diagnostic pop") const int unit_code = (CALL);                                \
-        ck_assert_msg(unit_code == 0, "%s", error.text);                                           \
+        __VA_ARGS__;                                                                               \
     } while (0)
-
-/* The text has the part. */
-#define unit_says(TEXT, PART)                                                                      \
-    ck_assert_msg(strstr(TEXT, PART) != NULL, "'%s' does not say '%s'", TEXT, PART)
+/* It has to succeed: else its sentence is why the test fails. */
+#define UNIT_FINE(CALL) UNIT_CALL(CALL, ck_assert_msg(unit_code == 0, "%s", error.text))
+/* It has to fail with the code, and a sentence that has the part. */
+#define UNIT_REFUSED(CALL, CODE, PART)                                                             \
+    UNIT_CALL(CALL, ck_assert_int_eq(unit_code, CODE); unit_says(error.text, PART))
 
 /* Before a variable of a test: FREE(&variable) at the end of its scope. */
 #define UNIT_OWNED(FREE) __attribute__((cleanup(FREE), unused))

@@ -245,6 +245,9 @@ ok "16777216 ranks" refused many "many[.]16777215 cannot be read: .* the trace i
 cp "$scratch/small" "$scratch/many"
 printf '\000\020\000\000' | dd of="$scratch/many" bs=1 seek=24 conv=notrunc 2> /dev/null
 ok "4096 workers" refused many "byte 16: .* nonsense"
+cp "$scratch/small" "$scratch/quick"
+printf '\000\060' | dd of="$scratch/quick" bs=1 seek=70 conv=notrunc 2> /dev/null
+ok "a tick of 1e-77 seconds" refused quick "byte 16: .* nonsense"
 mv "$scratch/ranks.1" "$scratch/away"
 ok "a rank that is missing" refused ranks "ranks.1 cannot be read"
 cp "$scratch/two" "$scratch/ranks.1"

@@ -40,15 +40,15 @@ static uint64_t word2(void)
 /* All bodies of the step lie in the wait. */
 static void check_end(uint64_t ticks)
 {
-    const struct trace_rank *rank = &seen.run->rank[0];
+    const struct trace_rank *traced = &seen.run->rank[0];
     unsigned bodies = 0;
 
     ck_assert_uint_eq(seen.forks, TASKS);
     ck_assert_uint_ne(seen.wait.to, 0);
     ck_assert_uint_ge(ticks, seen.wait.to);
-    for (size_t p = 0; p < rank->n_pieces; p++)
-        for (size_t i = 0; i < rank->piece[p].n; i++) {
-            const struct trace_event *event = &rank->piece[p].event[i];
+    for (size_t p = 0; p < traced->n_pieces; p++)
+        for (size_t i = 0; i < traced->piece[p].n; i++) {
+            const struct trace_event *event = &traced->piece[p].event[i];
 
             if (event->kind != TRACE_TASK)
                 continue;

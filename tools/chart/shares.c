@@ -114,10 +114,8 @@ static bool event_add(struct filling *filling, uint32_t rank, uint32_t worker,
                          awaiting);
     if (event->kind > TRACE_OWN || !event->within)
         return true;
-    struct around *moved = base_grow(nest->task, &nest->capacity, nest->n + 1, sizeof *nest->task);
-    if (!moved)
+    if (!BASE_GROW(nest->task, nest->capacity, nest->n + 1))
         return false;
-    nest->task = moved;
     nest->task[nest->n++] = (struct around){begin, end, slot};
     return true;
 }

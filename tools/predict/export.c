@@ -78,6 +78,7 @@ struct rows {
     uint32_t *reads; /* lines, each once in a row */
     uint32_t *seen;  /* by line: the last one that was found to read it, plus 1 */
     uint32_t *place; /* by block, or NONE: it has no line yet */
+    void *memory;    /* of these arrays */
     uint32_t n, n_places;
 };
 
@@ -88,21 +89,14 @@ static bool line_is_task(const struct predict_node *node)
 
 static bool rows_room(struct rows *rows, const struct predict_graph *graph)
 {
-    rows->line = base_alloc((graph->n_nodes + 1) * sizeof *rows->line);
-    rows->start = base_alloc_zero((graph->n_nodes + 2) * sizeof *rows->start);
-    rows->reads = base_alloc((graph->n_edges + 1) * sizeof *rows->reads);
-    rows->seen = base_alloc_zero((graph->n_nodes + 1) * sizeof *rows->seen);
-    rows->place = base_alloc((graph->n_objects + 1) * sizeof *rows->place);
-    return rows->place && rows->line && rows->start && rows->reads && rows->seen;
-}
-
-static void rows_free(struct rows *rows)
-{
-    base_free(rows->line);
-    base_free(rows->start);
-    base_free(rows->reads);
-    base_free(rows->seen);
-    base_free(rows->place);
+    const size_t nodes = graph->n_nodes + 2;
+    const struct base_array arrays[] = {BASE_ARRAY(rows->line, nodes),
+                                        BASE_ZEROS(rows->start, nodes),
+                                        BASE_ARRAY(rows->reads, graph->n_edges + 1),
+                                        BASE_ZEROS(rows->seen, nodes),
+                                        BASE_ARRAY(rows->place, graph->n_objects + 1),
+                                        {0}};
+    return (rows->memory = base_arrays(arrays)) != NULL;
 }
 
 /* Edges are kept where they begin; rows where they end. */
@@ -183,7 +177,7 @@ int predict_write_graph(const struct trace_run *run, FILE *file)
         rows_transpose(&graph, &rows);
         rows_put(&graph, &rows, file);
     }
-    rows_free(&rows);
+    base_free(rows.memory);
     predict_graph_free(&graph);
     return code;
 }

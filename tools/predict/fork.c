@@ -114,14 +114,10 @@ void predict_fork(struct predict_program *p, const struct predict_fork *fork)
 
 bool predict_room(struct predict_program *p, size_t n)
 {
-    uint32_t *prepared = base_grow(p->prepared, &p->prepared_capacity, n + 1, sizeof *p->prepared);
-    uint32_t *objects = base_grow(p->objects, &p->objects_capacity, n + 1, sizeof *p->objects);
-    if (prepared)
-        p->prepared = prepared;
-    if (objects)
-        p->objects = objects;
-    p->graph->failed |= !prepared || !objects;
-    return prepared && objects;
+    const bool fine = BASE_GROW(p->prepared, p->prepared_capacity, n + 1) &&
+                      BASE_GROW(p->objects, p->objects_capacity, n + 1);
+    p->graph->failed |= !fine;
+    return fine;
 }
 
 void predict_take_fork(struct predict_program *p, size_t n, bool has_options)

@@ -7,28 +7,14 @@
 
 #include <stdlib.h>
 
-bool predict_room_for(struct predict_graph *graph, void *array, size_t *capacity, size_t n,
-                      size_t size)
-{
-    void **old = array;
-    if (n < *capacity && !graph->failed)
-        return true;
-    void *moved = graph->failed ? NULL : base_grow(*old, capacity, n + 1, size);
-    graph->failed |= !moved;
-    if (moved)
-        *old = moved;
-    return moved != NULL;
-}
-
 uint32_t predict_add(struct predict_graph *graph, const struct predict_node *node)
 {
     graph->failed |= graph->n_nodes >= PREDICT_NONE;
-    if (!predict_room_for(graph, &graph->node, &graph->nodes_capacity, graph->n_nodes,
-                          sizeof *graph->node))
+    if (!predict_grew(graph, BASE_GROW(graph->node, graph->nodes_capacity, graph->n_nodes + 1)))
         return 0;
     if (graph->plain) {
-        if (!predict_room_for(graph, &graph->shown, &graph->shown_capacity, graph->n_nodes,
-                              sizeof *graph->shown))
+        if (!predict_grew(graph,
+                          BASE_GROW(graph->shown, graph->shown_capacity, graph->n_nodes + 1)))
             return 0;
         graph->shown[graph->n_nodes] = 0;
     }
@@ -41,8 +27,7 @@ uint32_t predict_add(struct predict_graph *graph, const struct predict_node *nod
 void predict_edge_kind(struct predict_graph *graph, uint32_t from, uint32_t to, bool reads)
 {
     if (from == PREDICT_NONE || from == to || (graph->plain && !reads) ||
-        !predict_room_for(graph, &graph->edge, &graph->edges_capacity, graph->n_edges,
-                          sizeof *graph->edge))
+        !predict_grew(graph, BASE_GROW(graph->edge, graph->edges_capacity, graph->n_edges + 1)))
         return;
     graph->linked |= from >= graph->round;
     if (graph->node[from].edge != PREDICT_NONE && graph->edge[graph->node[from].edge].to == to)
@@ -59,8 +44,7 @@ void predict_edge(struct predict_graph *graph, uint32_t from, uint32_t to)
 
 void predict_link_push(struct predict_graph *graph, uint32_t *list, uint32_t node, uint32_t host)
 {
-    if (!predict_room_for(graph, &graph->link, &graph->links_capacity, graph->n_links,
-                          sizeof *graph->link))
+    if (!predict_grew(graph, BASE_GROW(graph->link, graph->links_capacity, graph->n_links + 1)))
         return;
     graph->link[graph->n_links] = (struct predict_link){node, host, *list};
     *list = (uint32_t)graph->n_links++;
@@ -95,8 +79,5 @@ void predict_graph_free(struct predict_graph *graph)
     free(graph->link);
     free(graph->reader);
     free(graph->hint);
-    base_free(graph->count);
-    base_free(graph->began);
-    base_free(graph->over);
-    base_free(graph->all);
+    base_free(graph->memory);
 }

@@ -88,6 +88,7 @@ struct predict_graph {
     size_t readers_capacity;
     struct predict_hint *hint;
     size_t n_hints, hints_capacity;
+    void *memory;           /* of the arrays by host */
     uint32_t *began;        /* by host: the node that begins a replay there, or NONE */
     uint32_t *over;         /* ... that ends it, or a task that each host runs */
     uint64_t *all;          /* the set of all hosts */
@@ -108,9 +109,13 @@ struct predict_graph {
 
 /* ---- graph.c: nodes and edges ---- */
 
-/* Room for one more in an array. False without memory (and graph->failed). */
-bool predict_room_for(struct predict_graph *graph, void *array, size_t *capacity, size_t n,
-                      size_t size);
+/* An array has room for one more, or not for want of memory. False: graph->failed, now or before.
+ */
+static inline bool predict_grew(struct predict_graph *graph, bool grew)
+{
+    graph->failed |= !grew;
+    return !graph->failed;
+}
 /* A node that waits for nothing yet. 0 without memory (and graph->failed). */
 uint32_t predict_add(struct predict_graph *graph, const struct predict_node *node);
 /* `to` waits for `from`; NONE is fine. */

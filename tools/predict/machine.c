@@ -85,10 +85,8 @@ static bool event_before(const void *left, const void *right, const void *unused
 
 bool predict_event_put(struct predict_events *events, double time, uint32_t node, uint32_t worker)
 {
-    void *moved = base_grow(events->event, &events->capacity, events->n + 1, sizeof *events->event);
-    if (!moved)
+    if (!BASE_GROW(events->event, events->capacity, events->n + 1))
         return false;
-    events->event = moved;
     struct predict_event new = {time, events->order++, node, worker};
     base_heap_push(events->event, events->n++, &new, sizeof new, event_before, NULL);
     return true;
@@ -145,52 +143,51 @@ duite_ready predict_describe(const struct predict_machine *m, uint32_t node)
 /* ---- Start and stop ---- */
 
 /* A worker sees the others of its host in the order of their numbers, all equally near. */
-static bool machine_near(struct predict_machine *m)
+static void machine_near(struct predict_machine *m)
 {
     const size_t cores = m->cluster->cores, others = cores - 1;
-    if (!m->scheduler->locate)
-        return true;
-    m->near = base_alloc(cores * sizeof *m->near);
-    m->other = base_alloc((cores * others + 1) * sizeof *m->other);
-    m->level = base_alloc_zero((others + 1) * sizeof *m->level);
-    if (!m->near || !m->other || !m->level)
-        return false;
     for (size_t w = 0; w < cores; w++) {
         for (size_t i = 0; i < others; i++)
             m->other[w * others + i] = (unsigned)((w + 1 + i) % cores);
         m->near[w] = (duite_near){(unsigned)others, m->other + w * others, m->level};
     }
-    return true;
 }
 
 static bool machine_prepare(struct predict_machine *m, bool paje)
 {
     const struct predict_graph *graph = m->graph;
-    const size_t n = graph->n_nodes, workers = m->n_workers, hosts = m->cluster->hosts;
+    const size_t n = graph->n_nodes + 1, workers = m->n_workers, hosts = m->cluster->hosts;
+    const size_t cores = m->scheduler->locate ? m->cluster->cores : 0;
     m->stride = (m->scheduler->state_size + 63) / 64 * 64 + 64;
-    m->states = base_alloc_zero(workers * m->stride);
-    m->queue = base_alloc_zero(workers * sizeof *m->queue);
-    m->shared = base_alloc_zero(hosts * sizeof *m->shared);
-    m->state = base_alloc_zero(workers);
-    m->next = base_alloc(workers * sizeof *m->next);
-    m->ran = base_alloc(workers * sizeof *m->ran);
-    m->affinity = base_alloc(graph->n_objects * sizeof *m->affinity + 1);
-    m->last = base_alloc(hosts * sizeof *m->last);
-    m->idle = base_alloc(hosts * sizeof *m->idle);
-    m->looked = base_alloc_zero(workers * sizeof *m->looked);
-    m->handler = base_alloc_zero(hosts * sizeof *m->handler);
-    m->handled = base_alloc_zero(hosts * sizeof *m->handled);
-    m->network.out = base_alloc_zero(hosts * sizeof(double));
-    m->network.in = base_alloc_zero(hosts * sizeof(double));
-    m->begin = base_alloc(n * sizeof *m->begin + 1);
-    m->end = base_alloc(n * sizeof *m->end + 1);
-    m->path = base_alloc_zero(n * sizeof *m->path + 1);
-    m->cause = base_alloc_zero(n * sizeof *m->cause + 1);
-    m->runs_on = paje ? base_alloc_zero(n * sizeof *m->runs_on + 1) : NULL;
-    return m->states && m->queue && m->shared && m->state && m->next && m->ran && m->affinity &&
-           m->last && m->idle && m->looked && m->handler && m->handled && m->network.out &&
-           m->network.in && m->begin && m->end && m->path && m->cause && (m->runs_on || !paje) &&
-           machine_near(m);
+    const struct base_array arrays[] = {{&m->states, workers * m->stride, true},
+                                        BASE_ZEROS(m->queue, workers),
+                                        BASE_ZEROS(m->shared, hosts),
+                                        BASE_ZEROS(m->state, workers),
+                                        BASE_ARRAY(m->next, workers),
+                                        BASE_ARRAY(m->ran, workers),
+                                        BASE_ARRAY(m->affinity, graph->n_objects + 1),
+                                        BASE_ARRAY(m->last, hosts),
+                                        BASE_ARRAY(m->idle, hosts),
+                                        BASE_ZEROS(m->looked, workers),
+                                        BASE_ZEROS(m->handler, hosts),
+                                        BASE_ZEROS(m->handled, hosts),
+                                        BASE_ZEROS(m->network.out, hosts),
+                                        BASE_ZEROS(m->network.in, hosts),
+                                        BASE_ARRAY(m->begin, n),
+                                        BASE_ARRAY(m->end, n),
+                                        BASE_ZEROS(m->path, n),
+                                        BASE_ZEROS(m->cause, n),
+                                        BASE_ZEROS(m->runs_on, paje ? n : 0),
+                                        BASE_ARRAY(m->near, cores),
+                                        BASE_ARRAY(m->other, cores * cores),
+                                        BASE_ZEROS(m->level, cores),
+                                        {0}};
+    m->memory = base_arrays(arrays);
+    if (!paje)
+        m->runs_on = NULL;
+    if (m->memory && cores)
+        machine_near(m);
+    return m->memory;
 }
 
 static void machine_scheduler(struct predict_machine *m, uint32_t worker)
@@ -239,10 +236,5 @@ void predict_machine_stop(struct predict_machine *m)
     for (uint32_t h = 0; h < m->cluster->hosts && m->shared; h++)
         free(m->shared[h].node);
     free(m->events.event);
-    void *const all[] = {m->states,  m->queue,       m->shared,     m->state, m->next,  m->ran,
-                         m->last,    m->network.out, m->network.in, m->begin, m->end,   m->cause,
-                         m->idle,    m->runs_on,     m->near,       m->other, m->level, m->looked,
-                         m->handler, m->handled,     m->affinity,   m->path};
-    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-        base_free(all[i]);
+    base_free(m->memory);
 }

@@ -67,6 +67,7 @@ struct predict_machine {
     const struct predict_cluster *cluster;
     const duite_scheduler *scheduler;
     uint32_t n_workers;
+    void *memory; /* of all arrays but events and those of queues */
     unsigned char *states;
     size_t stride;
     duite_near *near; /* by core: all are equally near */

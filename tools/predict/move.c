@@ -7,8 +7,6 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/map/blocks.h"
-#include "runtime/map/map.h"
-#include "runtime/map/tasks.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,6 +14,7 @@
 struct move {
     struct predict_program *p;
     struct map_moves moves;
+    struct map_policy mapping;
 };
 
 bool predict_moves_start(struct predict_program *p)
@@ -50,15 +49,11 @@ void predict_spend(struct predict_program *p, uint32_t object, int host, double 
     if (!slot)
         return;
     size_t before = moves->spent_capacity;
-    double *spent =
-        base_grow(moves->spent, &moves->spent_capacity, (size_t)slot + 1, sizeof *spent);
-    p->graph->failed |= !spent;
-    if (!spent)
+    if (!predict_grew(p->graph, BASE_GROW(moves->spent, moves->spent_capacity, (size_t)slot + 1)))
         return;
-    moves->spent = spent;
     for (size_t i = before; i < moves->spent_capacity; i++)
-        spent[i] = 0;
-    spent[slot] += seconds;
+        moves->spent[i] = 0;
+    moves->spent[slot] += seconds;
 }
 
 /* ---- Numbers for policies ---- */
@@ -70,6 +65,11 @@ static bool move_begin(struct move *m)
         return false;
     for (size_t h = 0; h < cluster->hosts; h++)
         m->moves.workers[h] = cluster->cores;
+    m->moves.byte_seconds = 1 / cluster->bandwidth;
+    m->moves.message_seconds = cluster->latency;
+    m->moves.seed = cluster->seed;
+    m->mapping.own = cluster->mapping;
+    m->moves.mapping = &m->mapping;
     return true;
 }
 
@@ -106,91 +106,72 @@ static double move_seconds(const struct move *m)
     return max;
 }
 
-static bool move_traffic(struct move *m, const struct predict_recorded *recorded)
+/* As migration_show in api/migrate.c. */
+static int move_show(struct move *m, const struct predict_recorded *recorded, bool *guessed)
 {
-    const struct plan_source *source = &recorded->source;
-    bool fine = true;
-    for (size_t i = 0; i < source->n_forks && recorded->bound && fine; i++) {
-        const struct plan_source_fork *fork = &source->fork[i];
-        const struct plan_access *access = source->access + fork->first;
-        if (fork->owner == PLAN_NONE || fork->replicated || fork->rank != PLAN_BY_OWNER)
-            continue;
-        const uint32_t own = move_block(m, recorded->bound[fork->owner]);
-        for (uint32_t k = 0; k < fork->n && fine; k++) {
-            const uint32_t object = recorded->bound[access[k].object];
-            const double bytes = (double)m->p->graph->object[object].bytes;
-            if (access[k].mode != DUITE_W)
-                fine = map_traffic_read(&m->moves.traffic, own, move_block(m, object),
-                                        (double)recorded->rounds * bytes);
-        }
+    const size_t n = recorded->n_objects;
+    struct plan_source source = recorded->source;
+    uint32_t *block = base_alloc((n + 1) * sizeof *block);
+    source.bytes = base_alloc((n + 1) * sizeof *source.bytes);
+    source.n_objects = n;
+    source.flag = PLAN_NONE;
+    const bool fine = block && source.bytes;
+    for (size_t i = 0; i < n && fine; i++) {
+        source.bytes[i] = m->p->graph->object[recorded->bound[i]].bytes;
+        block[i] = move_block(m, recorded->bound[i]);
     }
-    return fine;
+    const double rounds = (double)recorded->rounds;
+    const int code = !fine     ? base_no_memory("the blocks of objects")
+                     : guessed ? map_moves_ask(&m->moves, &source, block, guessed)
+                               : map_traffic_add(&m->moves.traffic, &source, block, rounds);
+    base_free(source.bytes);
+    base_free(block);
+    return code;
 }
 
 /* ---- Calling ---- */
 
 static int move_call_balancer(struct move *m)
 {
-    struct predict_program *p = m->p;
-    const struct predict_cluster *cluster = p->graph->cluster;
-    struct predict_moves *moves = &p->moves;
-    bool fine = true;
-    for (size_t i = 0; i < p->n_recorded && fine; i++)
-        fine = move_traffic(m, &p->recorded[i]);
-    int code = fine ? map_traffic_end(&m->moves.traffic, m->moves.blocks.n)
-                    : base_no_memory("the blocks of objects");
+    const struct predict_program *p = m->p;
+    struct predict_moves *moves = &m->p->moves;
+    int code = DUITE_OK;
+    for (size_t i = 0; i < p->n_recorded && !code; i++)
+        if (p->recorded[i].bound)
+            code = move_show(m, &p->recorded[i], NULL);
+    if (!code)
+        code = map_traffic_end(&m->moves.traffic, m->moves.blocks.n);
     if (code)
         return code;
     duite_blocks blocks = map_moves_shown(&m->moves);
-    blocks.n_ranks = (int)cluster->hosts;
     blocks.other = moves->other;
-    blocks.byte_seconds = 1 / cluster->bandwidth;
     blocks.seconds = move_seconds(m);
     blocks.replays = moves->replays;
     blocks.since = moves->replays - moves->looked;
-    blocks.mapping = cluster->mapping;
-    blocks.seed = cluster->seed;
-    uint64_t next = cluster->balance->migrate(moves->state, &blocks, m->moves.home);
+    uint64_t next = p->graph->cluster->balance->migrate(moves->state, &blocks, m->moves.home);
     moves->due = next ? moves->replays + next : UINT64_MAX;
     return DUITE_OK;
 }
 
 static int move_call_mapping(struct move *m, struct predict_recorded *recorded)
 {
-    const struct predict_cluster *cluster = m->p->graph->cluster;
-    uint32_t *block = base_alloc((recorded->n_objects + 1) * sizeof *block);
-    struct map_tasks tasks = {0};
-    for (size_t i = 0; i < recorded->n_objects && block; i++)
-        block[i] = move_block(m, recorded->bound[i]);
-    int code = block && predict_round_tasks(m->p, recorded, block, &tasks)
-                   ? map_tasks_complete(&tasks, m->moves.blocks.n, m->moves.seconds)
-                   : base_no_memory("the tasks of a recorded graph");
-    tasks.graph.fixed = m->moves.fixed;
-    tasks.graph.n_ranks = (int)cluster->hosts;
-    tasks.graph.workers = m->moves.workers;
-    tasks.graph.byte_seconds = 1 / cluster->bandwidth;
-    tasks.graph.message_seconds = cluster->latency;
-    tasks.graph.seed = cluster->seed;
-    if (!code)
-        code = map_ask_tasks(&(struct map_policy){.own = cluster->mapping}, &tasks.graph,
-                             m->moves.home);
-    recorded->map_at = tasks.guessed && !recorded->replays ? 1 : UINT64_MAX;
-    m->p->moves.due += m->p->moves.due == m->p->moves.replays;
-    map_tasks_free(&tasks);
-    base_free(block);
+    struct predict_moves *moves = &m->p->moves;
+    bool guessed = false;
+    const int code = move_show(m, recorded, &guessed);
+    recorded->map_at = guessed && !recorded->replays ? 1 : UINT64_MAX;
+    moves->due += moves->due == moves->replays;
     return code;
 }
 
 /* ---- Moving ---- */
 
-static int move_check(const struct move *m)
+static int move_check(const struct move *m, bool mapped)
 {
     const struct predict_cluster *cluster = m->p->graph->cluster;
-    const bool balances = cluster->balance && cluster->balance->migrate;
     for (size_t b = 0; b < m->moves.blocks.n; b++)
-        if (!map_moves_is_allowed(&m->moves, b, (int)cluster->hosts))
-            return balances ? map_moves_refused("balancer", cluster->balance->name)
-                            : map_moves_refused("mapping", cluster->mapping->name);
+        if (!map_moves_is_allowed(&m->moves, b))
+            return mapped ? map_moves_refused("mapping", cluster->mapping->name)
+                          : map_moves_refused("balancer", cluster->balance->name);
     return DUITE_OK;
 }
 
@@ -241,7 +222,7 @@ void predict_move(struct predict_program *p, struct predict_recorded *recorded)
             p->code = maps ? move_call_mapping(&m, recorded) : move_call_balancer(&m);
         }
         if (!p->graph->failed && !p->code)
-            p->code = move_check(&m);
+            p->code = move_check(&m, maps);
         if (!p->graph->failed && !p->code)
             move_homes(&m);
         move_forget(p);

@@ -18,14 +18,10 @@ static uint32_t *slot_object(struct predict_program *p, uint32_t slot)
         return &none;
     }
     size_t before = p->slots_capacity;
-    if (slot >= p->slots_capacity) {
-        void *moved = base_grow(p->slot, &p->slots_capacity, (size_t)slot + 1, sizeof *p->slot);
-        p->graph->failed |= !moved;
-        if (!moved)
-            return &none;
-        p->slot = moved;
+    if (!predict_grew(p->graph, BASE_GROW(p->slot, p->slots_capacity, (size_t)slot + 1)))
+        return &none;
+    if (p->slots_capacity > before)
         memset(p->slot + before, 0xff, (p->slots_capacity - before) * sizeof *p->slot);
-    }
     return &p->slot[slot];
 }
 
@@ -42,25 +38,17 @@ void predict_make(struct predict_program *p)
     struct predict_graph *graph = p->graph;
     uint32_t slot = trace_words_next(&p->words);
     uint64_t bytes = trace_words_next2(&p->words);
-    void *moved = base_grow(graph->object, &graph->objects_capacity, graph->n_objects + 1,
-                            sizeof *graph->object);
-    duite_object *names =
-        base_grow(p->name, &p->names_capacity, graph->n_objects + 1, sizeof *p->name);
-    if (moved)
-        graph->object = moved;
-    if (names)
-        p->name = names;
-    if (!moved || !names) {
-        graph->failed = true;
+    if (!predict_grew(graph,
+                      BASE_GROW(graph->object, graph->objects_capacity, graph->n_objects + 1) &&
+                          BASE_GROW(p->name, p->names_capacity, graph->n_objects + 1)))
         return;
-    }
     struct predict_object new = {.bytes = bytes,
                                  .copies = PREDICT_NONE,
                                  .leaves = PREDICT_NONE,
                                  .leader = PREDICT_NONE,
                                  .hints = PREDICT_NONE};
     p->name[graph->n_objects] = DUITE_NO_OBJECT;
-    if (data_object_new(&p->table, DUITE_BYTE, 1, &p->name[graph->n_objects]))
+    if (data_object_new(&p->table, DUITE_BYTE, 1, 1, false, &p->name[graph->n_objects]))
         graph->failed = true;
     graph->object[graph->n_objects] = new;
     *slot_object(p, slot) = (uint32_t)graph->n_objects++;
@@ -112,11 +100,8 @@ void predict_follow(struct predict_program *p)
  * `block`: their number among all. */
 static uint32_t home_block(struct predict_program *p, uint32_t block, int host)
 {
-    void *moved = base_grow(p->block, &p->blocks_capacity, (size_t)block + 1, sizeof *p->block);
-    p->graph->failed |= !moved;
-    if (!moved)
+    if (!predict_grew(p->graph, BASE_GROW(p->block, p->blocks_capacity, (size_t)block + 1)))
         return 0;
-    p->block = moved;
     while (p->n_blocks <= block)
         p->block[p->n_blocks++] = PREDICT_NONE;
     if (p->block[block] == PREDICT_NONE)

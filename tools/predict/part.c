@@ -25,13 +25,11 @@ struct parting {
     bool failed;
 };
 
-static bool part_room(struct parting *p, void *array, size_t *capacity, size_t n, size_t size)
+/* An array has room for one more, or not for want of memory. False: p->failed, now or before. */
+static bool part_grew(struct parting *p, bool grew)
 {
-    void **old = array, *moved = p->failed ? NULL : base_grow(*old, capacity, n + 1, size);
-    p->failed |= !moved;
-    if (moved)
-        *old = moved;
-    return moved;
+    p->failed |= !grew;
+    return !p->failed;
 }
 
 /* ---- Nodes ---- */
@@ -85,7 +83,7 @@ static struct predict_node part_node(const struct parting *p, const struct plan_
         break;
     case PLAN_SEND:
         node.kind = PREDICT_MESSAGE;
-        node.block = (uint32_t)m->message[from->channel].to;
+        node.block = (uint32_t)from->peer;
         node.number = part_message_bytes(p, m, from->channel);
         break;
     default:
@@ -98,11 +96,11 @@ static void part_end_note(struct parting *p, const struct plan_messages *m,
                           const struct plan_round_node *from)
 {
     const bool sends = from->kind == PLAN_SEND;
-    const struct plan_message *message = &m->message[from->channel];
-    if (!part_room(p, &p->end[sends], &p->capacity[sends], p->n_ends[sends], sizeof **p->end))
+    const int from_rank = sends ? m->rank : from->peer, to_rank = sends ? from->peer : m->rank;
+    if (!part_grew(p, BASE_GROW(p->end[sends], p->capacity[sends], p->n_ends[sends] + 1)))
         return;
     p->end[sends][p->n_ends[sends]++] =
-        (struct part_end){message->from, message->to, message->phase, (uint32_t)p->round->n_nodes};
+        (struct part_end){from_rank, to_rank, from->phase, (uint32_t)p->round->n_nodes};
 }
 
 static void part_node_add(struct parting *p, const struct plan_messages *m,
@@ -111,8 +109,8 @@ static void part_node_add(struct parting *p, const struct plan_messages *m,
     struct predict_round *round = p->round;
     if (from->kind == PLAN_SEND || from->kind == PLAN_RECEIVE)
         part_end_note(p, m, from);
-    if (!part_room(p, &round->node, &round->nodes_capacity, round->n_nodes, sizeof *round->node) ||
-        !part_room(p, &round->fork, &round->forks_capacity, round->n_nodes, sizeof *round->fork))
+    if (!part_grew(p, BASE_GROW(round->node, round->nodes_capacity, round->n_nodes + 1) &&
+                          BASE_GROW(round->fork, round->forks_capacity, round->n_nodes + 1)))
         return;
     round->fork[round->n_nodes] = from->kind == PLAN_TASK ? from->fork : PREDICT_NONE;
     round->node[round->n_nodes++] = part_node(p, m, from);
@@ -123,7 +121,7 @@ static void part_edge_add(struct parting *p, uint32_t from, uint32_t to, bool cy
     struct predict_round *round = p->round;
     if (from == to && !cyclic) /* a task that names an object twice */
         return;
-    if (part_room(p, &round->edge, &round->edges_capacity, round->n_edges, sizeof *round->edge))
+    if (part_grew(p, BASE_GROW(round->edge, round->edges_capacity, round->n_edges + 1)))
         round->edge[round->n_edges++] = (struct plan_round_edge){from, to, cyclic};
 }
 

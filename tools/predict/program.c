@@ -37,11 +37,8 @@ static bool op_forks(const struct predict_graph *graph, const struct predict_nod
 static struct predict_op *op_add(struct predict_program *p, bool forked)
 {
     struct predict_graph *graph = p->graph;
-    void *moved = base_grow(graph->op, &graph->ops_capacity, graph->n_ops + 1, sizeof *graph->op);
-    graph->failed |= !moved;
-    if (!moved)
+    if (!predict_grew(graph, BASE_GROW(graph->op, graph->ops_capacity, graph->n_ops + 1)))
         return NULL;
-    graph->op = moved;
     size_t begin = graph->n_ops ? graph->op[graph->n_ops - 1].end : 0;
     struct predict_op *op = &graph->op[graph->n_ops++];
     *op = (struct predict_op){.end = (uint32_t)graph->n_nodes, .node = PREDICT_NONE};
@@ -267,13 +264,13 @@ static bool program_prepare(struct predict_program *p)
     struct predict_graph *graph = p->graph;
     const uint32_t hosts = graph->cluster->hosts;
     p->times = predict_times_new(graph->run, graph->cluster->steady);
-    graph->began = base_alloc(hosts * sizeof *graph->began);
-    graph->count = base_alloc_zero(hosts * sizeof *graph->count);
-    graph->over = base_alloc(hosts * sizeof *graph->over);
-    graph->all = base_alloc_zero(base_ranks_words((int)hosts) * sizeof *graph->all);
+    const struct base_array arrays[] = {
+        BASE_ARRAY(graph->began, hosts), BASE_ZEROS(graph->count, hosts),
+        BASE_ARRAY(graph->over, hosts),  BASE_ZEROS(graph->all, base_ranks_words((int)hosts)),
+        BASE_ZEROS(p->blocks_on, hosts), {0}};
+    graph->memory = base_arrays(arrays);
     graph->round = PREDICT_NONE;
-    if (!p->times || !graph->began || !graph->count || !graph->over || !graph->all ||
-        !(p->blocks_on = base_alloc_zero(hosts * sizeof *p->blocks_on)) ||
+    if (!p->times || !graph->memory ||
         data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1) ||
         !predict_moves_start(p))
         return false;
@@ -301,7 +298,6 @@ int predict_build(struct predict_graph *graph)
                           predict_times_sums(p.times) / graph->merges / graph->cluster->core_speed);
     predict_moves_stop(&p);
     data_table_stop(&p.table);
-    base_free(p.blocks_on);
     free(p.block);
     predict_times_free(p.times);
     predict_graphs_free(&p);

@@ -119,12 +119,6 @@ void predict_op_replays(struct predict_program *p, bool begins);
 
 void predict_take_graph(struct predict_program *p, size_t n_objects);
 void predict_replay(struct predict_program *p, size_t n_objects);
-/* A round of a recorded graph as mappings see it; block: by object of the record, its block or
- * DUITE_NO_BLOCK. All but the costs is there; map_tasks_free is due, also without memory (false).
- */
-struct map_tasks;
-bool predict_round_tasks(const struct predict_program *p, const struct predict_recorded *recorded,
-                         const uint32_t *block, struct map_tasks *tasks);
 /* The place of a round's object in graph->object. */
 static inline uint32_t predict_round_object(const struct predict_recorded *recorded, size_t i)
 {

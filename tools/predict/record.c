@@ -22,12 +22,9 @@ static struct predict_recorded *recorded_place(struct predict_program *p, uint32
 {
     p->damaged |= name >= p->graph->run->n_words; /* a graph has several */
     while (p->n_recorded <= name && !p->damaged) {
-        void *moved =
-            base_grow(p->recorded, &p->recorded_capacity, p->n_recorded + 1, sizeof *p->recorded);
-        p->graph->failed |= !moved;
-        if (!moved)
+        if (!predict_grew(p->graph,
+                          BASE_GROW(p->recorded, p->recorded_capacity, p->n_recorded + 1)))
             return NULL;
-        p->recorded = moved;
         p->recorded[p->n_recorded++] = (struct predict_recorded){0};
     }
     if (p->damaged)

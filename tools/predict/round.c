@@ -1,9 +1,8 @@
 /* A round of a recorded graph as the input of the runtime's passes (plan/passes.h), from the words
- * of a trace. Mappings see the same rows as in a run; hosts get the same nodes (part.c). */
+ * of a trace. Hosts get the same nodes as in a run (part.c). */
 #include "tools/predict/program.h"
 
 #include "runtime/base/memory.h"
-#include "runtime/map/tasks.h"
 
 #include <stdlib.h>
 
@@ -26,23 +25,6 @@ static size_t *round_bytes(const struct predict_program *p, const struct predict
     for (uint32_t i = 0; i < recorded->n_objects; i++)
         all[recorded->bound[i]].place = 0;
     return bytes;
-}
-
-bool predict_round_tasks(const struct predict_program *p, const struct predict_recorded *recorded,
-                         const uint32_t *block, struct map_tasks *tasks)
-{
-    struct plan_source source = recorded->source;
-    struct plan_round round = {0};
-    struct plan_tasks *all = &tasks->tasks;
-    *tasks = (struct map_tasks){0};
-    source.bytes = round_bytes(p, recorded, PREDICT_NONE, &source.n_objects, &source.flag);
-    bool fine = source.bytes && plan_lower(&round, &source) && plan_tasks_find(all, &round) &&
-                (tasks->block = base_alloc((all->n + 1) * sizeof *tasks->block)) != NULL;
-    for (size_t i = 0; i < all->n && fine; i++)
-        tasks->block[i] = all->owner[i] == PLAN_NONE ? DUITE_NO_BLOCK : block[all->owner[i]];
-    plan_round_free(&round);
-    base_free(source.bytes);
-    return fine;
 }
 
 /* ---- A round for hosts ---- */

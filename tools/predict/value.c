@@ -3,6 +3,7 @@
  * message there, however many read it. */
 #include "tools/predict/graph.h"
 
+#include "runtime/base/memory.h"
 #include "runtime/base/rank_set.h"
 
 #include <stdlib.h>
@@ -31,8 +32,8 @@ static void value_order(struct predict_graph *graph, struct data_order_chain *ch
                         uint32_t object, int host, bool writes)
 {
     struct value_use use = {graph, &graph->object[object], host};
-    if (predict_room_for(graph, &graph->reader, &graph->readers_capacity, graph->n_readers,
-                         sizeof *graph->reader))
+    if (predict_grew(graph,
+                     BASE_GROW(graph->reader, graph->readers_capacity, graph->n_readers + 1)))
         data_order_next(chain, graph->reader, &graph->n_readers, node, writes, value_edge, &use);
 }
 
@@ -53,8 +54,7 @@ void predict_hint_add(struct predict_graph *graph, uint32_t object, uint32_t oth
 {
     for (int turn = 0; turn < 2; turn++) {
         const uint32_t from = turn ? other : object, to = turn ? object : other;
-        if (!predict_room_for(graph, &graph->hint, &graph->hints_capacity, graph->n_hints,
-                              sizeof *graph->hint))
+        if (!predict_grew(graph, BASE_GROW(graph->hint, graph->hints_capacity, graph->n_hints + 1)))
             return;
         graph->hint[graph->n_hints] =
             (struct predict_hint){to, graph->object[from].hints, 0.5 * bytes};

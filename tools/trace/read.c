@@ -87,6 +87,13 @@ static size_t source_max_workers(const struct source *source)
     return header->whole && !header->lost && max < DUITE_MAX_THREADS ? max : DUITE_MAX_THREADS;
 }
 
+/* Between those of a clock of a petahertz and one of a hertz: seconds fit into ticks, and ticks
+ * into seconds. */
+static bool tick_is_sound(double tick)
+{
+    return tick >= 1e-15 && tick <= 1;
+}
+
 static int source_check_header(struct source *source, uint32_t rank)
 {
     const struct trace_header *header = source->rank->header;
@@ -105,8 +112,9 @@ static int source_check_header(struct source *source, uint32_t rank)
                  header->version, TRACE_VERSION);
         return source_damaged(source, offsetof(struct trace_header, version), text);
     }
-    if (header->rank != rank || !header->n_ranks || !header->workers || !(header->tick > 0) ||
-        header->n_ranks > MAX_RANKS || header->workers > source_max_workers(source))
+    if (header->rank != rank || !header->n_ranks || !header->workers ||
+        !tick_is_sound(header->tick) || header->n_ranks > MAX_RANKS ||
+        header->workers > source_max_workers(source))
         return source_damaged(source, offsetof(struct trace_header, rank),
                               "another rank, or nonsense, where this one was expected");
     if (rank && (header->run != first->run || header->n_ranks != first->n_ranks))
@@ -164,11 +172,8 @@ static int source_take_events(struct source *source, const struct trace_section 
         if (!event_is_valid(source->run, &event[i]))
             return source_damaged(source, at + sizeof *section + i * sizeof *event,
                                   "an invalid event");
-    void *moved =
-        base_grow(rank->piece, &rank->pieces_capacity, rank->n_pieces + 1, sizeof *rank->piece);
-    if (!moved)
+    if (!BASE_GROW(rank->piece, rank->pieces_capacity, rank->n_pieces + 1))
         return base_no_memory("a trace");
-    rank->piece = moved;
     rank->piece[rank->n_pieces++] = (struct trace_piece){event, n, section->worker};
     rank->n_events += n;
     return DUITE_OK;
@@ -180,11 +185,8 @@ static int source_take_words(struct source *source, const struct trace_section *
     size_t n = section->bytes / sizeof *run->word;
     if (source->rank != run->rank || section->bytes % 8)
         return source_damaged(source, at, "words of the program where there are none");
-    void *moved =
-        base_grow(run->word, &run->words_capacity, run->n_words + n + 1, sizeof *run->word);
-    if (!moved)
+    if (!BASE_GROW(run->word, run->words_capacity, run->n_words + n + 1))
         return base_no_memory("a trace");
-    run->word = moved;
     memcpy(run->word + run->n_words, section + 1, section->bytes);
     run->n_words += n;
     if (n && section->worker)

@@ -6,63 +6,34 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct drape {
-    struct mesh_shape shape;
-    uint32_t (*corner)[3];
-    double *position;  /* of the cloth's vertices */
-    uint32_t first;    /* of them, among those of all cloths */
-    double flat, disc; /* m^2: the cloth at rest, the disc that carries it */
-    double axis[3];
-};
-
-int drape_of(struct drape **drape, const struct model *model, struct cloth_error *error)
+int drape_of(struct drape *drape, const struct model *model, struct cloth_error *error)
 {
-    *drape = NULL;
     if (!(model->drape.radius > 0))
         return CLOTH_OK;
     const struct model_cloth *cloth = model->cloths + model->drape.cloth;
     const struct mesh *mesh = &cloth->mesh;
-    struct drape *made = *drape = cloth_alloc(1, sizeof *made, error);
-    if (!made)
-        return error->code;
-    made->corner = cloth_alloc(mesh->n_triangles, sizeof *made->corner, error);
-    made->position = cloth_alloc(mesh->n_vertices, 3 * sizeof *made->position, error);
-    if (!made->corner || !made->position) {
-        drape_close(drape);
-        return error->code;
-    }
+    drape->corner = cloth_alloc(mesh->n_triangles, sizeof *drape->corner, error);
+    drape->position = cloth_alloc(mesh->n_vertices, 3 * sizeof *drape->position, error);
+    if (!drape->corner || !drape->position)
+        return CLOTH_E_MEMORY;
     for (uint32_t t = 0; t < mesh->n_triangles; t++)
-        mesh_corners(mesh, t, made->corner[t]);
-    made->shape = (struct mesh_shape){.n_vertices = mesh->n_vertices,
-                                      .n_triangles = mesh->n_triangles,
-                                      .position = made->position,
-                                      .corner = (const uint32_t(*)[3])made->corner};
-    made->first = model_first(model, model->drape.cloth);
-    made->flat = model_area(cloth);
-    made->disc = model_disc(&model->drape);
-    memcpy(made->axis, model->drape.axis, sizeof made->axis);
+        mesh_corners(mesh, t, drape->corner[t]);
+    drape->n = 3 * (size_t)mesh->n_vertices;
+    drape->first = model_first(model, model->drape.cloth);
+    drape->shape = (struct mesh_shape){.n_vertices = mesh->n_vertices,
+                                       .n_triangles = mesh->n_triangles,
+                                       .position = drape->position,
+                                       .corner = (const uint32_t(*)[3])drape->corner};
+    drape->flat = model_area(cloth);
+    drape->disc = model_disc(&model->drape);
+    memcpy(drape->axis, model->drape.axis, sizeof drape->axis);
     return CLOTH_OK;
 }
 
-void drape_frame(struct drape *drape, const double *position)
+void drape_frame(const struct drape *drape, const double *position)
 {
-    memcpy(drape->position, position + 3 * (size_t)drape->first,
-           3 * (size_t)drape->shape.n_vertices * sizeof *position);
-}
-
-size_t drape_numbers(const struct drape *drape)
-{
-    return 3 * (size_t)drape->shape.n_vertices;
-}
-
-void drape_get(const struct drape *drape, double *numbers)
-{
-    memcpy(numbers, drape->position, drape_numbers(drape) * sizeof *numbers);
-}
-
-void drape_set(struct drape *drape, const double *numbers)
-{
-    memcpy(drape->position, numbers, drape_numbers(drape) * sizeof *numbers);
+    if (drape->n)
+        memcpy(drape->position, position + 3 * (size_t)drape->first, drape->n * sizeof *position);
 }
 
 int drape_find(const struct drape *drape, struct drape_found *found, struct cloth_error *error)
@@ -72,13 +43,9 @@ int drape_find(const struct drape *drape, struct drape_found *found, struct clot
     return code;
 }
 
-void drape_close(struct drape **drape)
+void drape_free(struct drape *drape)
 {
-    struct drape *gone = *drape;
-    *drape = NULL;
-    if (!gone)
-        return;
-    free(gone->corner);
-    free(gone->position);
-    free(gone);
+    free(drape->corner);
+    free(drape->position);
+    *drape = (struct drape){0};
 }

@@ -1,17 +1,39 @@
 /* A frame places the vertices of the cloths; the time of the frame places those of bodies. A frame
  * counts as bad once, even if it is checked as doubles and as written. */
 #include "cloth/app/check/intersections.h"
-#include "cloth/app/check/intersections_state.h"
 
+#include "cloth/base/memory.h"
+#include "cloth/base/sets.h"
+#include "cloth/contact/soup.h"
+#include "cloth/model/model.h"
 #include "cloth/verify/orient.h"
+#include "cloth/verify/verify.h"
 
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 enum { SAID = 5 }; /* intersections of the first frame that has any */
+static const uint32_t NO_PART = UINT32_MAX;
+
+/* The soup of triangles, and what is known of it before the first frame. */
+struct intersections {
+    struct intersections_setup of;
+    double begin; /* s: when motions and bodies are at time 0 */
+    struct contact_soup soup;
+    phys_vec *place;     /* room for the vertices of a body */
+    uint32_t *part;      /* by point of cloth: the lowest that triangles join it to, directly or
+                          * through others; NO_PART: no triangle has it */
+    unsigned char *seen; /* by part, while a body is looked at: a vertex of it was */
+    double (*x)[3];
+    uint32_t *sewn;             /* by point: as of struct verify_soup; NULL: no seams are pulled */
+    struct verify_soup checked; /* the soup, welded, with its places */
+    struct cloth_list pairs, entered;
+    uint64_t last; /* the last frame that had any; UINT64_MAX: none had */
+};
 
 /* A frame that is looked at. */
 struct look {
@@ -23,6 +45,121 @@ struct look {
     bool says; /* it prints findings */
 };
 
+/* ---- Opening ---- */
+
+static int take_arrays(struct intersections *all, struct cloth_error *error)
+{
+    const struct contact_surface cloths = contact_soup_cloths(&all->soup),
+                                 end = contact_soup_all(&all->soup);
+    all->x = cloth_alloc(end.point, sizeof *all->x, error);
+    all->seen = cloth_alloc(cloths.point, sizeof *all->seen, error);
+    all->place = aligned_alloc(sizeof *all->place,
+                               (end.point - cloths.point + (size_t)1) * sizeof *all->place);
+    if (!all->place)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the vertices of bodies");
+    all->checked = (struct verify_soup){.n_points = end.point,
+                                        .n_triangles = end.triangle,
+                                        .n_first = cloths.triangle,
+                                        .x = (const double(*)[3])all->x,
+                                        .corner = (const uint32_t(*)[3])all->soup.welded};
+    return error->code;
+}
+
+/* Vertices that seams or welds join share one number. */
+static int take_sewn(struct intersections *all, struct cloth_error *error)
+{
+    const uint32_t *joined = all->of.apart->joined, n = contact_soup_cloths(&all->soup).point;
+    if (!joined)
+        return CLOTH_OK;
+    all->sewn = cloth_alloc(all->checked.n_points, sizeof *all->sewn, error);
+    if (!all->sewn)
+        return CLOTH_E_MEMORY;
+    cloth_sets_start(all->sewn, all->checked.n_points);
+    for (uint32_t v = 0; v < n; v++) {
+        cloth_sets_join(all->sewn, v, joined[v]);
+        cloth_sets_join(all->sewn, v, all->soup.same ? all->soup.same[v] : v);
+    }
+    for (uint32_t v = 0; v < n; v++)
+        all->sewn[v] = cloth_sets_root(all->sewn, v);
+    all->checked.joined = all->sewn;
+    return CLOTH_OK;
+}
+
+static int find_parts(struct intersections *all, struct cloth_error *error)
+{
+    const struct contact_surface cloths = contact_soup_cloths(&all->soup);
+    bool *used = cloth_alloc(cloths.point, sizeof *used, error);
+    all->part = cloth_alloc(cloths.point, sizeof *all->part, error);
+    if (used && all->part)
+        cloth_sets_start(all->part, cloths.point);
+    for (uint32_t t = 0; t < cloths.triangle && used && all->part; t++)
+        for (int k = 0; k < 3; k++) {
+            const uint32_t *corner = all->soup.welded[t];
+            cloth_sets_join(all->part, corner[k], corner[0]);
+            used[corner[k]] = true;
+        }
+    for (uint32_t v = 0; v < cloths.point && used && all->part; v++)
+        all->part[v] = used[v] ? cloth_sets_root(all->part, v) : NO_PART;
+    free(used);
+    return error->code;
+}
+
+int intersections_open(struct intersections **intersections, const struct intersections_setup *of,
+                       struct contact_soup *soup, struct cloth_error *error)
+{
+    struct intersections *all = *intersections = cloth_alloc(1, sizeof *all, error);
+    if (!all) {
+        contact_soup_free(soup);
+        return CLOTH_E_MEMORY;
+    }
+    all->of = *of;
+    all->last = UINT64_MAX;
+    all->soup = *soup;
+    *soup = (struct contact_soup){0};
+    int code = take_arrays(all, error);
+    code = code ? code : take_sewn(all, error);
+    code = code ? code : find_parts(all, error);
+    if (code)
+        intersections_close(intersections);
+    return code;
+}
+
+int intersections_of(struct intersections **intersections, const struct model *model,
+                     const struct contact_apart *apart, const char *program, bool self_off,
+                     struct intersections_found *found, struct cloth_error *error)
+{
+    struct contact_soup soup;
+    const struct intersections_setup of = {.program = program,
+                                           .model = model,
+                                           .obstacles = model->obstacles,
+                                           .keys = model->keys,
+                                           .bodies = &model->bodies,
+                                           .apart = apart,
+                                           .self_off = self_off,
+                                           .found = found};
+    int code = model_soup(model, &soup, error);
+    code = code ? code : intersections_open(intersections, &of, &soup, error);
+    contact_soup_free(&soup);
+    return code;
+}
+
+void intersections_close(struct intersections **intersections)
+{
+    struct intersections *all = *intersections;
+    *intersections = NULL;
+    if (!all)
+        return;
+    contact_soup_free(&all->soup);
+    free(all->part);
+    free(all->seen);
+    free(all->x);
+    free(all->place);
+    free(all->sewn);
+    free(all->pairs.items);
+    free(all->entered.items);
+    free(all);
+}
+
 /* ---- Findings ---- */
 
 static void check_intersections_say(const struct look *look, const char *format, ...)
@@ -33,7 +170,7 @@ static void check_intersections_say(const struct look *look, const char *format,
     va_start(list, format);
     fprintf(stderr,
             "%s%s: frame %" PRIu64 "%s, at %g s: ", isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "",
-            look->all->program, look->frame, look->written ? " as written" : "", look->time);
+            look->all->of.program, look->frame, look->written ? " as written" : "", look->time);
     vfprintf(stderr, format, list);
     fputc('\n', stderr);
     va_end(list);
@@ -50,8 +187,9 @@ static void name_triangle(const struct intersections *all, uint32_t t, char text
                            corner[0] - before + 1, corner[1] - before + 1, corner[2] - before + 1);
     if (owner >= n_cloths)
         snprintf(text + n, NAMED - (size_t)n, " of obstacles[%" PRIu32 "]", owner - n_cloths);
-    else if (all->name)
-        snprintf(text + n, NAMED - (size_t)n, " of cloth '%.100s'", all->name[owner]);
+    else if (all->of.model)
+        snprintf(text + n, NAMED - (size_t)n, " of cloth '%.100s'",
+                 all->of.model->cloths[owner].name);
 }
 
 /* Counts one more; true if it is to be printed. */
@@ -77,7 +215,7 @@ static void say_entered(struct look *look, uint32_t triangle, size_t obstacle)
         return;
     name_triangle(look->all, triangle, one);
     check_intersections_say(look, "%s enters obstacles[%zu], a %s (vertices count from 1)", one,
-                            obstacle, contact_kinds[look->all->obstacles[obstacle].kind]->name);
+                            obstacle, contact_kinds[look->all->of.obstacles[obstacle].kind]->name);
 }
 
 static void say_inside(struct look *look, uint32_t point, size_t obstacle)
@@ -86,10 +224,11 @@ static void say_inside(struct look *look, uint32_t point, size_t obstacle)
     if (!is_said(look))
         return;
     const uint32_t cloth = contact_soup_cloth(&all->soup, point);
+    const struct model *model = all->of.model;
     check_intersections_say(
         look, "vertex %" PRIu32 "%s%.100s%s is inside obstacles[%zu] (vertices count from 1)",
-        point - all->soup.surface[cloth].point + 1, all->name ? " of cloth '" : "",
-        all->name ? all->name[cloth] : "", all->name ? "'" : "", obstacle);
+        point - all->soup.surface[cloth].point + 1, model ? " of cloth '" : "",
+        model ? model->cloths[cloth].name : "", model ? "'" : "", obstacle);
 }
 
 /* ---- Pairs that do not meet ---- */
@@ -97,16 +236,16 @@ static void say_inside(struct look *look, uint32_t point, size_t obstacle)
 /* A folder has all cloths in one mesh. */
 static uint32_t intersections_cloth_of(const struct intersections *all, uint32_t t)
 {
-    return all->apart->apart ? contact_apart_cloth(all->apart, all->soup.corner[t][0], 0)
-                             : contact_soup_owner(&all->soup, t);
+    return all->of.apart->apart ? contact_apart_cloth(all->of.apart, all->soup.corner[t][0], 0)
+                                : contact_soup_owner(&all->soup, t);
 }
 
 /* True if a triangle of cloth and an obstacle are not to meet. */
 static bool misses(const struct intersections *all, uint32_t t, size_t obstacle)
 {
-    return contact_is_attached(all->apart, 3, all->soup.corner[t], (uint32_t)obstacle) ||
-           contact_are_apart(all->apart, intersections_cloth_of(all, t),
-                             all->apart->n_cloths + (uint32_t)obstacle);
+    return contact_is_attached(all->of.apart, 3, all->soup.corner[t], (uint32_t)obstacle) ||
+           contact_are_apart(all->of.apart, intersections_cloth_of(all, t),
+                             all->of.apart->n_cloths + (uint32_t)obstacle);
 }
 
 static bool intersections_is_left_out(const struct intersections *all,
@@ -114,8 +253,8 @@ static bool intersections_is_left_out(const struct intersections *all,
 {
     const uint32_t *t = pair->triangle, a = intersections_cloth_of(all, t[0]);
     if (t[1] < all->checked.n_first)
-        return (all->self_off && a == intersections_cloth_of(all, t[1])) ||
-               contact_are_apart(all->apart, a, intersections_cloth_of(all, t[1]));
+        return (all->of.self_off && a == intersections_cloth_of(all, t[1])) ||
+               contact_are_apart(all->of.apart, a, intersections_cloth_of(all, t[1]));
     return misses(all, t[0], contact_soup_owner(&all->soup, t[1]) - all->soup.n_cloths);
 }
 
@@ -124,11 +263,11 @@ static bool intersections_is_left_out(const struct intersections *all,
 static void intersections_place_body(const struct look *look, size_t obstacle)
 {
     const struct intersections *all = look->all;
-    const struct contact_shape *shape = all->obstacles + obstacle;
-    const struct contact_body *body = contact_bodies_at(all->bodies, shape->body);
+    const struct contact_shape *shape = all->of.obstacles + obstacle;
+    const struct contact_body *body = contact_bodies_at(all->of.bodies, shape->body);
     const phys_vec *from = body ? contact_body_vertices(body) : NULL;
     struct contact_pose pose;
-    contact_pose_over(shape, all->keys, all->bodies, look->placed, look->placed, &pose);
+    contact_pose_over(shape, all->of.keys, all->of.bodies, look->placed, look->placed, &pose);
     if (body && body->n_frames) {
         contact_body_places(body, look->placed, all->place);
         from = all->place;
@@ -177,10 +316,10 @@ static int intersections_look_at_shape(struct look *look, size_t obstacle, uint6
                                        struct cloth_error *error)
 {
     struct intersections *all = look->all;
-    const struct contact_shape *shape = all->obstacles + obstacle;
+    const struct contact_shape *shape = all->of.obstacles + obstacle;
     const double depth = look->written ? INTERSECTIONS_DEPTH_FLOAT : INTERSECTIONS_DEPTH;
     struct contact_pose pose;
-    contact_pose_over(shape, all->keys, all->bodies, look->placed, look->placed, &pose);
+    contact_pose_over(shape, all->of.keys, all->of.bodies, look->placed, look->placed, &pose);
     all->entered.n = 0;
     const int code = verify_enter(&all->checked, shape, &pose, depth, &all->entered, error);
     const uint32_t *triangle = all->entered.items;
@@ -197,12 +336,12 @@ static int intersections_look_at_shape(struct look *look, size_t obstacle, uint6
 static bool may_be_in(const struct intersections *all, uint32_t point, size_t obstacle,
                       uint32_t *guess)
 {
-    if (contact_is_attached(all->apart, 1, &point, (uint32_t)obstacle))
+    if (contact_is_attached(all->of.apart, 1, &point, (uint32_t)obstacle))
         return true;
-    if (!all->apart->apart)
+    if (!all->of.apart->apart)
         return false;
-    *guess = contact_apart_cloth(all->apart, point, *guess);
-    return contact_are_apart(all->apart, *guess, all->apart->n_cloths + (uint32_t)obstacle);
+    *guess = contact_apart_cloth(all->of.apart, point, *guess);
+    return contact_are_apart(all->of.apart, *guess, all->of.apart->n_cloths + (uint32_t)obstacle);
 }
 
 /* If no triangles intersect, a part of the cloth is inside or outside as a whole, apart from
@@ -216,8 +355,7 @@ static void look_inside(struct look *look, size_t obstacle, uint64_t *inside)
     memset(all->seen, 0, n);
     for (uint32_t point = 0; point < n; point++) {
         const uint32_t part = all->part[point];
-        if (part == INTERSECTIONS_NO_PART || all->seen[part] ||
-            may_be_in(all, point, obstacle, &guess))
+        if (part == NO_PART || all->seen[part] || may_be_in(all, point, obstacle, &guess))
             continue;
         all->seen[part] = 1;
         if (!verify_inside(&all->checked, body[0].triangle, body[1].triangle, all->x[point]))
@@ -230,8 +368,8 @@ static void look_inside(struct look *look, size_t obstacle, uint64_t *inside)
 static void add_found(const struct look *look, uint64_t pairs, uint64_t with_shapes)
 {
     struct intersections *all = look->all;
-    struct intersections_found *found = &all->found;
-    if (look->n && !(found->bad && all->last == look->frame)) {
+    struct intersections_found *found = all->of.found;
+    if (look->n && all->last != look->frame) {
         found->first = found->bad ? found->first : look->frame;
         found->bad++;
         all->last = look->frame;
@@ -254,12 +392,12 @@ int intersections_frame(struct intersections *intersections, uint64_t frame, dou
                         .time = time,
                         .placed = time - intersections->begin,
                         .written = written,
-                        .says = intersections->program && !intersections->found.bad};
+                        .says = intersections->of.program && intersections->last == UINT64_MAX};
     uint64_t pairs = 0, with_shapes = 0;
     intersections_place_points(&look, position);
     int code = look_at_pairs(&look, &pairs, &with_shapes, error);
     for (size_t i = 0; i < intersections->soup.n_obstacles && !code; i++)
-        if (intersections->obstacles[i].body)
+        if (intersections->of.obstacles[i].body)
             look_inside(&look, i, &with_shapes);
         else
             code = intersections_look_at_shape(&look, i, &with_shapes, error);
@@ -269,11 +407,6 @@ int intersections_frame(struct intersections *intersections, uint64_t frame, dou
         check_intersections_say(&look, "and %" PRIu64 " more", look.n - SAID);
     add_found(&look, pairs, with_shapes);
     return CLOTH_OK;
-}
-
-struct intersections_found intersections_found(const struct intersections *intersections)
-{
-    return intersections->found;
 }
 
 void intersections_say(const struct intersections_found *found, const char *program)

@@ -1,8 +1,6 @@
 /* The report as JSON: everything in it comes from the run; nothing is measured. */
 #include "cloth/app/report/summary.h"
 
-#include "cloth/app/report/summary_parts.h"
-#include "cloth/app/report/summary_time.h"
 #include "cloth/base/simd.h"
 #include "cloth/output/output.h"
 
@@ -44,6 +42,22 @@ static void add_hash(struct output_report *json, const char *key, uint64_t hash)
     output_report_text(json, key, text);
 }
 
+static void add_optional(struct output_report *json, const char *key, bool known, uint64_t value)
+{
+    if (known)
+        output_report_integer(json, key, value);
+    else
+        output_report_null(json, key);
+}
+
+static void add_text(struct output_report *json, const char *key, const char *text)
+{
+    if (text)
+        output_report_text(json, key, text);
+    else
+        output_report_null(json, key);
+}
+
 static void add_setting(struct output_report *json, const struct summary *summary)
 {
     const struct flow_report *report = summary->report;
@@ -65,30 +79,19 @@ static void add_setting(struct output_report *json, const struct summary *summar
 }
 
 /* material_NAME_KEY */
-static int add_modulus(struct output_report *json, const char *name, const char *key, double value,
-                       struct cloth_error *error)
+static int add_material(struct output_report *json, const char *name,
+                        const struct mesh_elastic *elastic, struct cloth_error *error)
 {
-    char *text = NULL;
-    if (asprintf(&text, "material_%s_%s", name, key) < 0)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the report");
-    output_report_number(json, text, value);
-    free(text);
-    return CLOTH_OK;
-}
-
-static int add_materials(struct output_report *json, const struct summary *summary,
-                         struct cloth_error *error)
-{
-    int code = CLOTH_OK;
-    for (uint32_t i = 0; i < summary->model->n_materials; i++) {
-        const char *name = summary->model->materials[i].name;
-        const struct mesh_elastic *elastic = summary->elastic + i;
-        code = code ? code : add_modulus(json, name, "E_warp", elastic->warp, error);
-        code = code ? code : add_modulus(json, name, "E_weft", elastic->weft, error);
-        code = code ? code : add_modulus(json, name, "G", elastic->shear, error);
-        code = code ? code : add_modulus(json, name, "nu12", elastic->poisson, error);
+    static const char *const keys[] = {"E_warp", "E_weft", "G", "nu12"};
+    const double value[] = {elastic->warp, elastic->weft, elastic->shear, elastic->poisson};
+    for (int i = 0; i < 4; i++) {
+        char *key = NULL;
+        if (asprintf(&key, "material_%s_%s", name, keys[i]) < 0)
+            return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the report");
+        output_report_number(json, key, value[i]);
+        free(key);
     }
-    return code;
+    return CLOTH_OK;
 }
 
 static void add_times(struct output_report *json, const struct flow_report *report)
@@ -116,10 +119,8 @@ static void add_solver(struct output_report *json, const struct summary *summary
 {
     const struct flow_report *report = summary->report;
     output_report_number(json, "cg_iterations_mean", summary_iterations_mean(summary));
-    if (model_is_implicit(summary->model))
-        output_report_integer(json, "cg_iterations_max", report->cg_iterations_max);
-    else
-        output_report_null(json, "cg_iterations_max");
+    add_optional(json, "cg_iterations_max", model_is_implicit(summary->model),
+                 report->cg_iterations_max);
     output_report_number(json, "mass_norm_error", report->mass_norm_error);
     output_report_number(json, "momentum_lost", report->momentum_lost);
     output_report_integer(json, "cg_restarts", report->cg_restarts);
@@ -180,10 +181,7 @@ static void add_contact(struct output_report *json, const struct summary *summar
     output_report_integer(json, "contact_queries_again", report->contact_queries_again);
     output_report_integer(json, "contact_graphs", report->contact_graphs);
     output_report_integer(json, "contact_pinches", report->contact_pinches);
-    if (report->contact_pinch[0])
-        output_report_text(json, "contact_pinch", report->contact_pinch);
-    else
-        output_report_null(json, "contact_pinch");
+    add_text(json, "contact_pinch", *report->contact_pinch ? report->contact_pinch : NULL);
 }
 
 static void add_runtime(struct output_report *json, const struct summary *summary)
@@ -204,7 +202,7 @@ static void add_runtime(struct output_report *json, const struct summary *summar
     output_report_number(json, "idle_fraction", summary_ratio(counters->idle, total));
     output_report_number(json, "overhead_ns_per_task",
                          summary_ratio(overhead, (double)counters->tasks));
-    summary_limit_add(json, summary);
+    add_text(json, "limited_by", summary_limit(summary));
     output_report_number(json, "communication_hidden_fraction", summary_hidden_fraction(summary));
     output_report_number(json, "critical_path_seconds", summary->critical_path);
     output_report_number(json, "lower_bound_seconds", summary->lower_bound);
@@ -214,38 +212,63 @@ static void add_runtime(struct output_report *json, const struct summary *summar
     output_report_integer(json, "peak_memory_bytes", summary->memory_bytes);
 }
 
-static void add_untangled(struct output_report *json, const struct untangle_result *result)
+static void add_checks(struct output_report *json, const struct summary *summary)
 {
-    output_report_integer(json, "untangle_rounds", result->rounds);
-    output_report_integer(json, "untangle_vertices", result->moved);
-    output_report_number(json, "untangle_largest", result->largest);
+    const struct untangle_result *untangled = summary->untangled;
+    const struct intersections_found *found = summary->intersections;
+    const struct drape_found *drape = summary->drape;
+    output_report_integer(json, "untangle_rounds", untangled->rounds);
+    output_report_integer(json, "untangle_vertices", untangled->moved);
+    output_report_number(json, "untangle_largest", untangled->largest);
+    add_optional(json, "intersections", found, found ? found->pairs : 0);
+    add_optional(json, "intersections_shapes", found, found ? found->with_shapes : 0);
+    add_optional(json, "intersections_frame", found && found->bad, found ? found->first : 0);
+    output_report_number(json, "drape_coefficient_percent", drape ? drape->coefficient : NAN);
+    output_report_number(json, "drape_shadow_m2", drape ? drape->shadow : NAN);
 }
 
-static void add_intersections(struct output_report *json, const struct intersections_found *found)
-{
-    const double none = NAN;
-    output_report_number(json, "intersections", found ? (double)found->pairs : none);
-    output_report_number(json, "intersections_shapes", found ? (double)found->with_shapes : none);
-    output_report_number(json, "intersections_frame",
-                         found && found->bad ? (double)found->first : none);
-}
+const char *const summary_seam_states[MODEL_SEAMS_STATES] = {"open", "pulled", "welded"};
 
-static void add_drape(struct output_report *json, const struct drape_found *found)
+static void add_seams(struct output_report *json, const struct model *model,
+                      const struct flow_report *report)
 {
-    output_report_number(json, "drape_coefficient_percent", found ? found->coefficient : NAN);
-    output_report_number(json, "drape_shadow_m2", found ? found->shadow : NAN);
+    bool any = false;
+    add_optional(json, "seams_open", report->seams > 0, report->seams_open);
+    output_report_number(json, "seam_distance", report->seams ? report->seam_distance : NAN);
+    output_report_number(json, "sewn_seconds", report->seams ? report->sewn_seconds : NAN);
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        for (uint32_t s = 0; s < model->cloths[c].seams.n; s++) {
+            const struct model_seam *seam = model->cloths[c].seams.seam + s;
+            if (!any)
+                output_report_list(json, "seams");
+            any = true;
+            output_report_item(json);
+            output_report_text(json, "cloth", model->cloths[c].name);
+            output_report_integer(json, "seam", s);
+            output_report_text(json, "panel_from", seam->side[0].panel);
+            output_report_integer(json, "edge_from", seam->side[0].edge);
+            output_report_text(json, "panel_to", seam->side[1].panel);
+            output_report_integer(json, "edge_to", seam->side[1].edge);
+            output_report_integer(json, "pairs", seam->n_pairs);
+            output_report_integer(json, "reversed", seam->reversed);
+            output_report_text(json, "state", summary_seam_states[seam->sewing.state]);
+            output_report_number(json, "distance", seam->distance[seam->reversed]);
+            output_report_number(json, "distance_other", seam->distance[!seam->reversed]);
+        }
+    if (any)
+        output_report_list_end(json);
 }
 
 /* Adds the phases that began and did not fail. */
-static void summary_add_phases(struct output_report *json, const struct phases *phases)
+static void add_phases(struct output_report *json, const struct phases *phases)
 {
     if (!phases->named)
         return;
     output_report_list(json, "phases");
-    for (uint32_t i = 0; i < phases->n && phases->done[i].ended; i++) {
+    for (uint32_t i = 0; i < phases->n && *phases->done[i].ended; i++) {
         const struct phase_done *done = phases->done + i;
         output_report_item(json);
-        output_report_text(json, "name", done->name);
+        output_report_text(json, "name", phases_label(phases, i));
         output_report_integer(json, "steps", done->steps);
         output_report_number(json, "cg_iterations_mean", done->cg_iterations_mean);
         output_report_number(json, "simulated_seconds", done->simulated_seconds);
@@ -257,6 +280,7 @@ static void summary_add_phases(struct output_report *json, const struct phases *
 
 int summary_write(const struct summary *summary, const char *path, struct cloth_error *error)
 {
+    const struct model *model = summary->model;
     struct output_report *json = NULL;
     int code = output_report_new(&json, error);
     if (code)
@@ -266,15 +290,14 @@ int summary_write(const struct summary *summary, const char *path, struct cloth_
     add_solver(json, summary);
     add_energies(json, summary->report);
     add_runtime(json, summary);
-    code = add_materials(json, summary, error);
+    for (uint32_t i = 0; i < model->n_materials && !code; i++)
+        code = add_material(json, model->materials[i].name, summary->elastic + i, error);
     output_report_number(json, "max_stretch", summary->report->max_stretch);
     output_report_number(json, "stretch_highest", summary->report->stretch_highest);
-    add_untangled(json, summary->untangled);
-    add_intersections(json, summary->intersections);
-    add_drape(json, summary->drape);
+    add_checks(json, summary);
     add_hash(json, "state_hash", summary->report->state_hash);
-    summary_add_phases(json, summary->phases);
-    summary_seams_add(json, summary->model, summary->report);
+    add_phases(json, summary->phases);
+    add_seams(json, model, summary->report);
     if (!code)
         code = output_report_write(json, path, error);
     output_report_free(json);

@@ -1,8 +1,6 @@
 /* Everything printed here comes from the report of the run; nothing is measured. */
 #include "cloth/app/report/summary.h"
 
-#include "cloth/app/report/summary_parts.h"
-#include "cloth/app/report/summary_time.h"
 #include "cloth/base/simd.h"
 
 #include <inttypes.h>
@@ -88,14 +86,45 @@ static void print_contact(FILE *file, const struct model *model, const struct fl
                 report->contact_pinches, report->contact_pinch);
 }
 
+static void print_seam(FILE *file, const struct model_cloth *cloth, uint32_t s)
+{
+    const struct model_seam *seam = cloth->seams.seam + s;
+    fprintf(file,
+            "  seam %-11" PRIu32 " edge %" PRIu32 " of %.40s, edge %" PRIu32 " of %.40s%s: %" PRIu32
+            " pairs, %.4g m apart (%.4g the other way round), %s\n",
+            s, seam->side[0].edge, seam->side[0].panel, seam->side[1].edge, seam->side[1].panel,
+            seam->reversed ? ", reversed" : "", seam->n_pairs, seam->distance[seam->reversed],
+            seam->distance[!seam->reversed], summary_seam_states[seam->sewing.state]);
+}
+
+static void print_seams(FILE *file, const struct model *model, const struct flow_report *report)
+{
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        const struct model_cloth *cloth = model->cloths + c;
+        if (cloth->seams.n)
+            fprintf(file, "  seams            of %.40s: %" PRIu32 "\n", cloth->name,
+                    cloth->seams.n);
+        for (uint32_t s = 0; s < cloth->seams.n; s++)
+            print_seam(file, cloth, s);
+    }
+    if (!report->seams)
+        return;
+    fprintf(file,
+            "  sewing           %" PRIu64 " of %" PRIu64 " pulled seams open, by %.4g m at most",
+            report->seams_open, report->seams, report->seam_distance);
+    if (!isnan(report->sewn_seconds))
+        fprintf(file, "; closed after %g s", report->sewn_seconds);
+    fputc('\n', file);
+}
+
 static void print_phases(FILE *file, const struct phases *phases)
 {
     for (uint32_t i = 0; i < phases->n && phases->named; i++) {
         const struct phase_done *done = phases->done + i;
-        if (done->ended)
+        if (*done->ended)
             fprintf(file, "  phase %-10.40s %" PRIu64 " steps, %g s simulated in %.3f s, %s\n",
-                    done->name, done->steps, done->simulated_seconds, done->wall_seconds,
-                    strcmp(done->ended, "rest") == 0 ? "to rest" : done->ended);
+                    phases_label(phases, i), done->steps, done->simulated_seconds,
+                    done->wall_seconds, strcmp(done->ended, "rest") == 0 ? "to rest" : done->ended);
     }
 }
 
@@ -125,7 +154,7 @@ static void print_events(FILE *file, const struct summary *summary)
     const struct flow_report *report = summary->report;
     const struct model *model = summary->model;
     print_phases(file, summary->phases);
-    summary_seams_print(file, model, report);
+    print_seams(file, model, report);
     if (model->n_obstacles || model_seeks(model))
         fprintf(file, "  contact          %s%s\n", model_contact_name(model),
                 model->contact.assumed ? ", by default" : "");

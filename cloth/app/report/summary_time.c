@@ -1,11 +1,10 @@
 /* All of it follows from the counters of the run; nothing is measured. The names of limits are
  * those of duite-trace (tools/trace/sums.c), so that a run and its trace speak of the same
  * things. */
-#include "cloth/app/report/summary_time.h"
+#include "cloth/app/report/summary.h"
 
 #include <inttypes.h>
 #include <math.h>
-#include <string.h>
 
 enum limit { WORK, PATH, MESSAGES, STARVED, RUNTIME, LIMITS };
 
@@ -17,35 +16,33 @@ static const struct {
                    [STARVED] = {"too few ready tasks", ""},
                    [RUNTIME] = {"runtime and main program", "the "}};
 
-/* Seconds in the tasks of each kind; NaN: there were none. */
+/* Kinds of tasks, each with its seconds in the report; NaN: there were none. */
 enum { KINDS = 9 };
-struct kind {
+#define AT(member) offsetof(struct flow_report, member)
+static const struct {
     const char *row, *name; /* in the table; in a sentence */
-    double seconds;
-};
+    size_t seconds;
+} KIND[KINDS] = {{"force", "forces", AT(seconds_force)},
+                 {"acceleration", "accelerations", AT(seconds_acceleration)},
+                 {"matrix", "the matrix", AT(seconds_matrix)},
+                 {"CG", "CG", AT(seconds_cg)},
+                 {"velocity", "velocities", AT(seconds_velocity)},
+                 {"position", "positions", AT(seconds_position)},
+                 {"collide", "contact", AT(seconds_collide)},
+                 {"correction", "velocity correction", AT(seconds_correction)},
+                 {"output", "output", AT(seconds_output)}};
 
-static void find_kinds(const struct flow_report *r, struct kind kinds[KINDS])
+static double seconds_of(const struct flow_report *report, size_t kind)
 {
-    const struct kind all[KINDS] = {{"force", "forces", r->seconds_force},
-                                    {"acceleration", "accelerations", r->seconds_acceleration},
-                                    {"matrix", "the matrix", r->seconds_matrix},
-                                    {"CG", "CG", r->seconds_cg},
-                                    {"velocity", "velocities", r->seconds_velocity},
-                                    {"position", "positions", r->seconds_position},
-                                    {"collide", "contact", r->seconds_collide},
-                                    {"correction", "velocity correction", r->seconds_correction},
-                                    {"output", "output", r->seconds_output}};
-    memcpy(kinds, all, sizeof all);
+    return *(const double *)((const char *)report + KIND[kind].seconds);
 }
 
 void summary_time_print(FILE *file, const struct flow_report *report)
 {
-    struct kind kinds[KINDS];
-    find_kinds(report, kinds);
     fprintf(file, "  seconds in tasks, over all workers\n");
     for (size_t i = 0; i < KINDS; i++)
-        if (!isnan(kinds[i].seconds))
-            fprintf(file, "    %-14s %12.4f\n", kinds[i].row, kinds[i].seconds);
+        if (!isnan(seconds_of(report, i)))
+            fprintf(file, "    %-14s %12.4f\n", KIND[i].row, seconds_of(report, i));
 }
 
 /* Shares of the workers' time, of which work, messages, starved and runtime add up to 1. The
@@ -61,9 +58,9 @@ static void find_shares(const struct summary *summary, double share[LIMITS])
     share[MESSAGES] = exposed / all;
     share[STARVED] = (counters->idle - exposed) / all;
     share[RUNTIME] = 1 - share[WORK] - share[MESSAGES] - share[STARVED];
-    const struct simulate_options *options = summary->options;
-    const bool whole = options->trace && !options->trace_first &&
-                       options->trace_end == UINT64_MAX && summary->phases->n == 1;
+    const duite_options *runtime = &summary->options->runtime;
+    const bool whole = runtime->trace && !runtime->trace_first &&
+                       runtime->trace_end == UINT64_MAX && summary->phases->n == 1;
     share[PATH] =
         whole && summary->critical_path > 0 ? summary->critical_path / report->wall_seconds : 0;
 }
@@ -81,99 +78,87 @@ static enum limit find_limit(const struct summary *summary, double share[LIMITS]
 }
 
 /* The kind of task with most seconds, and its part of the seconds of all. */
-static void say_kind(char *text, size_t size, const struct flow_report *report)
+static void print_kind(FILE *file, const struct flow_report *report)
 {
-    struct kind kinds[KINDS];
     size_t most = 0;
     double all = 0;
-    find_kinds(report, kinds);
     for (size_t i = 0; i < KINDS; i++) {
-        all += fmax(kinds[i].seconds, 0);
-        if (!(kinds[most].seconds >= kinds[i].seconds) && !isnan(kinds[i].seconds))
+        all += fmax(seconds_of(report, i), 0);
+        if (!(seconds_of(report, most) >= seconds_of(report, i)) && !isnan(seconds_of(report, i)))
             most = i;
     }
-    *text = '\0';
     if (all > 0)
-        snprintf(text, size, ", %.0f %% of that in %s", 100 * kinds[most].seconds / all,
-                 kinds[most].name);
+        fprintf(file, ", %.0f %% of that in %s", 100 * seconds_of(report, most) / all,
+                KIND[most].name);
 }
 
 /* Names repeated steps or solves if they are a quarter of all or more. */
-static void say_repeats(char *text, size_t size, const struct flow_report *report)
+static void print_repeats(FILE *file, const struct flow_report *report)
 {
     const double given_up = (double)(report->steps_halved + report->steps_retaken);
     const double begun = (double)report->steps + given_up;
     const double contact = (double)report->contact_solves;
     const double again = given_up / begun, solved_again = contact / (begun + contact);
-    *text = '\0';
     if (fmax(again, solved_again) < 0.25)
         return;
     if (again > solved_again)
-        snprintf(text, size, "; %.0f %% of the steps were given up and made again", 100 * again);
+        fprintf(file, "; %.0f %% of the steps were given up and made again", 100 * again);
     else
-        snprintf(text, size, "; %.0f %% of the solves were made again for contact",
-                 100 * solved_again);
+        fprintf(file, "; %.0f %% of the solves were made again for contact", 100 * solved_again);
 }
 
 /* Why there may have been too few tasks. */
-static void say_tasks(char *text, size_t size, const struct summary *summary)
+static void print_tasks(FILE *file, const struct summary *summary)
 {
+    const uint64_t blocks = summary->report->blocks;
     if (summary->threads > summary->cores)
-        snprintf(text, size, "%u workers on %u core%s", summary->threads, summary->cores,
-                 summary->cores == 1 ? "" : "s");
+        fprintf(file, ", with %u workers on %u core%s", summary->threads, summary->cores,
+                summary->cores == 1 ? "" : "s");
     else
-        snprintf(text, size, "%" PRIu64 " block%s for %" PRIu64 " worker%s",
-                 summary->report->blocks, summary->report->blocks == 1 ? "" : "s", summary->workers,
-                 summary->workers == 1 ? "" : "s");
+        fprintf(file, ", with %" PRIu64 " block%s for %" PRIu64 " worker%s", blocks,
+                blocks == 1 ? "" : "s", summary->workers, summary->workers == 1 ? "" : "s");
 }
 
-static void say_fact(char *text, size_t size, enum limit limit, const struct summary *summary,
-                     double percent)
+static void print_fact(FILE *file, enum limit limit, const struct summary *summary, double percent)
 {
-    char more[100] = "";
     switch (limit) {
     case WORK:
-        say_kind(more, sizeof more, summary->report);
-        snprintf(text, size, "the workers were busy for %.0f %% of the time%s", percent, more);
-        break;
+        fprintf(file, "the workers were busy for %.0f %% of the time", percent);
+        print_kind(file, summary->report);
+        return;
     case PATH:
-        snprintf(text, size, "tasks that wait for one another took %.0f %% of the time", percent);
-        break;
+        fprintf(file, "tasks that wait for one another took %.0f %% of the time", percent);
+        return;
     case MESSAGES:
-        snprintf(text, size, "the workers had no task and awaited messages for %.0f %% of the time",
-                 percent);
-        break;
+        fprintf(file, "the workers had no task and awaited messages for %.0f %% of the time",
+                percent);
+        return;
     case STARVED:
-        say_tasks(more, sizeof more, summary);
-        snprintf(text, size, "the workers had no task for %.0f %% of the time, with %s", percent,
-                 more);
-        break;
+        fprintf(file, "the workers had no task for %.0f %% of the time", percent);
+        print_tasks(file, summary);
+        return;
     default:
-        snprintf(text, size,
-                 "the workers were between tasks for %.0f %% of the time, with %" PRIu64 " tasks",
-                 percent, summary->report->counters.tasks);
+        fprintf(file,
+                "the workers were between tasks for %.0f %% of the time, with %" PRIu64 " tasks",
+                percent, summary->report->counters.tasks);
     }
 }
 
 void summary_limit_print(FILE *file, const struct summary *summary)
 {
     double share[LIMITS];
-    char fact[240], repeats[120];
     const enum limit limit = find_limit(summary, share);
     if (limit == LIMITS)
         return;
-    say_fact(fact, sizeof fact, limit, summary, 100 * share[limit]);
-    say_repeats(repeats, sizeof repeats, summary->report);
-    fprintf(file, "Limited by %s%s: %s%s.\n", LIMIT[limit].article, LIMIT[limit].name, fact,
-            repeats);
+    fprintf(file, "Limited by %s%s: ", LIMIT[limit].article, LIMIT[limit].name);
+    print_fact(file, limit, summary, 100 * share[limit]);
+    print_repeats(file, summary->report);
+    fputs(".\n", file);
 }
 
-void summary_limit_add(struct output_report *json, const struct summary *summary)
+const char *summary_limit(const struct summary *summary)
 {
     double share[LIMITS];
     const enum limit limit = find_limit(summary, share);
-    if (limit < LIMITS)
-        output_report_text(json, "limited_by", LIMIT[limit].name);
-    else
-        output_report_null(json, "limited_by");
+    return limit < LIMITS ? LIMIT[limit].name : NULL;
 }

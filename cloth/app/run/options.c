@@ -13,25 +13,18 @@
 
 /* ---- The environment ---- */
 
-static const char *options_name_of(const char *variable, const char *otherwise)
+static const char *name_of(const char *variable, const char *const *names)
 {
     const char *name = getenv(variable);
-    return name ? name : otherwise;
+    return name ? name : names[0];
 }
 
 void environment_begin(struct simulate_options *run)
 {
-    const duite_options defaults = duite_options_default();
-    run->scheduler = defaults.scheduler;
-    run->scheduler_name = options_name_of("DUITE_SCHEDULER", duite_scheduler_names()[0]);
-    run->mapping = defaults.mapping;
-    run->mapping_name = options_name_of("DUITE_MAPPING", duite_mapping_names()[0]);
-    run->balance = defaults.balance;
-    run->balance_name = options_name_of("DUITE_BALANCE", duite_balancer_names()[0]);
-    run->threads = defaults.threads;
-    run->seed = defaults.seed;
-    run->trace = defaults.trace;
-    run->trace_end = UINT64_MAX;
+    run->runtime = duite_options_default();
+    run->scheduler_name = name_of("DUITE_SCHEDULER", duite_scheduler_names());
+    run->mapping_name = name_of("DUITE_MAPPING", duite_mapping_names());
+    run->balance_name = name_of("DUITE_BALANCE", duite_balancer_names());
 }
 
 static int wrong_variable(struct cloth_error *error, const char *variable, const char *why)
@@ -43,22 +36,21 @@ static int wrong_variable(struct cloth_error *error, const char *variable, const
 /* A policy is NULL, a number the largest of its type, only if the environment made it so. */
 int environment_check(const struct simulate_options *run, struct cloth_error *error)
 {
-    const duite_options defaults = duite_options_default();
-    if (!run->scheduler && !duite_scheduler_find(run->scheduler_name))
+    const duite_options *runtime = &run->runtime, defaults = duite_options_default();
+    char threads[60];
+    if (!runtime->scheduler && !duite_scheduler_find(run->scheduler_name))
         return wrong_variable(error, "DUITE_SCHEDULER", duite_message());
-    if (!run->mapping && !duite_mapping_find(run->mapping_name))
+    if (!runtime->mapping && !duite_mapping_find(run->mapping_name))
         return wrong_variable(error, "DUITE_MAPPING", duite_message());
-    if (!run->balance && !duite_balancer_find(run->balance_name))
+    if (!runtime->balance && !duite_balancer_find(run->balance_name))
         return wrong_variable(error, "DUITE_BALANCE", duite_message());
-    if (run->threads == UINT_MAX) {
-        char why[60];
-        snprintf(why, sizeof why, "a whole number from 0 to %d is expected", DUITE_MAX_THREADS);
-        return wrong_variable(error, "DUITE_THREADS", why);
-    }
-    if (run->seed == UINT64_MAX && defaults.seed == UINT64_MAX)
+    snprintf(threads, sizeof threads, "a whole number from 0 to %d is expected", DUITE_MAX_THREADS);
+    if (runtime->threads == UINT_MAX)
+        return wrong_variable(error, "DUITE_THREADS", threads);
+    if (runtime->seed == UINT64_MAX && defaults.seed == UINT64_MAX)
         return wrong_variable(error, "DUITE_SEED",
                               "a whole number from 0 to 18446744073709551614 is expected");
-    if (run->trace && !*run->trace)
+    if (runtime->trace && !*runtime->trace)
         return wrong_variable(error, "DUITE_TRACE", "the name of a file is expected");
     return CLOTH_OK;
 }

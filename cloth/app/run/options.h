@@ -18,14 +18,8 @@ struct simulate_options {
     double checkpoint;       /* s: between two checkpoints; 0: none */
     const char *save_system; /* folder; NULL: none */
     const char *live;        /* address of the live view (live_is_address); NULL: none */
-    const char *trace;       /* file; NULL: none */
-    uint64_t trace_first, trace_end;         /* steps from .. to the one before */
-    const struct duite_scheduler *scheduler; /* never NULL when it runs */
-    const struct duite_mapping *mapping;     /* as that */
-    const struct duite_balancer *balance;    /* as that */
+    duite_options runtime;   /* policies are never NULL when it runs */
     const char *scheduler_name, *mapping_name, *balance_name;
-    unsigned threads; /* 0: the rank's share of the cores */
-    uint64_t seed;
     bool check_intersections; /* of each frame */
     bool quiet;               /* neither progress nor summary */
 };

@@ -2,7 +2,7 @@
  * first write, and stay locked. */
 #include "cloth/app/run/outputs.h"
 
-#include "cloth/app/run/keeper.h"
+#include "cloth/app/run/checkpoints.h"
 #include "cloth/app/run/outputs_setup.h"
 #include "cloth/base/memory.h"
 #include "cloth/output/output.h"
@@ -20,12 +20,6 @@ static int lock_folder(struct output_lock **lock, const char *folder, struct clo
     if (note.code && !code)
         fprintf(stderr, "duite-cloth: warning: %s\n", note.text);
     return code;
-}
-
-/* The live view's thread calls it, too. */
-static void outputs_warn(const char *text)
-{
-    fprintf(stderr, "duite-cloth: warning: %s\n", text);
 }
 
 /* Port 0. */
@@ -85,17 +79,14 @@ static int open_forces(struct outputs *to, const struct model *model, const stru
                : output_forces_forget(folder, error);
 }
 
-/* Frames and rows of an earlier run that stay, over all its phases. */
-struct stays {
-    uint64_t frames, rows;
-};
-
+/* Opens the files, of the first phase of this run. resumed: an earlier run's files go on. */
 static int open_output(struct outputs *to, const struct phases *phases, const struct flow *flow,
-                       struct output_setup *setup, const struct stays *stays,
+                       struct output_setup *setup, const struct flow_resumed *resumed,
                        struct cloth_error *error)
 {
     const struct model *model = phases_model(phases);
-    const uint64_t *n_frames = stays ? &stays->frames : NULL;
+    const uint64_t rows = phases_before(phases).steps + (resumed ? resumed->steps : 0) + 1;
+    const uint64_t *n_frames = resumed ? &resumed->frames : NULL;
     setup->n_frames = n_frames;
     int code = output_settler_open(&to->settler, error);
     setup->settler = to->settler;
@@ -103,7 +94,7 @@ static int open_output(struct outputs *to, const struct phases *phases, const st
     code = code ? code : outputs_open_colours(to, phases, flow, n_frames, error);
     code = code ? code : outputs_hdf5_open(&to->hdf5, model, to->options->output, n_frames, error);
     code = code ? code : open_forces(to, model, flow, n_frames, error);
-    return code ? code : open_probes(to, flow, stays ? &stays->rows : NULL, error);
+    return code ? code : open_probes(to, flow, resumed ? &rows : NULL, error);
 }
 
 int outputs_lock(struct outputs *to, const struct simulate_options *options,
@@ -125,9 +116,7 @@ static int open_keeper(struct outputs *to, const struct phases *phases, bool res
     if (!(options->checkpoint > 0))
         return CLOTH_OK;
     to->settings = phases_settings(phases, error);
-    return to->settings ? keeper_open(&to->keeper, options->output, options->checkpoint,
-                                      to->settings, to->settler, to->hdf5.frames, error)
-                        : error->code;
+    return to->settings ? keeper_open(&to->keeper, to, error) : error->code;
 }
 
 /* Checks, before the first write, that the live view can listen. */
@@ -143,21 +132,38 @@ static int open_live(struct outputs *to, struct cloth_error *error)
     return code;
 }
 
-/* Files, and the scene of the live view, of the first phase of this run. */
-static int outputs_open_frames(struct outputs *to, const struct phases *phases,
-                               const struct flow *flow, const struct contact_apart *apart,
-                               const struct flow_resumed *resumed, struct cloth_error *error)
+/* Files, and the places of obstacles and seams for the frames of all phases up to this one. flow:
+ * of the first phase of this run; NULL: its files go on. */
+static int show_scene(struct outputs *to, const struct phases *phases, const struct flow *flow,
+                      const struct contact_apart *apart, const struct flow_resumed *resumed,
+                      struct cloth_error *error)
 {
-    const struct flow_before before = phases_before(phases);
-    const struct stays stays = {.frames = resumed ? resumed->frames : 0,
-                                .rows = before.steps + (resumed ? resumed->steps : 0) + 1};
+    const double begin = phases->total.simulated_seconds;
     struct outputs_setup made;
     int code = outputs_setup_make(&made, to->options, phases, apart, error);
-    if (!code && to->options->output)
-        code = open_output(to, phases, flow, &made.setup, resumed ? &stays : NULL, error);
+    if (!code && flow && to->options->output)
+        code = open_output(to, phases, flow, &made.setup, resumed, error);
+    else if (!code && to->frames)
+        code = output_scene(to->frames, &made.setup, error);
+    if (!code && !flow && to->frames)
+        output_bodies_go_on(to->frames, made.setup.bodies, begin);
     if (!code && to->live)
-        code = live_publish_scene(to->live, &made.setup, phases->total.simulated_seconds, error);
+        code = live_publish_scene(to->live, &made.setup, begin, error);
     outputs_setup_free(&made);
+    return code;
+}
+
+/* Looks for intersections in the frames of the phase. */
+static int open_check(struct outputs *to, const struct phases *phases,
+                      const struct contact_apart *apart, struct cloth_error *error)
+{
+    intersections_close(&to->intersections);
+    if (!to->options->check_intersections)
+        return CLOTH_OK;
+    const int code = intersections_of(&to->intersections, phases_model(phases), apart,
+                                      "duite-cloth", false, &to->found, error);
+    if (!code)
+        intersections_begin(to->intersections, phases->total.simulated_seconds);
     return code;
 }
 
@@ -166,11 +172,9 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
                  const struct contact_apart *apart, const struct flow_resumed *resumed,
                  struct cloth_error *error)
 {
-    const struct model *model = phases_model(phases), *last = phases->models + phases->n - 1;
+    const struct model *last = phases->models + phases->n - 1;
     to->options = options;
-    int code = CLOTH_OK;
-    if (options->check_intersections)
-        code = intersections_of(&to->intersections, model, apart, "duite-cloth", false, error);
+    int code = open_check(to, phases, apart, error);
     if (!code)
         code = drape_of(&to->drape, last, error);
     if (!code && options->live)
@@ -180,66 +184,23 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
     if (!code)
         code = outputs_lock(to, options, error);
     if (!code && (options->output || options->live))
-        code = outputs_open_frames(to, phases, flow, apart, resumed, error);
+        code = show_scene(to, phases, flow, apart, resumed, error);
     if (!code && options->output)
         code = open_keeper(to, phases, resumed, error);
     return code || !phases->now ? code : outputs_go_on(to, phases, apart, error);
 }
 
-/* Writes places of obstacles and seams for the frames of all phases up to this one. */
-static int write_scene(const struct outputs *of, const struct phases *phases,
-                       const struct contact_apart *apart, struct cloth_error *error)
-{
-    const double begin = phases->total.simulated_seconds;
-    struct outputs_setup made;
-    int code = outputs_setup_make(&made, of->options, phases, apart, error);
-    if (!code && of->frames)
-        code = output_scene(of->frames, &made.setup, error);
-    if (!code && of->frames)
-        output_bodies_go_on(of->frames, made.setup.bodies, begin);
-    if (!code && of->live)
-        code = live_publish_scene(of->live, &made.setup, begin, error);
-    outputs_setup_free(&made);
-    return code;
-}
-
 int outputs_go_on(struct outputs *to, const struct phases *phases,
                   const struct contact_apart *apart, struct cloth_error *error)
 {
-    int code = CLOTH_OK;
-    outputs_count(to);
-    if (to->options->check_intersections)
-        code = intersections_of(&to->intersections, phases_model(phases), apart, "duite-cloth",
-                                false, error);
-    if (to->intersections)
-        intersections_begin(to->intersections, phases->total.simulated_seconds);
+    int code = open_check(to, phases, apart, error);
     if (!code)
         code = outputs_colours_rest(&to->colours, phases_model(phases),
                                     phases_before(phases).frames, error);
     if (!code)
         code = outputs_hdf5_go_on(&to->hdf5, phases_model(phases), error);
-    return code || !(to->frames || to->live) ? code : write_scene(to, phases, apart, error);
-}
-
-struct intersections_found outputs_found(const struct outputs *of)
-{
-    struct intersections_found all = of->found;
-    if (!of->intersections)
-        return all;
-    const struct intersections_found last = intersections_found(of->intersections);
-    if (!all.bad)
-        all.first = last.first;
-    all.frames = last.frames > all.frames ? last.frames : all.frames; /* up to its last */
-    all.bad += last.bad;
-    all.pairs = last.pairs > all.pairs ? last.pairs : all.pairs;
-    all.with_shapes = last.with_shapes > all.with_shapes ? last.with_shapes : all.with_shapes;
-    return all;
-}
-
-void outputs_count(struct outputs *of)
-{
-    of->found = outputs_found(of);
-    intersections_close(&of->intersections);
+    return code || !(to->frames || to->live) ? code
+                                             : show_scene(to, phases, NULL, apart, NULL, error);
 }
 
 void outputs_close(struct outputs *of, struct cloth_error *error)
@@ -257,16 +218,17 @@ void outputs_close(struct outputs *of, struct cloth_error *error)
 void outputs_free(struct outputs *of)
 {
     intersections_close(&of->intersections);
-    drape_close(&of->drape);
+    drape_free(&of->drape);
     free(of->settings);
     of->settings = NULL;
     output_lock_free(of->locks);
     output_lock_free(of->locks + 1);
 }
 
-/* ---- Calls from the run ---- */
+/* ---- Calls from the flow ---- */
 
-int outputs_system(void *context, const struct solve_system *system, struct cloth_error *error)
+static int outputs_system(void *context, const struct solve_system *system,
+                          struct cloth_error *error)
 {
     const struct outputs *of = context;
     return output_system(of->options->save_system, system, error);
@@ -282,8 +244,8 @@ static int outputs_check_frame(const struct outputs *of, uint64_t frame, double 
     return intersections_frame(of->intersections, frame, time, position, true, error);
 }
 
-int outputs_frame(void *context, uint64_t frame, double time, const double *position,
-                  struct cloth_error *error)
+static int outputs_frame(void *context, uint64_t frame, double time, const double *position,
+                         struct cloth_error *error)
 {
     struct outputs *of = context;
     int code = CLOTH_OK;
@@ -297,13 +259,12 @@ int outputs_frame(void *context, uint64_t frame, double time, const double *posi
         live_publish_frame(of->live, frame, time, position);
     if (!code && of->intersections)
         code = outputs_check_frame(of, frame, time, position, error);
-    if (of->drape)
-        drape_frame(of->drape, position);
+    drape_frame(&of->drape, position);
     return code;
 }
 
 /* Waits first: frames before one that failed may still be on their way to the disk. */
-uint64_t outputs_written(void *context)
+static uint64_t outputs_written(void *context)
 {
     const struct outputs *of = context;
     struct cloth_error said = {0};
@@ -311,14 +272,15 @@ uint64_t outputs_written(void *context)
     return of->frames ? output_frames_settled(of->frames) : of->frames_written;
 }
 
-int outputs_places(void *context, uint64_t frame, const struct flow_places *places,
-                   struct cloth_error *error)
+static int outputs_places(void *context, uint64_t frame, const struct flow_places *places,
+                          struct cloth_error *error)
 {
     struct outputs *of = context;
     return outputs_colours_places(&of->colours, frame, places, error);
 }
 
-int outputs_beside(void *context, const struct flow_beside *beside, struct cloth_error *error)
+static int outputs_beside(void *context, const struct flow_beside *beside,
+                          struct cloth_error *error)
 {
     struct outputs *of = context;
     (void)error;
@@ -326,16 +288,32 @@ int outputs_beside(void *context, const struct flow_beside *beside, struct cloth
     return CLOTH_OK;
 }
 
-int outputs_force(void *context, uint64_t frame, const double *force, struct cloth_error *error)
+static int outputs_force(void *context, uint64_t frame, const double *force,
+                         struct cloth_error *error)
 {
     struct outputs *of = context;
     outputs_hdf5_force(&of->hdf5, force);
     return output_forces_frame(of->forces, frame, force, error);
 }
 
-int outputs_row(void *context, uint64_t step, double time, size_t n, const double *values,
-                struct cloth_error *error)
+static int outputs_row(void *context, uint64_t step, double time, size_t n, const double *values,
+                       struct cloth_error *error)
 {
     const struct outputs *of = context;
     return output_probes_row(of->probes, step, time, n, values, error);
+}
+
+void outputs_receive(struct outputs *of, const struct simulate_options *options, bool frames,
+                     bool last, struct flow_output *to)
+{
+    const bool folder = options->output;
+    to->context = of;
+    to->frame = frames ? outputs_frame : NULL;
+    to->written = outputs_written;
+    to->places = folder ? outputs_places : NULL;
+    to->beside = folder ? outputs_beside : NULL;
+    to->force = folder ? outputs_force : NULL;
+    to->row = folder ? outputs_row : NULL;
+    to->system = options->save_system && last ? outputs_system : NULL;
+    to->save = options->checkpoint > 0 ? restart_save : NULL;
 }

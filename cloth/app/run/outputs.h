@@ -4,15 +4,13 @@
 #include "cloth/app/check/drape.h"
 #include "cloth/app/check/intersections.h"
 #include "cloth/app/run/options.h"
-#include "cloth/app/run/outputs_colours.h"
-#include "cloth/app/run/outputs_hdf5.h"
+#include "cloth/app/run/outputs_fields.h"
 #include "cloth/app/run/phases.h"
 #include "cloth/flow/run.h"
 #include "cloth/live/live.h"
 
 /* The outputs and checks of a run: frames, probes, forces, systems, intersections, the drape test.
  * They are on rank 0 alone, and begin as zero. All functions are local. */
-struct untangle_result;
 struct outputs {
     const struct simulate_options *options;
     struct output_lock *locks[2];        /* of the folders of frames and of the system */
@@ -25,13 +23,12 @@ struct outputs {
     struct output_colours *colours;      /* as the frames */
     struct output_forces *forces;        /* of frames; NULL: none */
     struct intersections *intersections; /* if they are looked for */
-    struct intersections_found found;    /* then, at the end; before it of the phases so far */
-    struct drape *drape;                 /* if the scene has that test */
+    struct intersections_found found;    /* then, in all frames so far, of all phases */
+    struct drape drape;                  /* if the scene has that test */
     struct drape_found drapes;           /* then, at the end */
     struct keeper *keeper;               /* of checkpoints, if they are wanted; then also: */
     char *settings;                      /* phases_settings */
     const struct phases *phases;
-    const struct untangle_result *untangled;
 };
 
 /* The folder of frames is this run's, before anything else of it is looked at. */
@@ -47,23 +44,13 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
 /* The same when a further phase begins: the frames go on. Returns a cloth_code. */
 int outputs_go_on(struct outputs *to, const struct phases *phases,
                   const struct contact_apart *apart, struct cloth_error *error);
-/* Intersections in all frames so far, of all phases; outputs_count ends the count of a phase. */
-void outputs_count(struct outputs *of);
-struct intersections_found outputs_found(const struct outputs *of);
 /* The files are whole. */
 void outputs_close(struct outputs *of, struct cloth_error *error);
 void outputs_free(struct outputs *of);
 
-/* Functions of a struct flow_output whose context is a struct outputs. */
-int outputs_frame(void *context, uint64_t frame, double time, const double *position,
-                  struct cloth_error *error);
-uint64_t outputs_written(void *context);
-int outputs_places(void *context, uint64_t frame, const struct flow_places *places,
-                   struct cloth_error *error);
-int outputs_beside(void *context, const struct flow_beside *beside, struct cloth_error *error);
-int outputs_force(void *context, uint64_t frame, const double *force, struct cloth_error *error);
-int outputs_row(void *context, uint64_t step, double time, size_t n, const double *values,
-                struct cloth_error *error);
-int outputs_system(void *context, const struct solve_system *system, struct cloth_error *error);
+/* Where the flow of a phase sends frames, if they are wanted, and all else that options ask for;
+ * the last phase sends its system. On any rank. */
+void outputs_receive(struct outputs *of, const struct simulate_options *options, bool frames,
+                     bool last, struct flow_output *to);
 
 #endif

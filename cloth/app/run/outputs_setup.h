@@ -12,7 +12,8 @@ struct outputs_setup {
     const struct mesh **meshes;
     const char **names;
     bool *posed;
-    struct phases_motions motions;
+    struct contact_shape *obstacles; /* with their motions over several phases: */
+    struct phys_key *keys;
     struct contact_apart all;
     uint32_t *joined; /* as all.joined, if that is its own */
 };

@@ -3,10 +3,10 @@
 #include "cloth/app/run/phases.h"
 
 #include "cloth/base/memory.h"
-#include "cloth/base/sets.h"
 
 #include <math.h>
 #include <mpi.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,8 +22,6 @@ int phases_read(struct phases *phases, const char *path, size_t n_sets,
     for (uint32_t i = 1; i < phases->n && !code; i++)
         code = phases_check(first, phases->models + i, i, error);
     phases->done = code ? NULL : cloth_alloc(phases->n, sizeof *phases->done, error);
-    for (uint32_t i = 0; i < phases->n && phases->named && phases->done; i++)
-        phases->done[i].name = phases->models[i].phases[i].name;
     if (phases->done && phases->n > 1)
         phases->end = cloth_alloc(phases->n_vertices, sizeof *phases->end, error);
     return error->code;
@@ -58,11 +56,9 @@ size_t phases_numbers(const struct phases *phases)
     return 6 * (size_t)phases->n_vertices;
 }
 
-/* The cloths of the phase of now. */
-static int start_at(struct phases *phases, double (*from)[6], struct cloth_error *error)
+int phases_start_at(struct model *model, double (*from)[6], struct cloth_error *error)
 {
     uint32_t first = 0;
-    struct model *model = phases_model(phases);
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const uint32_t n = model->cloths[c].mesh.n_vertices;
         double(*start)[6] = cloth_alloc(n, sizeof *start, error);
@@ -84,34 +80,14 @@ int phases_start(struct phases *phases, const double *numbers, struct cloth_erro
     if (!phases->start)
         return CLOTH_E_MEMORY;
     memcpy(phases->start, numbers, n * sizeof *numbers);
-    return start_at(phases, phases->start, error);
+    return phases_start_at(phases_model(phases), phases->start, error);
 }
 
 int phases_next(struct phases *phases, struct cloth_error *error)
 {
     phases->now++;
     return phases->keeps_start ? phases_start(phases, *phases->end, error)
-                               : start_at(phases, phases->end, error);
-}
-
-int phases_joined(const struct phases *phases, uint32_t n, uint32_t **joined,
-                  struct cloth_error *error)
-{
-    *joined = NULL;
-    for (uint32_t i = 0; i <= phases->now; i++) {
-        const uint32_t *of = phases->models[i].contact.apart.joined;
-        if (of && !*joined) {
-            *joined = cloth_alloc(n, sizeof **joined, error);
-            if (!*joined)
-                return CLOTH_E_MEMORY;
-            cloth_sets_start(*joined, n);
-        }
-        for (uint32_t v = 0; v < n && of; v++)
-            cloth_sets_join(*joined, v, of[v]);
-    }
-    for (uint32_t v = 0; v < n && *joined; v++)
-        (*joined)[v] = cloth_sets_root(*joined, v);
-    return CLOTH_OK;
+                               : phases_start_at(phases_model(phases), phases->end, error);
 }
 
 /* ---- The report of all phases ---- */
@@ -217,7 +193,8 @@ void phases_add(struct phases *phases, const struct flow_report *report)
                                    : NAN;
     done->simulated_seconds = report->simulated_seconds;
     done->wall_seconds = report->wall_seconds;
-    done->ended = ended(report, phases_model(phases)->sewn > 0);
+    done->end = phases_model(phases)->end;
+    snprintf(done->ended, sizeof done->ended, "%s", ended(report, phases_model(phases)->sewn > 0));
     *total = *report;
     if (!phases->now)
         return;
@@ -239,7 +216,7 @@ void phases_add(struct phases *phases, const struct flow_report *report)
 
 void phases_name(const struct phases *phases, struct cloth_error *error)
 {
-    const char *name = phases->done ? phases->done[phases->now].name : NULL;
+    const char *name = phases_label(phases, phases->now);
     struct cloth_error named = {0};
     if (!name || !error->code)
         return;

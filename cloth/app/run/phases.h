@@ -8,13 +8,13 @@
  * one before ended. A scene without phases is one of them. All begins as zero; on other ranks than
  * 0 the models stay so. */
 
-/* The results of a phase. */
+/* The results of a phase; checkpoints have them as they are. */
 struct phase_done {
-    const char *name; /* the model's; NULL on other ranks */
     uint64_t steps;
     double cg_iterations_mean; /* a step; NaN: of an explicit phase */
     double simulated_seconds, wall_seconds;
-    const char *ended; /* a word for the report; NULL: it did not begin, or it failed */
+    double end;     /* s: its time.end */
+    char ended[16]; /* a word for the report; empty: it did not begin, is not over, or failed */
 };
 
 struct phases {
@@ -58,6 +58,12 @@ static inline struct model *phases_model(const struct phases *phases)
 {
     return phases->models ? phases->models + phases->now : NULL;
 }
+/* The name of a phase; NULL: it has none, and on other ranks than 0. */
+static inline const char *phases_label(const struct phases *phases, uint32_t phase)
+{
+    const struct model *model = phases->models ? phases->models + phase : NULL;
+    return model && model->n_phases ? model->phases[phase].name : NULL;
+}
 static inline bool phases_is_last(const struct phases *phases)
 {
     return phases->now + 1 == phases->n;
@@ -74,25 +80,13 @@ int phases_next(struct phases *phases, struct cloth_error *error);
 size_t phases_numbers(const struct phases *phases);
 int phases_start(struct phases *phases, const double *numbers, struct cloth_error *error);
 
+/* Makes all cloths of a model start there: by vertex of all cloths, as model_cloth.start has it.
+ * Error: CLOTH_E_MEMORY. Local. */
+int phases_start_at(struct model *model, double (*from)[6], struct cloth_error *error);
+
 /* Adds the report of the phase that is over. Counts and seconds are added; peaks are the largest;
  * energies, the hash and other final values are those of this phase. Local. */
 void phases_add(struct phases *phases, const struct flow_report *report);
-
-/* The obstacles of the phase that runs, with motions over all phases so far, for viewers of all
- * frames. */
-struct phases_motions {
-    struct contact_shape *obstacles;
-    struct phys_key *keys;
-};
-/* Error: CLOTH_E_MEMORY. In any case phases_motions_free follows. On rank 0. Local. */
-int phases_motions(const struct phases *phases, struct phases_motions *motions,
-                   struct cloth_error *error);
-void phases_motions_free(struct phases_motions *motions);
-
-/* Joins n vertices that seams pulled in any phase so far, as contact_apart.joined has it; NULL:
- * none did. *joined: to be freed in any case. Error: CLOTH_E_MEMORY. On rank 0. Local. */
-int phases_joined(const struct phases *phases, uint32_t n, uint32_t **joined,
-                  struct cloth_error *error);
 
 /* Puts the name of the phase that runs before an error, if the scene has phases. */
 void phases_name(const struct phases *phases, struct cloth_error *error);

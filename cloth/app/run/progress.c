@@ -3,7 +3,6 @@
 #include "cloth/app/run/progress.h"
 
 #include <inttypes.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <sys/ioctl.h>
 #include <time.h>
@@ -33,37 +32,19 @@ static size_t progress_columns(const struct progress *progress)
     return window.ws_col - 1u;
 }
 
-static void write_duration(char *text, size_t size, double seconds)
+static void put_duration(FILE *to, double seconds)
 {
     if (seconds < 120)
-        snprintf(text, size, "%.0f s", seconds);
+        fprintf(to, "%.0f s", seconds);
     else if (seconds < 7200)
-        snprintf(text, size, "%.0f min", seconds / 60);
+        fprintf(to, "%.0f min", seconds / 60);
     else
-        snprintf(text, size, "%.1f h", seconds / 3600);
+        fprintf(to, "%.1f h", seconds / 3600);
 }
 
-/* A text that may be cut at its end. */
-struct progress_text {
-    char *bytes;
-    size_t size, used;
-};
-
-__attribute__((format(printf, 2, 3))) static void progress_add(struct progress_text *text,
-                                                               const char *format, ...)
+static void put_count(FILE *to, uint64_t n, const char *noun)
 {
-    va_list values;
-    va_start(values, format);
-    const int more = vsnprintf(text->bytes + text->used, text->size - text->used, format, values);
-    va_end(values);
-    const size_t room = text->size - 1 - text->used;
-    if (more > 0)
-        text->used += (size_t)more < room ? (size_t)more : room;
-}
-
-static void progress_add_count(struct progress_text *text, uint64_t n, const char *noun)
-{
-    progress_add(text, ", %" PRIu64 " %s%s", n, noun, n == 1 ? "" : "s");
+    fprintf(to, ", %" PRIu64 " %s%s", n, noun, n == 1 ? "" : "s");
 }
 
 static bool continues_character(char byte)
@@ -85,21 +66,25 @@ static size_t progress_cut(const char *text, size_t columns)
 size_t progress_line(char *line, size_t size, size_t columns, const char *phase, uint64_t step,
                      uint64_t steps, double left, const struct progress_counts *counts)
 {
-    struct progress_text text = {line, size, 0};
-    char duration[32];
-    write_duration(duration, sizeof duration, left);
+    FILE *to = fmemopen(line, size - 1, "w"); /* cuts what is too long */
+    *line = line[size - 1] = '\0';
+    if (!to)
+        return 0;
     if (phase)
-        progress_add(&text, "%.*s: ", (int)progress_cut(phase, 40), phase);
-    progress_add(&text, "step %" PRIu64 " of %" PRIu64 ", %s left", step, steps, duration);
+        fprintf(to, "%.*s: ", (int)progress_cut(phase, 40), phase);
+    fprintf(to, "step %" PRIu64 " of %" PRIu64 ", ", step, steps);
+    put_duration(to, left);
+    fputs(" left", to);
     if (counts->frames)
-        progress_add_count(&text, counts->frames, "frame");
-    progress_add_count(&text, counts->cg_iterations, "iteration");
+        put_count(to, counts->frames, "frame");
+    put_count(to, counts->cg_iterations, "iteration");
     if (counts->contacts)
-        progress_add_count(&text, counts->contacts, "contact");
+        put_count(to, counts->contacts, "contact");
     if (counts->seams_open) {
-        progress_add_count(&text, counts->seams_open, "seam");
-        progress_add(&text, " open by %.2g m", counts->seam_distance);
+        put_count(to, counts->seams_open, "seam");
+        fprintf(to, " open by %.2g m", counts->seam_distance);
     }
+    fclose(to);
     const size_t end = progress_cut(line, columns);
     line[end] = '\0';
     return end;

@@ -2,6 +2,7 @@
 #include "cloth/app/run/start.h"
 
 #include "cloth/app/check/intersections.h"
+#include "cloth/app/run/phases.h"
 #include "cloth/base/memory.h"
 
 #include <inttypes.h>
@@ -88,24 +89,6 @@ static void say_result(const struct untangle_result *result)
 
 /* ---- Results ---- */
 
-/* New starts for all cloths that have a vertex that moved. */
-static int put_starts(struct model *model, struct tangle *of, struct cloth_error *error)
-{
-    for (uint32_t c = 0; c < model->n_cloths; c++) {
-        struct model_cloth *cloth = model->cloths + c;
-        const uint32_t n = cloth->mesh.n_vertices, first = model_first(model, c);
-        double(*start)[6] = cloth_alloc(n, sizeof *start, error);
-        if (!start)
-            return CLOTH_E_MEMORY;
-        memcpy(start, of->start + first, n * sizeof *start);
-        for (uint32_t v = 0; v < n; v++)
-            for (int k = 0; k < 3; k++)
-                start[v][k] = of->x[of->soup.same[first + v]][k];
-        model_start_at(cloth, *start);
-    }
-    return CLOTH_OK;
-}
-
 /* A point of those that are untangled; those of bodies follow the cloths' vertices. */
 static void name_point(const struct model *model, uint32_t n, uint32_t point, char *text,
                        size_t size)
@@ -146,16 +129,15 @@ static bool run_start_is_free(const struct untangle_count *left)
     return !(left->pairs + left->entered + left->near + left->layers);
 }
 
-static int run_start_check(const struct model *model, const struct contact_apart *apart,
-                           const double *position, struct intersections_found *found,
-                           struct cloth_error *error)
+static int look_at_start(const struct model *model, const struct contact_apart *apart,
+                         const double *position, struct intersections_found *found,
+                         struct cloth_error *error)
 {
     struct intersections *intersections = NULL;
-    int code =
-        intersections_of(&intersections, model, apart, "duite-cloth", !model->contact.self, error);
+    *found = (struct intersections_found){0};
+    int code = intersections_of(&intersections, model, apart, "duite-cloth", !model->contact.self,
+                                found, error);
     code = code ? code : intersections_frame(intersections, 0, 0, position, false, error);
-    if (!code)
-        *found = intersections_found(intersections);
     intersections_close(&intersections);
     return code;
 }
@@ -170,7 +152,7 @@ static int name_pairs(const struct model *model, const struct tangle *of, struct
     for (uint32_t v = 0; v < of->n; v++)
         for (size_t k = 0; k < 3; k++)
             position[3 * (size_t)v + k] = of->x[of->soup.same[v]][k];
-    const int code = run_start_check(model, &of->apart, position, &found, error);
+    const int code = look_at_start(model, &of->apart, position, &found, error);
     free(position);
     return code;
 }
@@ -198,7 +180,10 @@ static int make_free(struct model *model, struct flow **flow, int ranks, bool sa
         return code;
     if (says)
         say_result(result);
-    code = put_starts(model, tangle, error);
+    for (uint32_t v = 0; v < tangle->n; v++)
+        for (int k = 0; k < 3; k++)
+            tangle->start[v][k] = tangle->x[tangle->soup.same[v]][k];
+    code = phases_start_at(model, tangle->start, error);
     flow_free(*flow);
     *flow = NULL;
     return code ? code : flow_prepare(flow, model, ranks, error);
@@ -224,11 +209,13 @@ int start_check(const struct model *model, const struct flow *flow,
                 const struct contact_apart *apart, const char *scene, struct cloth_error *error)
 {
     struct intersections_found found;
+    if (!model_promise(model).apart)
+        return CLOTH_OK;
     double *position = cloth_alloc(flow_vertices(flow), 3 * sizeof *position, error);
     if (!position)
         return CLOTH_E_MEMORY;
     flow_start(flow, position);
-    int code = run_start_check(model, apart, position, &found, error);
+    int code = look_at_start(model, apart, position, &found, error);
     if (!code && found.bad)
         code = cloth_fail(error, CLOTH_E_INPUT,
                           "%s: where the run starts %" PRIu64
@@ -238,5 +225,5 @@ int start_check(const struct model *model, const struct flow *flow,
                           scene, found.pairs, found.with_shapes, model_start_cure(model),
                           model_contact_cure(model));
     free(position);
-    return code;
+    return code ? code : start_welds(model, flow, apart, scene, error);
 }

@@ -14,9 +14,16 @@
 int start_untangle(struct model *model, struct flow **flow, int ranks, bool says,
                    struct untangle_result *result, struct cloth_error *error);
 
-/* CLOTH_E_INPUT for a start that is not free, the first pairs named. apart: pairs that do not meet.
- */
+/* With certified contact: finds that nothing goes through anything, nor welded partners on the
+ * straight way to their weld, by start_welds. apart: pairs that do not meet. Errors: CLOTH_E_INPUT,
+ * the first pairs or vertices named; CLOTH_E_MEMORY. */
 int start_check(const struct model *model, const struct flow *flow,
+                const struct contact_apart *apart, const char *scene, struct cloth_error *error);
+
+/* Proves, for welded seams, that partners go through nothing on their way. Otherwise a weld could
+ * pull seams through cloth or obstacles between them, though the states before and after are both
+ * free. Runs that untangle their start move cloth anyway and are not checked. Errors as above. */
+int start_welds(const struct model *model, const struct flow *flow,
                 const struct contact_apart *apart, const char *scene, struct cloth_error *error);
 
 #endif

@@ -3,14 +3,14 @@
  * from different places, so no skin of the run serves. Pairs none of whose corners move are free by
  * the state that the run starts from. Each triangle stands for all its features, which meets some
  * pairs more than once: their verdict is the same. */
-#include "cloth/app/run/start_welds.h"
+#include "cloth/app/run/start.h"
 
-#include "cloth/app/check/intersections.h"
 #include "cloth/base/memory.h"
 #include "cloth/base/sets.h"
 #include "cloth/contact/body_skin.h"
 #include "cloth/contact/certificate.h"
 #include "cloth/contact/solid.h"
+#include "cloth/contact/soup.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -51,11 +51,11 @@ static bool moves(const struct motion *motion, uint32_t v)
 
 static void start_welds_fail(struct motion *motion, uint32_t n, const uint32_t *vertex)
 {
-    if (!motion->fails)
-        for (uint32_t k = 0; k < n; k++)
-            motion->vertex[k] = vertex[k];
-    motion->n_vertices = motion->fails ? motion->n_vertices : n;
-    motion->with = motion->fails ? motion->with : motion->obstacle;
+    if (motion->fails)
+        return;
+    memcpy(motion->vertex, vertex, n * sizeof *vertex);
+    motion->n_vertices = n;
+    motion->with = motion->obstacle;
     motion->fails = true;
 }
 
@@ -308,7 +308,7 @@ int start_welds(const struct model *model, const struct flow *flow,
                 const struct contact_apart *apart, const char *scene, struct cloth_error *error)
 {
     struct motion motion = {.model = model, .apart = apart};
-    if (!model_promise(model).apart || model->contact.untangle || !flow_unwelded(flow))
+    if (model->contact.untangle || !flow_unwelded(flow))
         return CLOTH_OK;
     const int code = certify(&motion, flow, scene, error);
     free_all(&motion);

@@ -4,10 +4,11 @@
 
 #include "cloth/app/view/live.h"
 
+#include "cloth/app/view/frames.h"
+#include "cloth/live/live.h"
 #include "cloth/view/window.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 struct live {
@@ -17,33 +18,13 @@ struct live {
     uint32_t n_vertices, n_triangles; /* of it */
 };
 
-bool view_live_parse(int key, const char *text, struct view_live_wish *wish, const char **wrong)
-{
-    char *end = NULL;
-    switch (key) {
-    case VIEW_LIVE_CONNECT:
-        wish->host = text;
-        if (!live_is_host(text))
-            *wrong = "--connect takes HOST:PORT, such as localhost:5555";
-        return true;
-    case VIEW_LIVE_WAIT:
-        wish->waits = true;
-        wish->seconds = strtod(text, &end);
-        if (end == text || *end || !(wish->seconds > 0 && wish->seconds <= 1e6))
-            *wrong = "--wait takes seconds, above 0 and at most 1e6";
-        return true;
-    default:
-        return false;
-    }
-}
-
 /* The camera of a run of the same cloth is kept. */
 static int open_show(struct live *live, struct cloth_error *error)
 {
     struct view_sight sight = {.orbit = {0}};
     const bool before = live->show;
     if (before) {
-        sight = *view_show_sight(live->show);
+        sight = live->show->sight;
         view_show_undraw(live->show);
         view_show_close(live->show);
         live->show = NULL;
@@ -55,7 +36,7 @@ static int open_show(struct live *live, struct cloth_error *error)
     live->n_triangles = n_triangles;
     const int code = view_show_open(&live->show, cache, live->wish, error);
     if (!code && before && same)
-        *view_show_sight(live->show) = sight;
+        live->show->sight = sight;
     return code;
 }
 
@@ -91,19 +72,6 @@ static int fail_late(struct live *live, double seconds, struct cloth_error *erro
                       seconds, live_follow_state(live->follower, &waits));
 }
 
-static int draw_picture(struct live *live, const char *png, struct cloth_error *error)
-{
-    struct view_picture picture = {live->wish->width, live->wish->height, NULL};
-    struct view_context *context = NULL;
-    int code = view_context_open(&context, error);
-    code = code ? code : view_show_picture(live->show, &picture, error);
-    code = code ? code : view_picture_write(&picture, png, error);
-    view_picture_free(&picture);
-    view_show_undraw(live->show);
-    view_context_close(context);
-    return code;
-}
-
 int view_live_picture(const struct view_wish *wish, const char *png, double seconds,
                       struct cloth_error *error)
 {
@@ -113,7 +81,7 @@ int view_live_picture(const struct view_wish *wish, const char *png, double seco
     code = code ? code : live_look(&live, seconds, &fresh, error);
     if (!code && !fresh)
         code = fail_late(&live, seconds, error);
-    code = code ? code : draw_picture(&live, png, error);
+    code = code ? code : view_frames_draw(live.show, png, error);
     close_live(&live);
     return code;
 }
@@ -155,7 +123,7 @@ int view_live_window(const struct view_wish *wish, struct cloth_error *error)
     code = code ? code : wait_for_first(&live, error);
     view.show = live.show;
     view.line = code ? "" : live_follow_state(live.follower, &view.waits);
-    code = code ? code : view_window_live(&view, wish, error);
+    code = code ? code : view_window_live(&view, error);
     close_live(&live);
     return code;
 }

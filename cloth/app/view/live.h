@@ -1,21 +1,9 @@
 #ifndef CLOTH_APP_VIEW_LIVE_H
 #define CLOTH_APP_VIEW_LIVE_H
 
-#include "cloth/live/live.h"
 #include "cloth/view/show.h"
 
 /* duite-view --connect: frames of a run that goes on, by its live view. Local. */
-
-struct view_live_wish {
-    const char *host; /* HOST:PORT; NULL: none */
-    double seconds;   /* that a picture waits for its frame */
-    bool waits;       /* they were given */
-};
-
-/* Reads an option. false: it is none of these. *wrong: the values it takes, if it has another one.
- */
-enum { VIEW_LIVE_CONNECT = 'l', VIEW_LIVE_WAIT = 'a' };
-bool view_live_parse(int key, const char *text, struct view_live_wish *wish, const char **wrong);
 
 /* Draws the newest frame into a PNG file, or waits for one, at most so many seconds. wish->folder:
  * HOST:PORT. Errors: CLOTH_E_IO, none came; those of live_follow, view_show_open and of drawing. */

@@ -13,7 +13,7 @@
 #include "cloth/base/sets.h"
 #include "cloth/flow/contact/skin.h"
 #include "cloth/flow/state/room.h"
-#include "cloth/mesh/detail/sort.h"
+#include "cloth/mesh/detail/sides.h"
 
 #include <stdlib.h>
 #include <string.h>

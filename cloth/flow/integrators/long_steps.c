@@ -87,7 +87,7 @@ static int find_density(const struct model *model, const struct model_cloth *clo
     double *area = cloth_alloc(n, sizeof *area, error), sum = 0;
     if (!area)
         return CLOTH_E_MEMORY;
-    mesh_add_mass(model_rest(cloth), 1, area);
+    mesh_add_mass(model_rest(cloth), 1, false, area);
     *density = INFINITY;
     for (uint32_t v = 0; v < n; v++) {
         sum += area[v];

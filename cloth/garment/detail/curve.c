@@ -1,20 +1,21 @@
 /* Lengths are sums by Gauss and Legendre's rule over short parts: for the edges of panels that is
  * as exact as doubles are. */
 #include "cloth/garment/detail/curve.h"
+#include "cloth/base/vector.h"
 #include "cloth/physics/curve.h"
 
-#include <math.h>
 #include <string.h>
+
+static const double TWO_PI = 6.283185307179586;
 
 /* The angle, in turns from 0 to 0.25, whose sine and cosine are given: by Newton's method. */
 static double angle_of(double sine, double cosine)
 {
-    static const double two_pi = 6.283185307179586;
-    double turns = sine < cosine ? sine / two_pi : 0.25 - cosine / two_pi;
+    double turns = sine < cosine ? sine / TWO_PI : 0.25 - cosine / TWO_PI;
     for (int i = 0; i < 8; i++) {
         double c, s;
         phys_turn(360 * turns, &c, &s);
-        turns += (sine * c - cosine * s) / two_pi;
+        turns += (sine * c - cosine * s) / TWO_PI;
     }
     return turns;
 }
@@ -24,7 +25,7 @@ static void make_arc(struct curve *curve, const struct garment_edge *edge)
 {
     const double *a = curve->point[0], *b = curve->point[3];
     const double chord[2] = {b[0] - a[0], b[1] - a[1]};
-    const double half = 0.5 * sqrt(chord[0] * chord[0] + chord[1] * chord[1]);
+    const double half = 0.5 * sqrt(cloth_square_2(b, a));
     const double radius = fmax(edge->radius, half);
     const double height =
         sqrt((radius - half) * (radius + half)); /* of the centre over the chord */
@@ -34,7 +35,7 @@ static void make_arc(struct curve *curve, const struct garment_edge *edge)
     curve->centre[0] = 0.5 * (a[0] + b[0]) - side * chord[1];
     curve->centre[1] = 0.5 * (a[1] + b[1]) + side * chord[0];
     curve->turns = edge->right ? turns : -turns;
-    curve->length = 6.283185307179586 * turns * radius;
+    curve->length = TWO_PI * turns * radius;
 }
 
 static void arc_at(const struct curve *curve, double t, double place[2])
@@ -67,16 +68,20 @@ static double speed(const struct curve *curve, double t)
     return sqrt(v[0] * v[0] + v[1] * v[1]);
 }
 
+/* Gauss and Legendre's places from -1 to 1, and their weights. */
+static const double AT[5] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
+                             0.9061798459386640};
+static const double WEIGHT[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
+                                 0.4786286704993665, 0.2369268850561891};
+
 /* The length from t to u, which are near to each other. */
-static double detail_curve_length_of(const struct curve *curve, double t, double u)
+static double length_between(const struct curve *curve, double t, double u)
 {
-    static const double at[2] = {0.5384693101056831, 0.9061798459386640};
-    static const double weight[3] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
     const double middle = 0.5 * (t + u), half = 0.5 * (u - t);
-    double sum = weight[0] * speed(curve, middle);
-    for (int i = 0; i < 2; i++)
-        sum += weight[i + 1] *
-               (speed(curve, middle - half * at[i]) + speed(curve, middle + half * at[i]));
+    double sum = WEIGHT[2] * speed(curve, middle);
+    for (int i = 3; i < 5; i++)
+        sum +=
+            WEIGHT[i] * (speed(curve, middle - half * AT[i]) + speed(curve, middle + half * AT[i]));
     return half * sum;
 }
 
@@ -93,15 +98,12 @@ void curve_make(struct curve *curve, const struct garment_panel *panel, uint32_t
         return;
     }
     if (of->curve == GARMENT_STRAIGHT) {
-        const double x = curve->point[3][0] - curve->point[0][0];
-        const double y = curve->point[3][1] - curve->point[0][1];
-        curve->length = sqrt(x * x + y * y);
+        curve->length = sqrt(cloth_square_2(curve->point[3], curve->point[0]));
         return;
     }
     for (int k = 0; k < CURVE_PARTS; k++)
-        curve->before[k + 1] =
-            curve->before[k] +
-            detail_curve_length_of(curve, (double)k / CURVE_PARTS, (double)(k + 1) / CURVE_PARTS);
+        curve->before[k + 1] = curve->before[k] + length_between(curve, (double)k / CURVE_PARTS,
+                                                                 (double)(k + 1) / CURVE_PARTS);
     curve->length = curve->before[CURVE_PARTS];
 }
 
@@ -135,7 +137,7 @@ static double parameter_at(const struct curve *curve, double length)
     const double begin = (double)part / CURVE_PARTS;
     double low = begin, high = (double)(part + 1) / CURVE_PARTS, t = 0.5 * (low + high);
     for (int i = 0; i < 40; i++) {
-        const double off = curve->before[part] + detail_curve_length_of(curve, begin, t) - length;
+        const double off = curve->before[part] + length_between(curve, begin, t) - length;
         low = off <= 0 ? t : low;
         high = off <= 0 ? high : t;
         const double next = t - off / speed(curve, t);
@@ -155,19 +157,16 @@ void curve_at_length(const struct curve *curve, double part, double place[2])
 
 double curve_turning(const struct curve *curve)
 {
-    double last[2], now[2], from[2] = {0, 0}, sum = 0;
+    double place[CURVE_PARTS + 1][2], sum = 0;
     if (curve->kind == GARMENT_STRAIGHT)
         return 0;
-    curve_at(curve, 0, last);
-    for (int k = 1; k <= CURVE_PARTS; k++) {
-        curve_at(curve, (double)k / CURVE_PARTS, now);
-        const double to[2] = {now[0] - last[0], now[1] - last[1]};
-        const double sizes =
-            sqrt((from[0] * from[0] + from[1] * from[1]) * (to[0] * to[0] + to[1] * to[1]));
-        if (sizes > 0)
-            sum += fabs(from[0] * to[1] - from[1] * to[0]) / sizes;
-        memcpy(from, to, sizeof from);
-        memcpy(last, now, sizeof last);
+    for (int k = 0; k <= CURVE_PARTS; k++)
+        curve_at(curve, (double)k / CURVE_PARTS, place[k]);
+    for (int k = 1; k < CURVE_PARTS; k++) {
+        double sine, cosine;
+        const double squares = cloth_angle(place[k - 1], place[k], place[k + 1], &sine, &cosine);
+        if (squares > 0)
+            sum += fabs(sine) / sqrt(squares);
     }
     return sum;
 }
@@ -176,18 +175,14 @@ double curve_turning(const struct curve *curve)
  * exact, an arc has its circle's segment beside the chord. */
 double curve_area(const struct curve *curve)
 {
-    static const double at[5] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
-                                 0.9061798459386640};
-    static const double weight[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
-                                     0.4786286704993665, 0.2369268850561891};
     const double *a = curve->point[0], *b = curve->point[3];
     double sum = 0;
     if (curve->kind == GARMENT_QUADRATIC || curve->kind == GARMENT_CUBIC) {
         for (int i = 0; i < 5; i++) {
             double x[2], v[2];
-            curve_at(curve, 0.5 + 0.5 * at[i], x);
-            velocity(curve, 0.5 + 0.5 * at[i], v);
-            sum += 0.5 * weight[i] * (x[0] * v[1] - x[1] * v[0]);
+            curve_at(curve, 0.5 + 0.5 * AT[i], x);
+            velocity(curve, 0.5 + 0.5 * AT[i], v);
+            sum += 0.5 * WEIGHT[i] * (x[0] * v[1] - x[1] * v[0]);
         }
         return 0.5 * sum;
     }
@@ -196,7 +191,7 @@ double curve_area(const struct curve *curve)
         const double x = a[0] - curve->centre[0], y = a[1] - curve->centre[1];
         double c, s;
         phys_turn(360 * curve->turns, &c, &s);
-        sum += 0.5 * (x * x + y * y) * (6.283185307179586 * curve->turns - s);
+        sum += 0.5 * (x * x + y * y) * (TWO_PI * curve->turns - s);
     }
     return sum;
 }

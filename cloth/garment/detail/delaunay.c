@@ -1,9 +1,7 @@
 /* The triangulation as a structure: who is beside whom. A triangle is written by `put` alone, so
  * that every change can be undone. */
 #include "cloth/garment/detail/delaunay.h"
-#include "cloth/garment/detail/delaunay_parts.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,31 +41,26 @@ void delaunay_free(struct delaunay *plane)
     *plane = (struct delaunay){0};
 }
 
-static struct delaunay_change *new_change(struct delaunay *plane)
+static void log_change(struct delaunay *plane, struct delaunay_change change)
 {
-    struct delaunay_change *change = cloth_list_add(&plane->changes, sizeof *change, 1, NULL);
-    if (!change)
+    if (plane->logs && cloth_list_put(&plane->changes, &change, sizeof change, NULL))
         plane->failed = true;
-    return change;
 }
 
 static void log_triangle(struct delaunay *plane, uint32_t triangle)
 {
-    struct delaunay_change *change = plane->logs ? new_change(plane) : NULL;
-    if (change)
-        *change = (struct delaunay_change){
-            .triangle = triangle, .vertex = DELAUNAY_NONE, .before = plane->triangle[triangle]};
+    log_change(plane, (struct delaunay_change){.triangle = triangle,
+                                               .vertex = DELAUNAY_NONE,
+                                               .before = plane->triangle[triangle]});
 }
 
 void delaunay_log_vertex(struct delaunay *plane, uint32_t vertex)
 {
-    struct delaunay_change *change = plane->logs ? new_change(plane) : NULL;
-    if (change)
-        *change =
-            (struct delaunay_change){.triangle = DELAUNAY_NONE,
-                                     .vertex = vertex,
-                                     .place = {plane->place[vertex][0], plane->place[vertex][1]},
-                                     .at = plane->at[vertex]};
+    const double *place = plane->place[vertex];
+    log_change(plane, (struct delaunay_change){.triangle = DELAUNAY_NONE,
+                                               .vertex = vertex,
+                                               .place = {place[0], place[1]},
+                                               .at = plane->at[vertex]});
 }
 
 void delaunay_log(struct delaunay *plane)
@@ -76,14 +69,9 @@ void delaunay_log(struct delaunay *plane)
     plane->changes.n = 0;
 }
 
-void delaunay_keep(struct delaunay *plane)
-{
-    plane->logs = false;
-}
-
 /* Vertices and triangles that were added stay, taken out: they have no `at` and no corner. Those of
  * the end go. */
-void delaunay_undo(struct delaunay *plane)
+static void undo(struct delaunay *plane)
 {
     const struct delaunay_change *change = plane->changes.items;
     for (size_t i = plane->changes.n; i-- > 0;) {
@@ -99,16 +87,15 @@ void delaunay_undo(struct delaunay *plane)
     while (plane->n_triangles > 0 &&
            plane->triangle[plane->n_triangles - 1].vertex[0] == DELAUNAY_NONE)
         plane->n_triangles--;
-    plane->logs = false;
     plane->last = 0;
 }
 
-static void set_at(struct delaunay *plane, uint32_t vertex, uint32_t triangle)
+bool delaunay_decide(struct delaunay *plane, bool stay)
 {
-    if (plane->at[vertex] == triangle)
-        return;
-    delaunay_log_vertex(plane, vertex);
-    plane->at[vertex] = triangle;
+    if (!stay)
+        undo(plane);
+    plane->logs = false;
+    return stay;
 }
 
 void delaunay_put(struct delaunay *plane, uint32_t triangle, struct delaunay_triangle value)
@@ -116,7 +103,10 @@ void delaunay_put(struct delaunay *plane, uint32_t triangle, struct delaunay_tri
     log_triangle(plane, triangle);
     plane->triangle[triangle] = value;
     for (int i = 0; i < 3; i++)
-        set_at(plane, value.vertex[i], triangle);
+        if (plane->at[value.vertex[i]] != triangle) {
+            delaunay_log_vertex(plane, value.vertex[i]);
+            plane->at[value.vertex[i]] = triangle;
+        }
 }
 
 void delaunay_put_beside(struct delaunay *plane, uint32_t triangle, uint32_t before, uint32_t now)
@@ -138,25 +128,11 @@ void delaunay_take_triangle(struct delaunay *plane, uint32_t triangle)
     plane->triangle[triangle].vertex[0] = DELAUNAY_NONE;
 }
 
-void delaunay_take_vertex(struct delaunay *plane, uint32_t vertex)
-{
-    delaunay_log_vertex(plane, vertex);
-    plane->at[vertex] = DELAUNAY_NONE;
-}
-
 uint32_t delaunay_new_triangle(struct delaunay *plane)
 {
     const uint32_t triangle = plane->n_triangles++;
     plane->triangle[triangle] = (struct delaunay_triangle){{DELAUNAY_NONE, 0, 0}, {0, 0, 0}, 0};
     return triangle;
-}
-
-uint32_t delaunay_new_vertex(struct delaunay *plane, const double place[2])
-{
-    const uint32_t vertex = plane->n++;
-    memcpy(plane->place[vertex], place, sizeof plane->place[vertex]);
-    plane->at[vertex] = DELAUNAY_NONE;
-    return vertex;
 }
 
 /* The two triangles at an edge that is not of the hull turn it:
@@ -176,9 +152,17 @@ struct delaunay_quad delaunay_quad_at(const struct delaunay *plane, uint32_t tri
     const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
     return (struct delaunay_quad){
         one.beside[i],
+        j,
         {one.vertex[i], one.vertex[i1], two.vertex[j], one.vertex[i2]},
         {one.beside[i2], two.beside[j1], two.beside[j2], one.beside[i1]},
         {one.fixed >> i2 & 1, two.fixed >> j1 & 1, two.fixed >> j2 & 1, one.fixed >> i1 & 1}};
+}
+
+bool delaunay_may_flip(const struct delaunay *plane, const struct delaunay_quad *quad)
+{
+    const double *a = plane->place[quad->corner[0]], *b = plane->place[quad->corner[2]];
+    return delaunay_sharpness(a, plane->place[quad->corner[1]], b) < 2 &&
+           delaunay_sharpness(a, b, plane->place[quad->corner[3]]) < 2;
 }
 
 void delaunay_flip(struct delaunay *plane, uint32_t t, int i)
@@ -223,15 +207,11 @@ uint32_t delaunay_around(const struct delaunay *plane, uint32_t vertex, uint32_t
     return n;
 }
 
-static double square(const double a[2], const double b[2])
-{
-    return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]);
-}
-
 double delaunay_sharpness(const double a[2], const double b[2], const double c[2])
 {
-    const double one = square(a, b), two = square(b, c), three = square(c, a);
-    if (!(delaunay_area(a, b, c) > DELAUNAY_FLAT * fmax(one, fmax(two, three))))
+    const double one = cloth_square_2(a, b), two = cloth_square_2(b, c),
+                 three = cloth_square_2(c, a);
+    if (!(cloth_turn(a, b, c) > DELAUNAY_FLAT * fmax(one, fmax(two, three))))
         return 2;
     if (one <= two && one <= three)
         return (two + three - one) / (2 * sqrt(two * three));

@@ -1,8 +1,8 @@
 #ifndef CLOTH_GARMENT_DETAIL_DELAUNAY_H
 #define CLOTH_GARMENT_DETAIL_DELAUNAY_H
 
-#include "cloth/base/error.h"
 #include "cloth/base/memory.h"
+#include "cloth/base/vector.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -49,12 +49,6 @@ int delaunay_make(struct delaunay *plane, const double low[2], const double high
                   struct cloth_error *error);
 void delaunay_free(struct delaunay *plane);
 
-/* Twice the area of a, b, c: above 0 if they are counterclockwise. */
-static inline double delaunay_area(const double a[2], const double b[2], const double c[2])
-{
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
 /* Adds a vertex, and restores Delaunay. `near`: a triangle to search from. Returns the vertex;
  * DELAUNAY_NONE if the place is outside, on a vertex, on a fixed edge, or if there is no room. */
 uint32_t delaunay_insert(struct delaunay *plane, const double place[2], uint32_t near);
@@ -89,17 +83,56 @@ static inline int delaunay_corner(const struct delaunay_triangle *triangle, uint
 {
     return triangle->vertex[0] == vertex ? 0 : triangle->vertex[1] == vertex ? 1 : 2;
 }
+/* The corner that comes so many places after a vertex, counterclockwise. */
+static inline uint32_t delaunay_after(const struct delaunay_triangle *triangle, uint32_t vertex,
+                                      int places)
+{
+    return triangle->vertex[(delaunay_corner(triangle, vertex) + places) % 3];
+}
 
 /* The cosine of the least angle of a, b, c: 0.5 of the best, 1 of a needle; 2 if it is turned over.
  */
 double delaunay_sharpness(const double a[2], const double b[2], const double c[2]);
 double delaunay_sharpness_of(const struct delaunay *plane, uint32_t triangle);
 
-/* Changes from here on can be undone, until delaunay_keep. */
+/* Changes from here on can be undone, until it is decided whether they stay, which is returned. */
 void delaunay_log(struct delaunay *plane);
-void delaunay_undo(struct delaunay *plane);
-void delaunay_keep(struct delaunay *plane);
+bool delaunay_decide(struct delaunay *plane, bool stay);
 /* Before a vertex is moved. */
 void delaunay_log_vertex(struct delaunay *plane, uint32_t vertex);
+
+/* ---- Parts ---- */
+
+/* A triangle counts as flat if twice its area is below this
+ * part of its longest edge's square: far above rounding, far below what a panel has. */
+#define DELAUNAY_FLAT 1e-9
+
+/* Writes a triangle, and that its corners have it. */
+void delaunay_put(struct delaunay *plane, uint32_t triangle, struct delaunay_triangle value);
+/* What was beside a triangle (which may be DELAUNAY_NONE) is another one now. */
+void delaunay_put_beside(struct delaunay *plane, uint32_t triangle, uint32_t before, uint32_t now);
+void delaunay_take_triangle(struct delaunay *plane, uint32_t triangle);
+/* There must be room. What is new has to be put. */
+uint32_t delaunay_new_triangle(struct delaunay *plane);
+
+/* The two triangles at an edge as one quadrilateral, counterclockwise: its corner 0 is the one of
+ * the triangle that is opposite the edge, the edge joins corners 1 and 3. Side k is from corner k
+ * to the one after it. */
+struct delaunay_quad {
+    uint32_t other;     /* the triangle on the other side of the edge, */
+    int other_side;     /* and which of its corners is opposite the edge */
+    uint32_t corner[4]; /* vertices */
+    uint32_t beside[4]; /* the triangles beyond the sides */
+    unsigned fixed[4];  /* 1: the side is fixed */
+};
+/* That at the edge opposite corner i of a triangle, which is no edge of the hull. */
+struct delaunay_quad delaunay_quad_at(const struct delaunay *plane, uint32_t triangle, int i);
+
+/* Whether the other diagonal makes two triangles that are not turned over. */
+bool delaunay_may_flip(const struct delaunay *plane, const struct delaunay_quad *quad);
+
+/* Flips the edge that is opposite corner i of a triangle; not of a fixed edge or one of the hull.
+ */
+void delaunay_flip(struct delaunay *plane, uint32_t triangle, int i);
 
 #endif

@@ -1,8 +1,7 @@
 /* Vertices that come and go, and the flips after them (Lawson, 1977). */
 #include "cloth/garment/detail/delaunay.h"
-#include "cloth/garment/detail/delaunay_parts.h"
 
-#include <math.h>
+#include <string.h>
 
 void delaunay_suspect(struct delaunay *plane, uint32_t triangle)
 {
@@ -15,26 +14,15 @@ void delaunay_suspect(struct delaunay *plane, uint32_t triangle)
 
 /* Whether the angles opposite an edge sum up to more than half a turn: their sine's sign. Within
  * rounding of the circle an edge stays, so that flips end. */
-static bool is_delaunay(const struct delaunay *plane, const struct delaunay_triangle *one, int i,
-                        const struct delaunay_triangle *two, int j)
+static bool is_delaunay(const struct delaunay *plane, const struct delaunay_quad *quad)
 {
-    const double *a = plane->place[one->vertex[i]], *b = plane->place[two->vertex[j]];
-    const double *c = plane->place[one->vertex[(i + 1) % 3]];
-    const double *d = plane->place[one->vertex[(i + 2) % 3]];
-    const double sine_a = delaunay_area(a, c, d), sine_b = delaunay_area(b, d, c);
-    const double cosine_a = (c[0] - a[0]) * (d[0] - a[0]) + (c[1] - a[1]) * (d[1] - a[1]);
-    const double cosine_b = (c[0] - b[0]) * (d[0] - b[0]) + (c[1] - b[1]) * (d[1] - b[1]);
+    const double *a = plane->place[quad->corner[0]], *c = plane->place[quad->corner[1]];
+    const double *b = plane->place[quad->corner[2]], *d = plane->place[quad->corner[3]];
+    double sine_a, cosine_a, sine_b, cosine_b;
+    cloth_angle(c, a, d, &sine_a, &cosine_a);
+    cloth_angle(d, b, c, &sine_b, &cosine_b);
     const double one_sum = sine_a * cosine_b, two_sum = cosine_a * sine_b;
     return one_sum + two_sum >= -1e-10 * (fabs(one_sum) + fabs(two_sum));
-}
-
-static bool may_flip(const struct delaunay *plane, const struct delaunay_triangle *one, int i,
-                     const struct delaunay_triangle *two, int j)
-{
-    const double *a = plane->place[one->vertex[i]], *b = plane->place[two->vertex[j]];
-    const double *d = plane->place[one->vertex[(i + 1) % 3]];
-    const double *c = plane->place[one->vertex[(i + 2) % 3]];
-    return delaunay_sharpness(a, d, b) < 2 && delaunay_sharpness(a, b, c) < 2;
 }
 
 void delaunay_legalise(struct delaunay *plane)
@@ -48,25 +36,22 @@ void delaunay_legalise(struct delaunay *plane)
         if (one->vertex[0] == DELAUNAY_NONE || (one->fixed >> i & 1) ||
             one->beside[i] == DELAUNAY_NONE)
             continue;
-        const uint32_t u = one->beside[i];
-        const struct delaunay_triangle *two = &plane->triangle[u];
-        const int j = two->beside[0] == t ? 0 : two->beside[1] == t ? 1 : 2;
-        if (is_delaunay(plane, one, i, two, j) || !may_flip(plane, one, i, two, j))
+        const struct delaunay_quad quad = delaunay_quad_at(plane, t, i);
+        if (is_delaunay(plane, &quad) || !delaunay_may_flip(plane, &quad))
             continue;
         delaunay_flip(plane, t, i);
         delaunay_suspect(plane, t);
-        delaunay_suspect(plane, u);
+        delaunay_suspect(plane, quad.other);
     }
     plane->suspect.n = 0;
 }
 
 /* Twice the area of an edge and a place: below 0 if the place is on the right. Exactly the opposite
  * seen from the other side, or a walk could go to and fro over an edge that points at the place. */
-static double delaunay_change_side_of(const struct delaunay *plane, uint32_t a, uint32_t b,
-                                      const double place[2])
+static double side_of(const struct delaunay *plane, uint32_t a, uint32_t b, const double place[2])
 {
-    return a < b ? delaunay_area(plane->place[a], plane->place[b], place)
-                 : -delaunay_area(plane->place[b], plane->place[a], place);
+    return a < b ? cloth_turn(plane->place[a], plane->place[b], place)
+                 : -cloth_turn(plane->place[b], plane->place[a], place);
 }
 
 /* The triangle that a place is in, or is nearest to be in, from all. */
@@ -78,9 +63,9 @@ static uint32_t search(const struct delaunay *plane, const double place[2])
         const uint32_t *v = plane->triangle[t].vertex;
         if (v[0] == DELAUNAY_NONE)
             continue;
-        const double least = fmin(delaunay_change_side_of(plane, v[0], v[1], place),
-                                  fmin(delaunay_change_side_of(plane, v[1], v[2], place),
-                                       delaunay_change_side_of(plane, v[2], v[0], place)));
+        const double least =
+            fmin(side_of(plane, v[0], v[1], place),
+                 fmin(side_of(plane, v[1], v[2], place), side_of(plane, v[2], v[0], place)));
         if (least > most) {
             most = least;
             best = t;
@@ -92,8 +77,7 @@ static uint32_t search(const struct delaunay *plane, const double place[2])
 }
 
 /* Walks towards a place over edges that have it on their far side; DELAUNAY_NONE: it is outside. */
-static uint32_t delaunay_change_find(const struct delaunay *plane, const double place[2],
-                                     uint32_t from)
+static uint32_t find_from(const struct delaunay *plane, const double place[2], uint32_t from)
 {
     uint32_t t = from;
     for (uint32_t steps = 0; steps <= plane->n_triangles; steps++) {
@@ -101,8 +85,7 @@ static uint32_t delaunay_change_find(const struct delaunay *plane, const double 
         uint32_t next = t;
         for (uint32_t k = 0; k < 3 && next == t; k++) {
             const uint32_t i = (k + steps) % 3; /* by turns, or it could go in circles */
-            if (delaunay_change_side_of(plane, of->vertex[(i + 1) % 3], of->vertex[(i + 2) % 3],
-                                        place) < 0)
+            if (side_of(plane, of->vertex[(i + 1) % 3], of->vertex[(i + 2) % 3], place) < 0)
                 next = of->beside[i];
         }
         if (next == t || next == DELAUNAY_NONE)
@@ -113,15 +96,14 @@ static uint32_t delaunay_change_find(const struct delaunay *plane, const double 
 }
 
 /* Where a place is in its triangle: on the edge opposite corner 0 .. 2, 3 inside, 4 on a corner. */
-static int delaunay_change_part_of(const struct delaunay *plane, const struct delaunay_triangle *of,
-                                   const double place[2])
+static int part_of(const struct delaunay *plane, const struct delaunay_triangle *of,
+                   const double place[2])
 {
     int part = 3;
     for (int i = 0; i < 3; i++) {
         const double *a = plane->place[of->vertex[(i + 1) % 3]];
         const double *b = plane->place[of->vertex[(i + 2) % 3]];
-        const double x = b[0] - a[0], y = b[1] - a[1];
-        if (delaunay_area(a, b, place) <= DELAUNAY_FLAT * (x * x + y * y))
+        if (cloth_turn(a, b, place) <= DELAUNAY_FLAT * cloth_square_2(a, b))
             part = part == 3 ? i : 4;
     }
     return part;
@@ -146,7 +128,7 @@ static void split_triangle(struct delaunay *plane, uint32_t t, uint32_t vertex)
 }
 
 /* The two triangles at an edge become four. */
-static void delaunay_change_split_edge(struct delaunay *plane, uint32_t t, int i, uint32_t vertex)
+static void split_edge(struct delaunay *plane, uint32_t t, int i, uint32_t vertex)
 {
     const struct delaunay_quad quad = delaunay_quad_at(plane, t, i);
     const uint32_t u = quad.other, t2 = delaunay_new_triangle(plane),
@@ -170,18 +152,20 @@ uint32_t delaunay_insert(struct delaunay *plane, const double place[2], uint32_t
 {
     if (plane->n == plane->room || plane->n_triangles + 2 > plane->triangle_room)
         return DELAUNAY_NONE;
-    const uint32_t t = delaunay_change_find(plane, place, near);
+    const uint32_t t = find_from(plane, place, near);
     if (t == DELAUNAY_NONE)
         return DELAUNAY_NONE;
     const struct delaunay_triangle *of = &plane->triangle[t];
-    const int part = delaunay_change_part_of(plane, of, place);
+    const int part = part_of(plane, of, place);
     if (part == 4 || (part < 3 && ((of->fixed >> part & 1) || of->beside[part] == DELAUNAY_NONE)))
         return DELAUNAY_NONE;
-    const uint32_t vertex = delaunay_new_vertex(plane, place);
+    const uint32_t vertex = plane->n++;
+    memcpy(plane->place[vertex], place, sizeof plane->place[vertex]);
+    plane->at[vertex] = DELAUNAY_NONE;
     if (part == 3)
         split_triangle(plane, t, vertex);
     else
-        delaunay_change_split_edge(plane, t, part, vertex);
+        split_edge(plane, t, part, vertex);
     delaunay_legalise(plane);
     plane->last = plane->at[vertex];
     return vertex;
@@ -205,43 +189,42 @@ static void close_gap(struct delaunay *plane, uint32_t gone, uint32_t one, uint3
     }
 }
 
+/* Takes out a triangle at the edge between a vertex that goes and the one that it becomes. */
+static void take_at_edge(struct delaunay *plane, uint32_t t, uint32_t vertex, uint32_t to)
+{
+    const struct delaunay_triangle of = plane->triangle[t];
+    const int i = delaunay_corner(&of, vertex), toward = delaunay_corner(&of, to);
+    close_gap(plane, t, of.beside[i], of.beside[toward],
+              (of.fixed >> i & 1) | (of.fixed >> toward & 1));
+    delaunay_take_triangle(plane, t);
+}
+
 bool delaunay_merge(struct delaunay *plane, uint32_t vertex, uint32_t to)
 {
     enum { MOST = 32 };
     uint32_t around[MOST];
+    bool stays[MOST]; /* the other triangles are at the edge */
     const uint32_t n = delaunay_around(plane, vertex, MOST, around);
     for (uint32_t k = 0; k < n; k++) { /* does each that stays keep its side? */
         const struct delaunay_triangle *of = &plane->triangle[around[k]];
-        const int i = delaunay_corner(of, vertex);
-        const uint32_t b = of->vertex[(i + 1) % 3], c = of->vertex[(i + 2) % 3];
-        if (b != to && c != to &&
-            delaunay_sharpness(plane->place[to], plane->place[b], plane->place[c]) >= 2)
+        const uint32_t b = delaunay_after(of, vertex, 1), c = delaunay_after(of, vertex, 2);
+        stays[k] = b != to && c != to;
+        if (stays[k] && delaunay_sharpness(plane->place[to], plane->place[b], plane->place[c]) >= 2)
             return false;
     }
-    for (uint32_t k = 0; k < n; k++) {
-        struct delaunay_triangle of = plane->triangle[around[k]];
-        const int i = delaunay_corner(&of, vertex);
-        if (of.vertex[(i + 1) % 3] != to && of.vertex[(i + 2) % 3] != to) {
-            of.vertex[i] = to;
+    for (uint32_t k = 0; k < n; k++)
+        if (stays[k]) {
+            struct delaunay_triangle of = plane->triangle[around[k]];
+            of.vertex[delaunay_corner(&of, vertex)] = to;
             delaunay_put(plane, around[k], of);
         }
-    }
-    for (uint32_t k = 0; k < n; k++) {
-        const struct delaunay_triangle of = plane->triangle[around[k]];
-        const int i = of.vertex[0] == vertex   ? 0
-                      : of.vertex[1] == vertex ? 1
-                      : of.vertex[2] == vertex ? 2
-                                               : -1;
-        if (i < 0)
-            continue;
-        const int toward = of.vertex[(i + 1) % 3] == to ? (i + 1) % 3 : (i + 2) % 3;
-        close_gap(plane, around[k], of.beside[i], of.beside[toward],
-                  (of.fixed >> i & 1) | (of.fixed >> toward & 1));
-        delaunay_take_triangle(plane, around[k]);
-    }
-    delaunay_take_vertex(plane, vertex);
     for (uint32_t k = 0; k < n; k++)
-        if (plane->triangle[around[k]].vertex[0] != DELAUNAY_NONE)
+        if (!stays[k])
+            take_at_edge(plane, around[k], vertex, to);
+    delaunay_log_vertex(plane, vertex);
+    plane->at[vertex] = DELAUNAY_NONE;
+    for (uint32_t k = 0; k < n; k++)
+        if (stays[k])
             delaunay_suspect(plane, around[k]);
     return n > 0;
 }

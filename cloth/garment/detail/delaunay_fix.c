@@ -1,6 +1,5 @@
 /* Edges of the boundary are put into a triangulation of its vertices by flips (Sloan, 1993). */
 #include "cloth/garment/detail/delaunay.h"
-#include "cloth/garment/detail/delaunay_parts.h"
 
 #include <string.h>
 
@@ -9,12 +8,12 @@ static void fix(struct delaunay *plane, uint32_t t, int i)
 {
     struct delaunay_triangle one = plane->triangle[t];
     const uint32_t u = one.beside[i];
+    const int j = u == DELAUNAY_NONE ? 0 : delaunay_quad_at(plane, t, i).other_side;
     one.fixed |= (unsigned char)(1U << i);
     delaunay_put(plane, t, one);
     if (u == DELAUNAY_NONE)
         return;
     struct delaunay_triangle two = plane->triangle[u];
-    const int j = two.beside[0] == t ? 0 : two.beside[1] == t ? 1 : 2;
     two.fixed |= (unsigned char)(1U << j);
     delaunay_put(plane, u, two);
 }
@@ -39,8 +38,7 @@ static struct way first_of(const struct delaunay *plane, uint32_t a, uint32_t b)
             return (struct way){t, (i + 2) % 3, true};
         if (d == b)
             return (struct way){t, (i + 1) % 3, true};
-        if (delaunay_area(from, plane->place[c], to) > 0 &&
-            delaunay_area(from, to, plane->place[d]) > 0)
+        if (cloth_turn(from, plane->place[c], to) > 0 && cloth_turn(from, to, plane->place[d]) > 0)
             return (struct way){t, i, false};
         t = of->beside[(i + 1) % 3];
         if (t == DELAUNAY_NONE)
@@ -54,30 +52,23 @@ static struct way first_of(const struct delaunay *plane, uint32_t a, uint32_t b)
 struct pass {
     uint32_t t;
     int i;
-    uint32_t p, q, right, left; /* p and q are the corners off that edge */
-    double side;                /* of q: above 0 is left of the line */
-    bool convex, fewer;         /* whether the edge can turn, and is then out of the way */
+    struct delaunay_quad quad;
+    double side;        /* of the second one's corner off that edge: above 0 is left of the line */
+    bool convex, fewer; /* whether the edge can turn, and is then out of the way */
 };
 
-static bool delaunay_fix_look(const struct delaunay *plane, uint32_t a, uint32_t b,
-                              struct pass *pass)
+static bool look_over(const struct delaunay *plane, uint32_t a, uint32_t b, struct pass *pass)
 {
     const struct delaunay_triangle *one = &plane->triangle[pass->t];
-    const uint32_t u = one->beside[pass->i];
-    if ((one->fixed >> pass->i & 1) || u == DELAUNAY_NONE)
+    const double *from = plane->place[a], *to = plane->place[b];
+    if ((one->fixed >> pass->i & 1) || one->beside[pass->i] == DELAUNAY_NONE)
         return false;
-    const struct delaunay_triangle *two = &plane->triangle[u];
-    const int j = two->beside[0] == pass->t ? 0 : two->beside[1] == pass->t ? 1 : 2;
-    pass->p = one->vertex[pass->i];
-    pass->q = two->vertex[j];
-    pass->right = one->vertex[(pass->i + 1) % 3];
-    pass->left = one->vertex[(pass->i + 2) % 3];
-    const double *x = plane->place[pass->p], *y = plane->place[pass->q];
-    pass->side = delaunay_area(plane->place[a], plane->place[b], y);
-    pass->convex = delaunay_sharpness(x, plane->place[pass->right], y) < 2 &&
-                   delaunay_sharpness(x, y, plane->place[pass->left]) < 2;
-    pass->fewer = !(delaunay_area(plane->place[a], plane->place[b], x) * pass->side < 0);
-    return pass->q == b || pass->side != 0;
+    pass->quad = delaunay_quad_at(plane, pass->t, pass->i);
+    const uint32_t *corner = pass->quad.corner;
+    pass->side = cloth_turn(from, to, plane->place[corner[2]]);
+    pass->convex = delaunay_may_flip(plane, &pass->quad);
+    pass->fewer = !(cloth_turn(from, to, plane->place[corner[0]]) * pass->side < 0);
+    return corner[2] == b || pass->side != 0;
 }
 
 /* Turns one edge on the way from a to b: the first that is out of the way then. Where there is none
@@ -87,7 +78,7 @@ static bool turn_one(struct delaunay *plane, uint32_t a, uint32_t b, struct way 
     struct pass pass = {.t = way.triangle, .i = way.corner}, other = {.t = DELAUNAY_NONE};
     size_t n_convex = 0;
     for (uint32_t steps = 0; steps < plane->n_triangles; steps++) {
-        if (!delaunay_fix_look(plane, a, b, &pass))
+        if (!look_over(plane, a, b, &pass))
             return false;
         if (pass.convex && pass.fewer) {
             delaunay_flip(plane, pass.t, pass.i);
@@ -96,12 +87,10 @@ static bool turn_one(struct delaunay *plane, uint32_t a, uint32_t b, struct way 
         if (pass.convex && (n_convex == 0 || n_convex == round % (n_convex + 1)))
             other = pass;
         n_convex += pass.convex;
-        if (pass.q == b)
+        if (pass.quad.corner[2] == b)
             break;
-        const struct delaunay_triangle *one = &plane->triangle[pass.t];
-        pass.t = one->beside[pass.i];
-        const struct delaunay_triangle *two = &plane->triangle[pass.t];
-        pass.i = delaunay_corner(two, pass.side > 0 ? pass.left : pass.right);
+        pass.t = pass.quad.other;
+        pass.i = delaunay_corner(&plane->triangle[pass.t], pass.quad.corner[pass.side > 0 ? 3 : 1]);
     }
     if (other.t == DELAUNAY_NONE)
         return false;
@@ -119,6 +108,16 @@ bool delaunay_fix(struct delaunay *plane, uint32_t a, uint32_t b)
     }
     fix(plane, way.triangle, way.corner);
     return true;
+}
+
+/* Vertices that no triangle has are taken out. */
+static void find_triangles(struct delaunay *plane)
+{
+    for (uint32_t v = 0; v < plane->n; v++)
+        plane->at[v] = DELAUNAY_NONE;
+    for (uint32_t t = 0; t < plane->n_triangles; t++)
+        for (int i = 0; plane->triangle[t].vertex[0] != DELAUNAY_NONE && i < 3; i++)
+            plane->at[plane->triangle[t].vertex[i]] = t;
 }
 
 static void pack_vertices(struct delaunay *plane)
@@ -162,11 +161,10 @@ void delaunay_pack(struct delaunay *plane)
         plane->failed = true;
         return;
     }
+    find_triangles(plane);
     pack_vertices(plane);
     pack_triangles(plane, number);
-    for (uint32_t t = 0; t < plane->n_triangles; t++)
-        for (int i = 0; i < 3; i++)
-            plane->at[plane->triangle[t].vertex[i]] = t;
+    find_triangles(plane);
 }
 
 /* From a corner of the box inwards, up to fixed edges. */
@@ -195,11 +193,6 @@ static void take_outside(struct delaunay *plane, uint32_t from)
 void delaunay_carve(struct delaunay *plane)
 {
     take_outside(plane, plane->at[0]);
-    for (uint32_t v = 0; v < plane->n; v++)
-        plane->at[v] = DELAUNAY_NONE;
-    for (uint32_t t = 0; t < plane->n_triangles; t++)
-        for (int i = 0; plane->triangle[t].vertex[0] != DELAUNAY_NONE && i < 3; i++)
-            plane->at[plane->triangle[t].vertex[i]] = t;
     delaunay_pack(plane);
     plane->n_fixed -= DELAUNAY_BOX;
 }

@@ -2,9 +2,9 @@
  * but none much longer than the spacing. Their parts are equal read from either end, so that the
  * direction of the stitch does not matter. */
 #include "cloth/base/memory.h"
+#include "cloth/base/vector.h"
 #include "cloth/garment/detail/meshing.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 static const double TURN = 0.8;         /* rad: a division turns no more */
@@ -16,32 +16,28 @@ static const double GROWTH = 0.3;       /* of divisions, a length along their ed
 static const double LEAST = 0.25;       /* of the shortest division: none becomes shorter */
 enum { SWEEPS = 8 };                    /* over all corners: sizes spread that far */
 
-static void divide_add_edge(struct meshing *meshing, uint32_t panel, uint32_t e)
+void meshing_make(struct meshing *meshing, const struct garment_pattern *pattern,
+                  struct cloth_error *error)
 {
-    struct meshing_edge *edge = &meshing->edge[meshing->first[panel] + e];
-    curve_make(&edge->curve, &meshing->pattern->panel[panel], e);
-    edge->least = 1 + (uint32_t)(curve_turning(&edge->curve) / TURN);
-    edge->partner = UINT32_MAX;
-}
-
-int meshing_make(struct meshing *meshing, const struct garment_pattern *pattern,
-                 struct cloth_error *error)
-{
-    *meshing = (struct meshing){.pattern = pattern};
+    *meshing = (struct meshing){.pattern = pattern, .error = error};
     meshing->first = cloth_alloc((size_t)pattern->n_panels + 1, sizeof *meshing->first, error);
     meshing->panel = cloth_alloc(pattern->n_panels, sizeof *meshing->panel, error);
     if (!meshing->first || !meshing->panel)
-        return CLOTH_E_MEMORY;
+        return;
     for (uint32_t p = 0; p < pattern->n_panels; p++) {
         meshing->first[p + 1] = meshing->first[p] + pattern->panel[p].n_edges;
         meshing->panel[p].clockwise = garment_panel_area(&pattern->panel[p]) < 0;
     }
     meshing->edge = cloth_alloc(meshing->first[pattern->n_panels], sizeof *meshing->edge, error);
     if (!meshing->edge)
-        return CLOTH_E_MEMORY;
+        return;
     for (uint32_t p = 0; p < pattern->n_panels; p++)
-        for (uint32_t e = 0; e < pattern->panel[p].n_edges; e++)
-            divide_add_edge(meshing, p, e);
+        for (uint32_t e = 0; e < pattern->panel[p].n_edges; e++) {
+            struct meshing_edge *edge = &meshing->edge[meshing->first[p] + e];
+            curve_make(&edge->curve, &pattern->panel[p], e);
+            edge->least = 1 + (uint32_t)(curve_turning(&edge->curve) / TURN);
+            edge->partner = UINT32_MAX;
+        }
     for (uint32_t s = 0; s < pattern->n_stitches; s++) {
         const struct garment_side *side = pattern->stitch[s].side;
         const uint32_t one = meshing->first[side[0].panel] + side[0].edge;
@@ -49,15 +45,20 @@ int meshing_make(struct meshing *meshing, const struct garment_pattern *pattern,
         meshing->edge[one].partner = two;
         meshing->edge[two].partner = one;
     }
-    return CLOTH_OK;
+}
+
+static void free_outline(struct meshing_panel *panel)
+{
+    free(panel->start);
+    free(panel->place);
+    free(panel->sharp);
 }
 
 void meshing_free(struct meshing *meshing)
 {
     for (uint32_t p = 0; meshing->panel && p < meshing->pattern->n_panels; p++) {
         delaunay_free(&meshing->panel[p].plane);
-        free(meshing->panel[p].sharp);
-        free(meshing->panel[p].start);
+        free_outline(&meshing->panel[p]);
     }
     for (uint32_t e = 0; meshing->edge && e < meshing->first[meshing->pattern->n_panels]; e++)
         free(meshing->edge[e].part);
@@ -131,36 +132,26 @@ static double size_at(const struct meshing_edge *edge, double t)
     return fmin(edge->middle, fmin(begin, end));
 }
 
-/* Goes along an edge by its divisions, and writes them, if wanted. Returns how many fit best;
- * *reached: where the last of them ends. */
-static uint32_t divide_walk(const struct meshing_edge *edge, double *part, double *reached)
+/* Divisions that are not equal: goes along the edge by as many as fit best, and stretches them to
+ * its end. Both ends of the list are exact. */
+static void grade(struct meshing_edge *edge, struct cloth_error *error)
 {
-    uint32_t n = 0;
+    struct cloth_list list = {0};
     double t = 0;
-    for (;;) {
-        const double half = t + 0.5 * size_at(edge, t), step = size_at(edge, fmin(half, 1));
-        if (n > 0 && t + 0.5 * step >= 1)
-            break;
+    int code = CLOTH_OK;
+    for (bool more = true; more && !code;) {
+        const double step = size_at(edge, fmin(t + 0.5 * size_at(edge, t), 1));
+        code = cloth_list_put(&list, &t, sizeof t, error);
+        more = t <= 0 || t + 0.5 * step < 1;
         t += step;
-        n++;
-        if (part)
-            part[n] = t;
     }
-    *reached = t;
-    return n;
-}
-
-/* Divisions that are not equal. Both ends of the list are exact. */
-static int grade(struct meshing_edge *edge, struct cloth_error *error)
-{
-    double reached;
-    const uint32_t n = divide_walk(edge, NULL, &reached);
-    if (n < edge->least)
-        return CLOTH_OK;
-    double *part = cloth_alloc((size_t)n + 1, sizeof *part, error);
-    if (!part)
-        return CLOTH_E_MEMORY;
-    divide_walk(edge, part, &reached);
+    double *part = list.items;
+    const uint32_t n = (uint32_t)list.n - 1;
+    if (code || n < edge->least) {
+        free(part);
+        return;
+    }
+    const double reached = part[n];
     for (uint32_t k = 0; k <= n; k++)
         part[k] /= reached;
     for (uint32_t k = 0; edge->partner != UINT32_MAX && k <= n / 2; k++) {
@@ -170,101 +161,79 @@ static int grade(struct meshing_edge *edge, struct cloth_error *error)
     }
     edge->part = part;
     edge->n = n;
-    return CLOTH_OK;
 }
 
-static int divide_edge(struct meshing_edge *edge, double n, struct cloth_error *error)
+static void divide_edge(struct meshing_edge *edge, double n, struct cloth_error *error)
 {
     free(edge->part);
     edge->part = NULL;
     edge->n = (uint32_t)n;
-    const bool equal = fmin(edge->end[0], edge->end[1]) > 0.999 * edge->middle;
-    return equal ? CLOTH_OK : grade(edge, error);
+    if (fmin(edge->end[0], edge->end[1]) <= 0.999 * edge->middle)
+        grade(edge, error);
 }
 
-/* Whether an edge has other divisions than before. */
-static bool divide_differs(const struct meshing_edge *edge, const struct meshing_edge *before)
+void meshing_divide(struct meshing *meshing)
 {
-    return edge->n != before->n || edge->end[0] != before->end[0] || edge->end[1] != before->end[1];
-}
-
-static int divide_panel(struct meshing *meshing, uint32_t panel, const struct meshing_edge *before,
-                        struct cloth_error *error)
-{
-    for (uint32_t e = meshing->first[panel]; e < meshing->first[panel + 1]; e++) {
-        struct meshing_edge *edge = &meshing->edge[e];
-        int code = divide_edge(edge, 1 / edge->middle + 0.5, error);
-        if (code)
-            return code;
-        meshing->panel[panel].meshed =
-            meshing->panel[panel].meshed && !divide_differs(edge, &before[e]);
-    }
-    return CLOTH_OK;
-}
-
-int meshing_divide(struct meshing *meshing, struct cloth_error *error)
-{
-    const uint32_t n = meshing->first[meshing->pattern->n_panels];
+    const uint32_t *first = meshing->first, n_panels = meshing->pattern->n_panels;
     double sum = 0;
-    struct meshing_edge *before = cloth_alloc(n, sizeof *before, error);
-    int code = before ? CLOTH_OK : CLOTH_E_MEMORY;
-    for (uint32_t e = 0; e < n && !code; e++) {
-        const double parts = divide_wanted(meshing, &meshing->edge[e]);
-        before[e] = meshing->edge[e];
+    for (uint32_t e = 0; e < first[n_panels] && sum <= MOST; e++) {
+        struct meshing_edge *edge = &meshing->edge[e];
+        const double parts = divide_wanted(meshing, edge);
         sum += parts;
-        if (!(sum <= MOST))
-            code = cloth_fail(error, CLOTH_E_INPUT,
-                              "edges of %g m would divide the boundary into more than %.0f parts",
-                              meshing->spacing, MOST);
-        meshing->edge[e].middle = meshing->edge[e].end[0] = meshing->edge[e].end[1] = 1 / parts;
+        edge->before = (struct meshing_divisions){edge->n, {edge->end[0], edge->end[1]}};
+        edge->middle = edge->end[0] = edge->end[1] = 1 / parts;
     }
-    if (!code)
-        even_out(meshing);
-    for (uint32_t p = 0; p < meshing->pattern->n_panels && !code; p++)
-        code = divide_panel(meshing, p, before, error);
-    free(before);
-    return code;
+    if (!(sum <= MOST)) {
+        cloth_fail(meshing->error, CLOTH_E_INPUT,
+                   "edges of %g m would divide the boundary into more than %.0f parts",
+                   meshing->spacing, MOST);
+        return;
+    }
+    even_out(meshing);
+    for (uint32_t p = 0; p < n_panels; p++)
+        for (uint32_t e = first[p]; e < first[p + 1]; e++) {
+            struct meshing_edge *edge = &meshing->edge[e];
+            divide_edge(edge, 1 / edge->middle + 0.5, meshing->error);
+            const bool same = edge->n == edge->before.n && edge->end[0] == edge->before.end[0] &&
+                              edge->end[1] == edge->before.end[1];
+            meshing->panel[p].meshed = meshing->panel[p].meshed && same;
+        }
 }
 
 /* Whether the loop, which is counterclockwise, has an angle below 30 degrees inside of place i. */
 static bool is_sharp(const double (*place)[2], uint32_t n, uint32_t i)
 {
-    const double *a = place[(i + n - 1) % n], *b = place[i], *c = place[(i + 1) % n];
-    const double from[2] = {a[0] - b[0], a[1] - b[1]}, to[2] = {c[0] - b[0], c[1] - b[1]};
-    const double sizes =
-        sqrt((from[0] * from[0] + from[1] * from[1]) * (to[0] * to[0] + to[1] * to[1]));
-    return from[0] * to[0] + from[1] * to[1] > SHARP * sizes &&
-           to[0] * from[1] - to[1] * from[0] > 0;
+    double sine, cosine;
+    const double squares =
+        cloth_angle(place[(i + n - 1) % n], place[i], place[(i + 1) % n], &sine, &cosine);
+    return cosine > SHARP * sqrt(squares) && sine < 0;
 }
 
-int meshing_outline(struct meshing *meshing, uint32_t panel, double (**place)[2],
-                    struct cloth_error *error)
+bool meshing_outline(struct meshing *meshing, uint32_t panel)
 {
+    struct cloth_error *error = meshing->error;
     struct meshing_panel *of = &meshing->panel[panel];
     const struct meshing_edge *edge = meshing->edge + meshing->first[panel];
     const uint32_t n_edges = meshing->pattern->panel[panel].n_edges;
-    free(of->start);
-    free(of->sharp);
-    of->sharp = NULL;
-    *place = NULL;
+    uint32_t n = 0;
+    free_outline(of);
     of->start = cloth_alloc((size_t)n_edges + 1, sizeof *of->start, error);
-    if (!of->start)
-        return CLOTH_E_MEMORY;
-    for (uint32_t e = 0; e < n_edges; e++)
-        of->start[e + 1] = of->start[e] + edge[e].n;
-    const uint32_t n = of->start[n_edges];
+    for (uint32_t e = 0; of->start && e < n_edges; e++) {
+        n += edge[e].n;
+        of->start[e + 1] = n;
+    }
     of->sharp = cloth_alloc(n, 1, error);
-    *place = cloth_alloc(n, sizeof **place, error);
-    if (!of->sharp || !*place)
-        return CLOTH_E_MEMORY;
+    of->place = cloth_alloc(n, sizeof *of->place, error);
+    if (error->code)
+        return false;
     for (uint32_t e = 0; e < n_edges; e++)
         for (uint32_t k = 0; k < edge[e].n; k++) {
-            double *at = (*place)[of->start[e] + k];
+            double *at = of->place[of->start[e] + k];
             curve_at_length(&edge[e].curve, edge[e].part ? edge[e].part[k] : (double)k / edge[e].n,
                             at);
             at[0] = of->clockwise ? -at[0] : at[0];
         }
     for (uint32_t e = 0; e < n_edges; e++)
-        of->sharp[of->start[e]] = is_sharp((const double(*)[2]) * place, n, of->start[e]);
-    return CLOTH_OK;
+        of->sharp[of->start[e]] = is_sharp((const double(*)[2])of->place, n, of->start[e]);
+    return true;
 }

@@ -22,14 +22,6 @@ struct flat_loop {
 int flat_make(struct delaunay *plane, const struct flat_loop *loop, double edge, uint32_t *crossing,
               struct cloth_error *error);
 
-/* Moves the inner vertices near the boundary to the middle of their neighbours, some times. */
-void flat_smooth(struct delaunay *plane, struct cloth_error *error);
-
-/* Adds inner vertices where a triangle is poor, that is, has an angle below 20 degrees: from a fine
- * boundary on triangles become larger step by step. Returns whether any was poor; if none was, it
- * changes nothing. sharp: of the boundary's vertices. */
-bool flat_refine(struct delaunay *plane, const unsigned char *sharp);
-
 /* The centre of the circle through a triangle's corners. */
 void flat_centre(const struct delaunay *plane, uint32_t triangle, double centre[2]);
 
@@ -39,7 +31,13 @@ void flat_centre(const struct delaunay *plane, uint32_t triangle, double centre[
 void flat_improve(struct delaunay *plane, const unsigned char *sharp);
 
 /* Whether a triangle is not to be blamed: one of its vertices is sharp. */
-bool flat_excused(const struct delaunay *plane, uint32_t n_sharp, const unsigned char *sharp,
-                  uint32_t triangle);
+bool flat_excused(const struct delaunay *plane, const unsigned char *sharp, uint32_t triangle);
+
+/* Lists the vertices (double[2]) of equilateral triangles of a given edge length that are inside a
+ * closed loop of n places, and not nearer to it than a part of that length: row by row, every other
+ * one from right to left. Errors: CLOTH_E_INPUT for more than 2^28 places in the loop's box,
+ * CLOTH_E_MEMORY. Local. */
+int garment_lattice(uint32_t n, const double (*loop)[2], double edge, struct cloth_list *places,
+                    struct cloth_error *error);
 
 #endif

@@ -3,8 +3,6 @@
  * the search ends. */
 #include "cloth/garment/detail/flat.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { ROUNDS = 8, MOST = 24, MOST_NEAR = 64 };
@@ -20,12 +18,11 @@ struct improve {
     bool wide;                        /* those around them move, too */
 };
 
-bool flat_excused(const struct delaunay *plane, uint32_t n_sharp, const unsigned char *sharp,
-                  uint32_t triangle)
+bool flat_excused(const struct delaunay *plane, const unsigned char *sharp, uint32_t triangle)
 {
     const uint32_t *v = plane->triangle[triangle].vertex;
     for (int i = 0; i < 3; i++)
-        if (v[i] < n_sharp && sharp[v[i]])
+        if (v[i] < plane->n_fixed && sharp[v[i]])
             return true;
     return false;
 }
@@ -34,7 +31,7 @@ bool flat_excused(const struct delaunay *plane, uint32_t n_sharp, const unsigned
 static double badness(const struct improve *of, uint32_t triangle)
 {
     const double sharpness = delaunay_sharpness_of(of->plane, triangle);
-    const bool excused = flat_excused(of->plane, of->plane->n_fixed, of->sharp, triangle);
+    const bool excused = flat_excused(of->plane, of->sharp, triangle);
     return excused && sharpness < 2 ? 0 : sharpness;
 }
 
@@ -47,7 +44,7 @@ static double worst_around(const struct improve *of, uint32_t n, const uint32_t 
 }
 
 /* Searches a better place for a vertex: in eight directions, by shorter and shorter steps. */
-static void flat_improve_settle(struct improve *of, uint32_t vertex)
+static void settle(struct improve *of, uint32_t vertex)
 {
     static const double way[8][2] = {{1, 0},  {0.7071, 0.7071},   {0, 1},  {-0.7071, 0.7071},
                                      {-1, 0}, {-0.7071, -0.7071}, {0, -1}, {0.7071, -0.7071}};
@@ -58,10 +55,8 @@ static void flat_improve_settle(struct improve *of, uint32_t vertex)
         return;
     double *place = plane->place[vertex], worst = worst_around(of, n, around), step = 0;
     for (uint32_t k = 0; k < n; k++) {
-        const struct delaunay_triangle *t = &plane->triangle[around[k]];
-        const double *next = plane->place[t->vertex[(delaunay_corner(t, vertex) + 1) % 3]];
-        step += sqrt((next[0] - place[0]) * (next[0] - place[0]) +
-                     (next[1] - place[1]) * (next[1] - place[1]));
+        const uint32_t next = delaunay_after(&plane->triangle[around[k]], vertex, 1);
+        step += sqrt(cloth_square_2(plane->place[next], place));
     }
     step *= 0.3 / n;
     delaunay_log_vertex(plane, vertex);
@@ -112,14 +107,9 @@ static void relax(struct improve *of)
         add_around(of, of->near[i]);
     for (int pass = 0; pass < 3; pass++)
         for (uint32_t i = 0; i < of->n_near; i++) {
-            flat_improve_settle(of, of->near[i]);
+            settle(of, of->near[i]);
             delaunay_legalise(of->plane);
         }
-}
-
-static bool same_corners(const struct delaunay_triangle *a, const struct delaunay_triangle *b)
-{
-    return memcmp(a->vertex, b->vertex, sizeof a->vertex) == 0;
 }
 
 /* The worst of all triangles that the try changed. */
@@ -131,7 +121,8 @@ static double worst_touched(const struct improve *of)
     for (size_t i = 0; i < plane->changes.n; i++) {
         const uint32_t t = change[i].triangle;
         if (t != DELAUNAY_NONE && plane->triangle[t].vertex[0] != DELAUNAY_NONE &&
-            !same_corners(&plane->triangle[t], &change[i].before))
+            memcmp(plane->triangle[t].vertex, change[i].before.vertex,
+                   sizeof change[i].before.vertex) != 0)
             worst = fmax(worst, badness(of, t));
     }
     for (uint32_t i = 0; i < of->n_near; i++) {
@@ -145,7 +136,7 @@ static double worst_touched(const struct improve *of)
 }
 
 /* Ends a try that left `near` to be relaxed. */
-static bool flat_improve_finish(struct improve *of, bool done, double before)
+static bool finish_try(struct improve *of, bool done, double before)
 {
     if (done) {
         delaunay_legalise(of->plane);
@@ -153,14 +144,10 @@ static bool flat_improve_finish(struct improve *of, bool done, double before)
     }
     const bool better = done && !of->plane->failed && worst_touched(of) < before - BETTER;
     of->plane->suspect.n = 0;
-    if (better)
-        delaunay_keep(of->plane);
-    else
-        delaunay_undo(of->plane);
-    return better;
+    return delaunay_decide(of->plane, better);
 }
 
-static void flat_improve_begin(struct improve *of)
+static void begin_try(struct improve *of)
 {
     of->n_near = 0;
     delaunay_log(of->plane);
@@ -168,30 +155,30 @@ static void flat_improve_begin(struct improve *of)
 
 static bool try_relax(struct improve *of, uint32_t triangle, double before)
 {
-    flat_improve_begin(of);
+    begin_try(of);
     for (int i = 0; i < 3; i++)
         add_around(of, of->plane->triangle[triangle].vertex[i]);
-    return flat_improve_finish(of, of->n_near > 0, before);
+    return finish_try(of, of->n_near > 0, before);
 }
 
 static bool try_insert(struct improve *of, uint32_t triangle, const double place[2], double before)
 {
-    flat_improve_begin(of);
+    begin_try(of);
     const uint32_t vertex = delaunay_insert(of->plane, place, triangle);
     if (vertex != DELAUNAY_NONE)
         add_around(of, vertex);
-    return flat_improve_finish(of, vertex != DELAUNAY_NONE, before);
+    return finish_try(of, vertex != DELAUNAY_NONE, before);
 }
 
 static bool try_merge(struct improve *of, uint32_t vertex, uint32_t to, double before)
 {
-    flat_improve_begin(of);
+    begin_try(of);
     const bool done = vertex >= of->plane->n_fixed && delaunay_merge(of->plane, vertex, to);
     if (done) {
         delaunay_legalise(of->plane);
         add_around(of, to);
     }
-    return flat_improve_finish(of, done, before);
+    return finish_try(of, done, before);
 }
 
 static bool try_all(struct improve *of, uint32_t t)
@@ -220,16 +207,10 @@ static bool try_all(struct improve *of, uint32_t t)
     return false;
 }
 
-/* A triangle that nothing makes better costs much: panels that have many are left as they are. */
-static uint32_t most_failures(const struct delaunay *plane)
-{
-    return 16 + plane->n / 500;
-}
-
 void flat_improve(struct delaunay *plane, const unsigned char *sharp)
 {
     struct improve improve = {.plane = plane, .sharp = sharp};
-    uint32_t left = most_failures(plane);
+    uint32_t left = 16 + plane->n / 500; /* that nothing makes better: such a triangle costs much */
     bool any = true;
     for (int round = 0; round < ROUNDS && (any || round < 2); round++) {
         any = false;

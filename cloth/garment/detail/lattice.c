@@ -1,9 +1,9 @@
 /* A byte a place of the lattice in the polygon's box says whether it is taken. Its middle column is
  * in the middle of the box, so that a panel that is its own mirror image has almost such a mesh. */
-#include "cloth/garment/detail/lattice.h"
 #include "cloth/base/memory.h"
+#include "cloth/base/vector.h"
+#include "cloth/garment/detail/flat.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 static const double ROW = 0.86602540378443864676; /* a row's height, in edges */
@@ -31,15 +31,11 @@ static double row_x(const struct lattice *of, int64_t row)
     return row % 2 ? of->origin[0] + 0.5 * of->edge : of->origin[0];
 }
 
-static int detail_lattice_make(struct lattice *lattice, uint32_t n, const double (*loop)[2],
-                               double edge, struct cloth_error *error)
+static int make_lattice(struct lattice *lattice, uint32_t n, const double (*loop)[2], double edge,
+                        struct cloth_error *error)
 {
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (uint32_t i = 0; i < n; i++)
-        for (int k = 0; k < 2; k++) {
-            low[k] = fmin(low[k], loop[i][k]);
-            high[k] = fmax(high[k], loop[i][k]);
-        }
+    double low[2], high[2];
+    cloth_box(n, loop, low, high);
     const double half = ceil((high[0] - low[0]) / (2 * edge)) + 1;
     const double rows = ceil((high[1] - low[1]) / (ROW * edge)) + 1;
     if (!((2 * half + 1) * rows < 0x1p28))
@@ -56,7 +52,7 @@ static int detail_lattice_make(struct lattice *lattice, uint32_t n, const double
     return lattice->taken ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
-static int detail_lattice_compare(const void *a, const void *b)
+static int compare_crossings(const void *a, const void *b)
 {
     const struct crossing *one = a, *two = b;
     if (one->row != two->row)
@@ -65,8 +61,8 @@ static int detail_lattice_compare(const void *a, const void *b)
 }
 
 /* The rows that a segment crosses, its lower end included. */
-static int detail_lattice_cross(const struct lattice *of, const double a[2], const double b[2],
-                                struct cloth_list *list, struct cloth_error *error)
+static int cross_rows(const struct lattice *of, const double a[2], const double b[2],
+                      struct cloth_list *list, struct cloth_error *error)
 {
     const double *low = a[1] < b[1] ? a : b, *high = a[1] < b[1] ? b : a;
     const double height = ROW * of->edge;
@@ -75,11 +71,11 @@ static int detail_lattice_cross(const struct lattice *of, const double a[2], con
         const double y = row_y(of, row);
         if (y < low[1])
             continue;
-        struct crossing *crossing = cloth_list_add(list, sizeof *crossing, 1, error);
-        if (!crossing)
-            return CLOTH_E_MEMORY;
-        crossing->row = row;
-        crossing->x = low[0] + (high[0] - low[0]) * ((y - low[1]) / (high[1] - low[1]));
+        const struct crossing crossing = {row, low[0] + (high[0] - low[0]) *
+                                                            ((y - low[1]) / (high[1] - low[1]))};
+        const int code = cloth_list_put(list, &crossing, sizeof crossing, error);
+        if (code)
+            return code;
     }
     return CLOTH_OK;
 }
@@ -90,10 +86,10 @@ static int take_inside(struct lattice *of, uint32_t n, const double (*loop)[2],
     struct cloth_list list = {0};
     int code = CLOTH_OK;
     for (uint32_t i = 0; i < n && !code; i++)
-        code = detail_lattice_cross(of, loop[i], loop[(i + 1) % n], &list, error);
+        code = cross_rows(of, loop[i], loop[(i + 1) % n], &list, error);
     const struct crossing *crossing = list.items;
     if (!code && list.n)
-        qsort(list.items, list.n, sizeof *crossing, detail_lattice_compare);
+        qsort(list.items, list.n, sizeof *crossing, compare_crossings);
     for (size_t i = 0; !code && i + 1 < list.n; i += 2) { /* each row has an even number */
         const int64_t row = crossing[i].row;
         const double x = row_x(of, row);
@@ -104,17 +100,6 @@ static int take_inside(struct lattice *of, uint32_t n, const double (*loop)[2],
     }
     free(list.items);
     return code;
-}
-
-/* Square of the distance from a place to a segment. */
-static double detail_lattice_distance(double x, double y, const double a[2], const double b[2])
-{
-    const double along[2] = {b[0] - a[0], b[1] - a[1]};
-    const double length = along[0] * along[0] + along[1] * along[1];
-    double s = length > 0 ? ((x - a[0]) * along[0] + (y - a[1]) * along[1]) / length : 0;
-    s = s < 0 ? 0 : s > 1 ? 1 : s;
-    const double dx = x - a[0] - s * along[0], dy = y - a[1] - s * along[1];
-    return dx * dx + dy * dy;
 }
 
 static int64_t clamp(double x, int64_t n)
@@ -128,48 +113,40 @@ static void leave_near(struct lattice *of, const double a[2], const double b[2])
     const int64_t first = clamp((fmin(a[1], b[1]) - near - of->origin[1]) / height, of->rows);
     const int64_t last = clamp((fmax(a[1], b[1]) + near - of->origin[1]) / height, of->rows);
     for (int64_t row = first; row <= last; row++) {
-        const double x = row_x(of, row), y = row_y(of, row);
+        const double x = row_x(of, row);
         const int64_t left = clamp((fmin(a[0], b[0]) - near - x) / of->edge, of->columns);
         const int64_t right = clamp((fmax(a[0], b[0]) + near - x) / of->edge, of->columns);
-        for (int64_t c = left; c <= right; c++)
-            if (detail_lattice_distance(x + (double)c * of->edge, y, a, b) < near * near)
+        for (int64_t c = left; c <= right; c++) {
+            const double place[2] = {x + (double)c * of->edge, row_y(of, row)};
+            if (cloth_segment_square(place, a, b) < near * near)
                 of->taken[row * of->columns + c] = 0;
+        }
     }
 }
 
-static int list_taken(const struct lattice *of, uint32_t *count, double (**places)[2],
+static int list_taken(const struct lattice *of, struct cloth_list *places,
                       struct cloth_error *error)
 {
-    size_t n = 0;
-    for (int64_t i = 0; i < of->rows * of->columns; i++)
-        n += of->taken[i];
-    *places = cloth_alloc(n, sizeof **places, error);
-    if (!*places)
-        return CLOTH_E_MEMORY;
-    *count = 0;
+    int code = CLOTH_OK;
     for (int64_t row = 0; row < of->rows; row++)
-        for (int64_t k = 0; k < of->columns; k++) {
+        for (int64_t k = 0; k < of->columns && !code; k++) {
             const int64_t c = row % 2 ? of->columns - 1 - k : k;
-            if (!of->taken[row * of->columns + c])
-                continue;
-            double *place = (*places)[(*count)++];
-            place[0] = row_x(of, row) + (double)c * of->edge;
-            place[1] = row_y(of, row);
+            const double place[2] = {row_x(of, row) + (double)c * of->edge, row_y(of, row)};
+            if (of->taken[row * of->columns + c])
+                code = cloth_list_put(places, place, sizeof place, error);
         }
-    return CLOTH_OK;
+    return code;
 }
 
-int garment_lattice(uint32_t n, const double (*loop)[2], double edge, uint32_t *count,
-                    double (**places)[2], struct cloth_error *error)
+int garment_lattice(uint32_t n, const double (*loop)[2], double edge, struct cloth_list *places,
+                    struct cloth_error *error)
 {
     struct lattice lattice = {0};
-    *count = 0;
-    *places = NULL;
-    int code = detail_lattice_make(&lattice, n, loop, edge, error);
+    int code = make_lattice(&lattice, n, loop, edge, error);
     code = code ? code : take_inside(&lattice, n, loop, error);
     for (uint32_t i = 0; i < n && !code; i++)
         leave_near(&lattice, loop[i], loop[(i + 1) % n]);
-    code = code ? code : list_taken(&lattice, count, places, error);
+    code = code ? code : list_taken(&lattice, places, error);
     free(lattice.taken);
     return code;
 }

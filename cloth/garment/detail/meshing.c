@@ -5,7 +5,6 @@
 #include "cloth/garment/detail/meshing.h"
 #include "cloth/base/memory.h"
 #include "cloth/garment/detail/flat.h"
-#include "cloth/garment/detail/meet.h"
 
 #include <stdlib.h>
 
@@ -47,25 +46,23 @@ static bool meshing_is_ear(const struct delaunay *plane, uint32_t triangle)
 }
 
 /* Whether a triangle is bad, and not excused. What is below 20 degrees and an ear stays so. */
-static bool is_worth(const struct meshing_panel *of, uint32_t n_edges, struct worth worth,
-                     uint32_t triangle)
+static bool is_worth(const struct meshing_panel *of, struct worth worth, uint32_t triangle)
 {
     return delaunay_sharpness_of(&of->plane, triangle) > worth.cosine &&
-           !flat_excused(&of->plane, of->start[n_edges], of->sharp, triangle) &&
+           !flat_excused(&of->plane, of->sharp, triangle) &&
            !(worth.cosine == POOR.cosine && meshing_is_ear(&of->plane, triangle));
 }
 
 /* Edges of bad triangles; each is refined once. */
-static int refine_poor(struct meshing *meshing, uint32_t panel, struct worth worth, bool *again,
-                       struct cloth_error *error)
+static void refine_poor(struct meshing *meshing, uint32_t panel, struct worth worth, bool *again)
 {
     const struct meshing_panel *of = &meshing->panel[panel];
     const uint32_t n_edges = meshing->pattern->panel[panel].n_edges;
-    unsigned char *poor = cloth_alloc(n_edges, 1, error);
+    unsigned char *poor = cloth_alloc(n_edges, 1, meshing->error);
     if (!poor)
-        return CLOTH_E_MEMORY;
+        return;
     for (uint32_t t = 0; t < of->plane.n_triangles; t++) {
-        if (!is_worth(of, n_edges, worth, t))
+        if (!is_worth(of, worth, t))
             continue;
         for (int i = 0; i < 3; i++) {
             const uint32_t v = of->plane.triangle[t].vertex[i];
@@ -77,84 +74,64 @@ static int refine_poor(struct meshing *meshing, uint32_t panel, struct worth wor
         if (poor[e])
             refine(meshing, panel, e, worth.factor, again);
     free(poor);
-    return CLOTH_OK;
 }
 
-static int cannot(const struct meshing *meshing, uint32_t panel, uint32_t edge,
-                  struct cloth_error *error)
-{
-    return cloth_fail(error, CLOTH_E_INPUT,
-                      "panel '%s' cannot be meshed by edges of %g m: at edge %u its boundary comes "
-                      "too near to itself",
-                      meshing->pattern->panel[panel].name, meshing->spacing, edge);
-}
-
-/* place: the panel's boundary. */
-static int mesh_outline(struct meshing *meshing, uint32_t panel, const double (*place)[2], int try,
-                        bool *again, struct cloth_error *error)
+static void mesh_panel(struct meshing *meshing, uint32_t panel, int try, bool *again)
 {
     struct meshing_panel *of = &meshing->panel[panel];
+    const char *name = meshing->pattern->panel[panel].name;
     const uint32_t n_edges = meshing->pattern->panel[panel].n_edges;
-    const struct meet_loop outline = {n_edges, of->start, place};
-    const struct flat_loop loop = {of->start[n_edges], place, of->sharp};
     struct cloth_error why = {0};
-    uint32_t edge[2] = {0, 0}, crossing;
+    uint32_t edge[2] = {0, 0}, crossing = DELAUNAY_NONE;
     bool meets = false;
     const bool last = try == TRIES - 1;
-    int code = meet_find(&outline, 1e-8, &meets, edge, error);
-    if (!code && !meets && loop.n >= 3) {
-        code = flat_make(&of->plane, &loop, meshing->spacing, &crossing, &why);
-        meets = crossing != DELAUNAY_NONE;
-        edge[0] = edge[1] = meets ? meshing_edge_of(of, n_edges, crossing) : 0;
-        if (code && !meets)
-            cloth_fail(error, code, "panel '%s': %s", meshing->pattern->panel[panel].name,
-                       why.text);
-        code = meets ? CLOTH_OK : code;
-        of->meshed = !code && !meets;
+    delaunay_free(&of->plane);
+    if (!meshing_outline(meshing, panel))
+        return;
+    const double(*place)[2] = (const double(*)[2])of->place;
+    const struct meet_loop outline = {n_edges, of->start, place};
+    const struct flat_loop loop = {of->start[n_edges], place, of->sharp};
+    if (meet_find(&outline, 1e-8, &meets, edge, meshing->error))
+        return;
+    if (!meets && loop.n >= 3)
+        of->meshed = !flat_make(&of->plane, &loop, meshing->spacing, &crossing, &why);
+    if (crossing != DELAUNAY_NONE)
+        edge[0] = edge[1] = meshing_edge_of(of, n_edges, crossing);
+    if (why.code && crossing == DELAUNAY_NONE)
+        cloth_fail(meshing->error, why.code, "panel '%s': %s", name, why.text);
+    else if (of->meshed && !last)
+        refine_poor(meshing, panel, try < FAIR_TRIES ? FAIR : POOR, again);
+    else if (!of->meshed && last)
+        cloth_fail(meshing->error, CLOTH_E_INPUT,
+                   "panel '%s' cannot be meshed by edges of %g m: at edge %u its boundary comes "
+                   "too near to itself",
+                   name, meshing->spacing, edge[0]);
+    else if (!of->meshed) {
+        refine(meshing, panel, edge[0], 2, again);
+        if (edge[1] != edge[0])
+            refine(meshing, panel, edge[1], 2, again);
     }
-    if (code || of->meshed)
-        return code   ? code
-               : last ? CLOTH_OK
-                      : refine_poor(meshing, panel, try < FAIR_TRIES ? FAIR : POOR, again, error);
-    if (last)
-        return cannot(meshing, panel, edge[0], error);
-    refine(meshing, panel, edge[0], 2, again);
-    if (edge[1] != edge[0])
-        refine(meshing, panel, edge[1], 2, again);
-    return CLOTH_OK;
 }
 
-static int mesh_panel(struct meshing *meshing, uint32_t panel, int try, bool *again,
-                      struct cloth_error *error)
+/* Returns whether all tries were needed, so that there may be bad triangles. */
+static bool mesh_at(struct meshing *meshing, double spacing)
 {
-    double(*place)[2];
-    int code = meshing_outline(meshing, panel, &place, error);
-    delaunay_free(&meshing->panel[panel].plane);
-    if (!code)
-        code = mesh_outline(meshing, panel, (const double(*)[2])place, try, again, error);
-    free(place);
-    return code;
-}
-
-/* *last: all tries were needed, so that there may be bad triangles. */
-static int mesh_at(struct meshing *meshing, double spacing, bool *last, struct cloth_error *error)
-{
-    int code = CLOTH_OK, k = 0;
+    const uint32_t n_panels = meshing->pattern->n_panels;
+    int k = 0;
     bool again = true;
     meshing->spacing = spacing;
-    for (uint32_t e = 0; e < meshing->first[meshing->pattern->n_panels]; e++)
+    for (uint32_t e = 0; e < meshing->first[n_panels]; e++)
         meshing->edge[e].finer = 1;
-    for (uint32_t p = 0; p < meshing->pattern->n_panels; p++)
+    for (uint32_t p = 0; p < n_panels; p++)
         meshing->panel[p].meshed = false;
-    for (; k < TRIES && again && !code; k++) {
+    for (; k < TRIES && again && !meshing->error->code; k++) {
         again = false;
-        code = meshing_divide(meshing, error);
-        for (uint32_t p = 0; p < meshing->pattern->n_panels && !code; p++)
+        meshing_divide(meshing);
+        for (uint32_t p = 0; p < n_panels && !meshing->error->code; p++)
             if (!meshing->panel[p].meshed)
-                code = mesh_panel(meshing, p, k, &again, error);
+                mesh_panel(meshing, p, k, &again);
     }
-    *last = k == TRIES;
-    return code;
+    return k == TRIES;
 }
 
 static bool is_poor(const struct meshing *meshing)
@@ -162,35 +139,28 @@ static bool is_poor(const struct meshing *meshing)
     for (uint32_t p = 0; p < meshing->pattern->n_panels; p++) {
         const struct meshing_panel *of = &meshing->panel[p];
         for (uint32_t t = 0; t < of->plane.n_triangles; t++)
-            if (is_worth(of, meshing->pattern->panel[p].n_edges, POOR, t))
+            if (is_worth(of, POOR, t))
                 return true;
     }
     return false;
 }
 
-int meshing_mesh(struct meshing *meshing, double spacing, struct cloth_error *error)
+void meshing_mesh(struct meshing *meshing, double spacing)
 {
-    struct cloth_error first = {0};
+    struct cloth_error *error = meshing->error;
     double finer = spacing;
-    bool last;
-    int code = mesh_at(meshing, finer, &last, &first);
-    const int before = code;
-    for (int k = 0;
-         k < FINER_TRIES && (code == CLOTH_E_INPUT || (!code && last && is_poor(meshing))); k++) {
-        struct cloth_error why = {0};
+    bool last = mesh_at(meshing, finer);
+    const struct cloth_error first = *error;
+    for (int k = 0; k < FINER_TRIES &&
+                    (error->code == CLOTH_E_INPUT || (!error->code && last && is_poor(meshing)));
+         k++) {
+        *error = (struct cloth_error){0};
         finer *= FINER;
-        code = mesh_at(meshing, finer, &last, &why);
+        last = mesh_at(meshing, finer);
     }
-    if (!before && (code || (last && is_poor(meshing)))) /* nothing helps: as it was asked for */
-        code = mesh_at(meshing, spacing, &last, error);
-    return code ? cloth_fail(error, code, "%s", first.code ? first.text : "no memory for a mesh")
-                : CLOTH_OK;
-}
-
-uint32_t meshing_count(const struct meshing *meshing)
-{
-    uint32_t n = 0;
-    for (uint32_t p = 0; p < meshing->pattern->n_panels; p++)
-        n += meshing->panel[p].plane.n;
-    return n;
+    if (!first.code && (error->code || (last && is_poor(meshing)))) {
+        *error = (struct cloth_error){0};
+        mesh_at(meshing, spacing); /* nothing helps: as it was asked for */
+    } else if (error->code)
+        *error = first;
 }

@@ -10,6 +10,7 @@
 
 struct meshing_panel {
     struct delaunay plane;  /* its mesh, in the plane as seen from its front */
+    double (*place)[2];     /* m: of its boundary */
     unsigned char *sharp;   /* a vertex of its boundary: the panel's angle there is below 30 degrees
                              */
     uint32_t *start;        /* n_edges + 1: where each edge's vertices begin */
@@ -25,37 +26,43 @@ struct meshing_edge {
     double middle;    /* parts of the edge's length: how long divisions are in its middle, */
     double end[2];    /* and at its begin and end, where they may be shorter */
     double *part;     /* n + 1: parts of the length up to each; NULL: they are equal */
+    struct meshing_divisions {
+        uint32_t n;
+        double end[2];
+    } before; /* the last ones */
 };
 
 struct meshing {
     const struct garment_pattern *pattern;
+    struct cloth_error *error;   /* the first one; after it nothing is done */
     uint32_t *first;             /* n_panels + 1 */
     struct meshing_edge *edge;   /* first[n_panels] */
     struct meshing_panel *panel; /* n_panels */
     double spacing;              /* m: of inner triangles */
 };
 
-/* meshing_free frees it, also after an error. */
-int meshing_make(struct meshing *meshing, const struct garment_pattern *pattern,
-                 struct cloth_error *error);
+/* error: set by this function and those below; no error before. meshing_free frees it, also after
+ * an error. */
+void meshing_make(struct meshing *meshing, const struct garment_pattern *pattern,
+                  struct cloth_error *error);
 void meshing_free(struct meshing *meshing);
 
 /* Divides all edges and meshes all panels by a spacing. Where triangles are bad since the boundary
  * is too coarse for them, it is divided finer, on both sides of a stitch. Where they stay bad, or a
  * panel cannot be meshed, the spacing becomes up to a third finer. */
-int meshing_mesh(struct meshing *meshing, double spacing, struct cloth_error *error);
-
-/* How many vertices all panels have. */
-uint32_t meshing_count(const struct meshing *meshing);
+void meshing_mesh(struct meshing *meshing, double spacing);
 
 /* The divisions of all edges by the spacing and by how much finer they are to be; panels of which
  * any changes are not meshed any more. Beside a short edge divisions are short, and become longer
  * along their edge. Errors: CLOTH_E_INPUT, too many; CLOTH_E_MEMORY. */
-int meshing_divide(struct meshing *meshing, struct cloth_error *error);
+void meshing_divide(struct meshing *meshing);
 
-/* The places of a panel's boundary by its divisions, and which of its corners are sharp. `start`
- * and `sharp` of the panel are new, *place is to be freed, also after an error. */
-int meshing_outline(struct meshing *meshing, uint32_t panel, double (**place)[2],
-                    struct cloth_error *error);
+/* Finds start, place and sharp of a panel by its divisions. False: after an error. */
+bool meshing_outline(struct meshing *meshing, uint32_t panel);
+
+/* Pairs the vertices of all stitches of a garment that has its pieces, each in the direction that
+ * docs/garments.md says. Error: CLOTH_E_MEMORY. Local. */
+int seams_make(struct garment *garment, const struct garment_pattern *pattern,
+               struct cloth_error *error);
 
 #endif

@@ -2,12 +2,12 @@
  * and a back: where the fronts of two panels are on one side of it, their loops run against each
  * other along the seam, and else alike. So all seams of two panels have one answer, and those that
  * are clear decide for others. */
-#include "cloth/garment/detail/seams.h"
 #include "cloth/base/memory.h"
 #include "cloth/base/order.h"
 #include "cloth/base/sets.h"
+#include "cloth/base/vector.h"
+#include "cloth/garment/detail/meshing.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 /* A seam tells its direction if its two distances differ by at least this part of the longer one.
@@ -15,42 +15,29 @@
 static const double CLEAR = 0.05;
 
 /* Vertex k along an edge, from its begin. */
-static uint32_t detail_seams_vertex_of(const struct garment *garment,
-                                       const struct garment_pattern *pattern,
-                                       struct garment_side side, uint32_t k)
+static uint32_t vertex_of(const struct garment *garment, const struct garment_pattern *pattern,
+                          struct garment_side side, uint32_t k)
 {
     const struct garment_piece *piece = &garment->piece[side.panel];
     const uint32_t n = piece->start[pattern->panel[side.panel].n_edges];
     return piece->first + (piece->start[side.edge] + k) % n;
 }
 
-static double detail_seams_distance(const struct garment *garment, uint32_t a, uint32_t b)
-{
-    double sum = 0;
-    for (int k = 0; k < 3; k++) {
-        const double d = garment->position[a][k] - garment->position[b][k];
-        sum += d * d;
-    }
-    return sqrt(sum);
-}
-
-static void detail_seams_measure(struct garment *garment, const struct garment_pattern *pattern,
-                                 uint32_t s)
+/* The distances of vertices that belong together if both edges run alike, and if one is reversed.
+ */
+static void measure_seam(struct garment *garment, const struct garment_pattern *pattern, uint32_t s)
 {
     const struct garment_side *side = pattern->stitch[s].side;
     struct garment_seam *seam = &garment->seam[s];
     const uint32_t *start = garment->piece[side[0].panel].start;
     const uint32_t n = seam->n_pairs = start[side[0].edge + 1] - start[side[0].edge] + 1;
-    for (uint32_t k = 0; k < n; k++) {
-        const uint32_t a = detail_seams_vertex_of(garment, pattern, side[0], k);
-        seam->distance[0] += detail_seams_distance(
-                                 garment, a, detail_seams_vertex_of(garment, pattern, side[1], k)) /
-                             n;
-        seam->distance[1] +=
-            detail_seams_distance(garment, a,
-                                  detail_seams_vertex_of(garment, pattern, side[1], n - 1 - k)) /
-            n;
-    }
+    for (uint32_t k = 0; k < n; k++)
+        for (int reversed = 0; reversed < 2; reversed++) {
+            const uint32_t a = vertex_of(garment, pattern, side[0], k);
+            const uint32_t b = vertex_of(garment, pattern, side[1], reversed ? n - 1 - k : k);
+            seam->distance[reversed] +=
+                cloth_distance(garment->position[a], garment->position[b]) / n;
+        }
 }
 
 /* ---- Which panels have their fronts on one side ---- */
@@ -74,13 +61,13 @@ static double vote_of(const struct garment_seam *seam)
     return fabs(margin) > CLEAR * longer ? margin / longer : 0;
 }
 
-/* 0: nothing is known. */
-static int relation(const struct fronts *fronts, const struct garment_side side[2])
+/* Above 0: the fronts of two panels are on one side, below 0: not; 0: nothing is known. */
+static int relation(const struct fronts *fronts, uint32_t a, uint32_t b)
 {
-    const uint32_t a = cloth_sets_root(fronts->set, side[0].panel);
-    if (a == cloth_sets_root(fronts->set, side[1].panel))
+    const uint32_t root = cloth_sets_root(fronts->set, a);
+    if (root == cloth_sets_root(fronts->set, b))
         return 1;
-    return a == cloth_sets_root(fronts->set, side[1].panel + fronts->n_panels) ? -1 : 0;
+    return root == cloth_sets_root(fronts->set, b + fronts->n_panels) ? -1 : 0;
 }
 
 static void relate(const struct fronts *fronts, uint32_t a, uint32_t b, bool one_side)
@@ -104,8 +91,8 @@ static int compare_votes(const void *va, const void *vb)
 }
 
 /* The votes of panels, one for each two that have clear seams. */
-static uint32_t detail_seams_count_votes(struct vote *vote, const struct garment *garment,
-                                         const struct garment_pattern *pattern)
+static uint32_t count_votes(struct vote *vote, const struct garment *garment,
+                            const struct garment_pattern *pattern)
 {
     uint32_t n = 0, kept = 0;
     for (uint32_t s = 0; s < garment->n_seams; s++) {
@@ -132,14 +119,11 @@ static int find_fronts(struct fronts *fronts, const struct garment *garment,
     fronts->n_panels = pattern->n_panels;
     fronts->set = cloth_alloc(2 * (size_t)fronts->n_panels, sizeof *fronts->set, error);
     if (vote && fronts->set) {
-        const uint32_t n = detail_seams_count_votes(vote, garment, pattern);
+        const uint32_t n = count_votes(vote, garment, pattern);
         cloth_sets_start(fronts->set, 2 * fronts->n_panels);
-        for (uint32_t i = 0; i < n && fabs(vote[i].sum) > 0; i++) {
-            const struct garment_side side[2] = {{.panel = vote[i].panel[0]},
-                                                 {.panel = vote[i].panel[1]}};
-            if (!relation(fronts, side))
-                relate(fronts, side[0].panel, side[1].panel, vote[i].sum > 0);
-        }
+        for (uint32_t i = 0; i < n && fabs(vote[i].sum) > 0; i++)
+            if (!relation(fronts, vote[i].panel[0], vote[i].panel[1]))
+                relate(fronts, vote[i].panel[0], vote[i].panel[1], vote[i].sum > 0);
     }
     const bool enough = vote && fronts->set;
     free(vote);
@@ -150,18 +134,20 @@ static int find_fronts(struct fronts *fronts, const struct garment *garment,
 static void turn_seams(struct garment *garment, const struct garment_pattern *pattern,
                        const struct fronts *fronts)
 {
-    for (uint32_t s = 0; s < garment->n_seams; s++)
-        garment->seam[s].unsure =
-            !pattern->stitch[s].right_wrong && !relation(fronts, pattern->stitch[s].side);
     for (uint32_t s = 0; s < garment->n_seams; s++) {
         const struct garment_stitch *stitch = &pattern->stitch[s];
-        const struct garment_side *side = stitch->side;
+        garment->seam[s].unsure =
+            !stitch->right_wrong && !relation(fronts, stitch->side[0].panel, stitch->side[1].panel);
+    }
+    for (uint32_t s = 0; s < garment->n_seams; s++) {
+        const struct garment_stitch *stitch = &pattern->stitch[s];
+        const uint32_t a = stitch->side[0].panel, b = stitch->side[1].panel;
         struct garment_seam *seam = &garment->seam[s];
         if (stitch->right_wrong)
             continue;
-        if (!relation(fronts, side))
-            relate(fronts, side[0].panel, side[1].panel, true);
-        seam->reversed = relation(fronts, side) > 0;
+        if (!relation(fronts, a, b))
+            relate(fronts, a, b, true);
+        seam->reversed = relation(fronts, a, b) > 0;
         const double vote = vote_of(seam);
         seam->unsure = seam->unsure || (seam->reversed ? vote < 0 : vote > 0);
     }
@@ -177,9 +163,8 @@ static int pair_vertices(struct garment *garment, const struct garment_pattern *
     const uint32_t n = seam->n_pairs;
     seam->pair = cloth_alloc(n, sizeof *seam->pair, error);
     for (uint32_t k = 0; k < n && seam->pair; k++) {
-        seam->pair[k][0] = detail_seams_vertex_of(garment, pattern, side[0], k);
-        seam->pair[k][1] =
-            detail_seams_vertex_of(garment, pattern, side[1], seam->reversed ? n - 1 - k : k);
+        seam->pair[k][0] = vertex_of(garment, pattern, side[0], k);
+        seam->pair[k][1] = vertex_of(garment, pattern, side[1], seam->reversed ? n - 1 - k : k);
     }
     return seam->pair ? CLOTH_OK : CLOTH_E_MEMORY;
 }
@@ -193,7 +178,7 @@ int seams_make(struct garment *garment, const struct garment_pattern *pattern,
         return CLOTH_E_MEMORY;
     garment->n_seams = pattern->n_stitches;
     for (uint32_t s = 0; s < garment->n_seams; s++)
-        detail_seams_measure(garment, pattern, s);
+        measure_seam(garment, pattern, s);
     int code = find_fronts(&fronts, garment, pattern, error);
     if (!code)
         turn_seams(garment, pattern, &fronts);

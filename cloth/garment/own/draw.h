@@ -10,8 +10,9 @@
 
 enum { DRAW_CORNERS = 16, DRAW_PANELS = 8, DRAW_STITCHES = 20 };
 
-/* An edge, from its corner to the next one. */
+/* An edge, from its corner to that of the next one; the last one goes to the first corner. */
 struct draw_line {
+    double corner[2]; /* m, counterclockwise */
     enum garment_curve curve;
     double control[2][2];
     double radius; /* of a small arc, which lies on the right of its chord */
@@ -19,8 +20,7 @@ struct draw_line {
 
 struct draw_outline {
     uint32_t n;
-    double corner[DRAW_CORNERS][2];      /* m, counterclockwise */
-    struct draw_line line[DRAW_CORNERS]; /* line i: from corner i to i + 1, the last one to 0 */
+    struct draw_line line[DRAW_CORNERS];
 };
 
 struct draw_place {
@@ -30,26 +30,33 @@ struct draw_place {
 };
 
 struct draw {
+    const char *name; /* of the garment */
     struct garment_pattern *pattern;
     bool mirrored[DRAW_PANELS];
     struct cloth_error *error;
     int code; /* the first error; after it nothing is done */
 };
 
-/* Adds a corner, and the line from it to the next one. */
-void draw_straight(struct draw_outline *outline, double x, double y);
-void draw_quadratic(struct draw_outline *outline, double x, double y, double cx, double cy);
-void draw_cubic(struct draw_outline *outline, double x, double y, double cx, double cy, double dx,
-                double dy);
+/* Fails with a sentence about the garment's measures. */
+#define DRAW_FAIL(draw, format, ...)                                                               \
+    cloth_fail((draw)->error, CLOTH_E_INPUT, "%s: " format, (draw)->name, __VA_ARGS__)
 
-/* Makes a panel of its half of x >= 0: corners from the bottom to the top. Line 0 becomes the
- * bottom, `bottom`; the half's lines follow, then `top`, in place of the half's last line; then
- * their mirror images. So of n corners line i has the image 2 n - i. */
-void draw_unfold(struct draw_outline *outline, const struct draw_line *bottom,
-                 const struct draw_line *top);
+/* Makes a whole panel of its half of x >= 0, whose lines go from the bottom to the top. Lines 0 and
+ * n - 1 of the half cross the middle: the corner of line 0 is found here, as the image of that of
+ * line 1. Images of the others follow. So of m lines line i has the image m - i. */
+void draw_unfold(struct draw_outline *half);
 
 /* The length of a line, m. */
 double draw_length(const struct draw_outline *outline, uint32_t line);
+
+/* Where panels start in z, m: before or behind the body, `apart` from each other. */
+static inline double draw_apart(bool back, double apart)
+{
+    return (back ? -0.5 : 0.5) * apart + 0.01;
+}
+
+/* Checks that a garment can have this waist above hips of this girth, m. */
+int draw_check_waist(struct draw *draw, double waist, double hip);
 
 /* Adds a panel to the pattern; returns its number. */
 uint32_t draw_panel(struct draw *draw, const char *name, const struct draw_outline *outline,

@@ -31,21 +31,18 @@ struct panel {
 static int skirt_check(struct draw *draw, const struct panel *panel, const double *value)
 {
     const double out = panel->length - panel->depth;
-    if (value[WAIST] < 0.6 * value[HIP] || value[WAIST] > value[HIP] + 0.3)
-        return cloth_fail(draw->error, CLOTH_E_INPUT,
-                          "skirt: a waist of %g m does not go with a hip of %g m; waist has to be "
-                          "%g to %g",
-                          value[WAIST], value[HIP], 0.6 * value[HIP], value[HIP] + 0.3);
+    const int code = draw_check_waist(draw, value[WAIST], value[HIP]);
+    if (code)
+        return code;
     if (panel->hem < 0.7 * panel->hip)
-        return cloth_fail(draw->error, CLOTH_E_INPUT,
-                          "skirt: a hem of %g m is too narrow for hips of %g m; hem has to be at "
-                          "least %g",
-                          value[HEM], value[HIP], 4 * 0.7 * panel->hip);
+        return DRAW_FAIL(draw,
+                         "a hem of %g m is too narrow for hips of %g m; hem has to be at least %g",
+                         value[HEM], value[HIP], 4 * 0.7 * panel->hip);
     if (panel->hem > panel->hip + 1.5 * out)
-        return cloth_fail(draw->error, CLOTH_E_INPUT,
-                          "skirt: a hem of %g m is too wide for a skirt of %g m length; hem has to "
-                          "be at most %g",
-                          value[HEM], value[LENGTH], 4 * (panel->hip + 1.5 * out));
+        return DRAW_FAIL(draw,
+                         "a hem of %g m is too wide for a skirt of %g m length; hem has to be at "
+                         "most %g",
+                         value[HEM], value[LENGTH], 4 * (panel->hip + 1.5 * out));
     return CLOTH_OK;
 }
 
@@ -58,31 +55,30 @@ static void flare_of(const struct panel *panel, double control[2])
     control[1] = -panel->depth - down;
 }
 
-/* The hem's arc, in the middle lower than at its ends; straight where the sides do not flare. */
-static struct draw_line hem_of(const struct panel *panel)
+/* The whole panel. Its hem is lower in the middle than at its ends, but straight where the sides do
+ * not flare. */
+static struct draw_outline draw_half(const struct panel *panel)
 {
-    struct draw_line line = {.curve = GARMENT_STRAIGHT};
     double control[2];
     flare_of(panel, control);
     const double out = panel->hem - control[0], down = panel->length + control[1];
     const double sine = out / sqrt(out * out + down * down);
-    if (sine > 0.02)
-        line = (struct draw_line){.curve = GARMENT_CIRCLE, .radius = panel->hem / sine};
-    return line;
-}
-
-static void draw_half(struct draw_outline *outline, const struct panel *panel)
-{
-    const struct draw_line hem = hem_of(panel);
-    const struct draw_line top = {GARMENT_QUADRATIC, {{0, -0.02}}, 0};
-    double control[2];
-    flare_of(panel, control);
-    *outline = (struct draw_outline){0};
-    draw_quadratic(outline, panel->hem, -panel->length, control[0], control[1]);
-    draw_quadratic(outline, panel->hip, -panel->depth, 0.8 * panel->hip + 0.2 * panel->top,
-                   -0.5 * panel->depth);
-    draw_straight(outline, panel->top, 0);
-    draw_unfold(outline, &hem, &top);
+    const bool arc = sine > 0.02;
+    struct draw_outline outline = {
+        .n = TOP + 1,
+        .line = {[BOTTOM] = {.curve = arc ? GARMENT_CIRCLE : GARMENT_STRAIGHT,
+                             .radius = arc ? panel->hem / sine : 0},
+                 [LOWER_SIDE] = {{panel->hem, -panel->length},
+                                 GARMENT_QUADRATIC,
+                                 {{control[0], control[1]}},
+                                 0},
+                 [UPPER_SIDE] = {{panel->hip, -panel->depth},
+                                 GARMENT_QUADRATIC,
+                                 {{0.8 * panel->hip + 0.2 * panel->top, -0.5 * panel->depth}},
+                                 0},
+                 [TOP] = {{panel->top, 0}, GARMENT_QUADRATIC, {{0, -0.02}}, 0}}};
+    draw_unfold(&outline);
+    return outline;
 }
 
 void draw_skirt(struct draw *draw, const double *value)
@@ -95,20 +91,19 @@ void draw_skirt(struct draw *draw, const double *value)
                                 0.25 * value[HEM],
                                 fmin(0.16 * scale, 0.5 * length),
                                 length};
-    const double y = 1.1 * scale - value[BAND];
+    struct draw_outline strip = {
+        .n = BAND_TOP + 1,
+        .line = {
+            [BAND_SIDE] = {.corner = {waist, 0}}, [BAND_TOP] = {.corner = {waist, value[BAND]}}}};
     uint32_t panel[2], band[2];
     draw->code = skirt_check(draw, &shape, value);
     if (draw->code)
         return;
+    const struct draw_outline outline = draw_half(&shape);
+    draw_unfold(&strip);
     for (int back = 0; back < 2; back++) {
         struct draw_place place = {
-            .back = back, .y = y, .z = (back ? -0.5 : 0.5) * value[APART] + 0.01};
-        const struct draw_line straight = {.curve = GARMENT_STRAIGHT};
-        struct draw_outline outline, strip = {0};
-        draw_half(&outline, &shape);
-        draw_straight(&strip, waist, 0);
-        draw_straight(&strip, waist, value[BAND]);
-        draw_unfold(&strip, &straight, &straight);
+            .back = back, .y = 1.1 * scale - value[BAND], .z = draw_apart(back, value[APART])};
         panel[back] = draw_panel(draw, back ? "back" : "front", &outline, &place);
         place.y += 0.02;
         band[back] = draw_panel(draw, back ? "band_back" : "band_front", &strip, &place);

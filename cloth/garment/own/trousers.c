@@ -53,21 +53,23 @@ static struct leg leg_of(const double *value, bool back)
     return leg;
 }
 
-static void draw_leg(struct draw_outline *outline, const struct leg *leg, double inseam)
+static struct draw_outline draw_leg(const struct leg *leg, double inseam)
 {
-    const double knee = -KNEE_AT * inseam, side = leg->fork + leg->hip;
+    const double knee = -KNEE_AT * inseam, side = leg->fork + leg->hip, top = leg->top;
     const double inner = leg->middle - 0.5 * leg->knee, outer = leg->middle + 0.5 * leg->knee;
-    const double low = 0.36 * leg->top;
-    *outline = (struct draw_outline){0};
-    draw_straight(outline, leg->middle - 0.5 * leg->hem, -inseam);
-    draw_straight(outline, leg->middle + 0.5 * leg->hem, -inseam);
-    draw_quadratic(outline, outer, knee, side, 0.3 * knee);
-    draw_quadratic(outline, side, low, side, 0.6 * leg->top);
-    draw_straight(outline, side - leg->side, leg->top);
-    draw_cubic(outline, leg->fork + leg->centre, leg->top + leg->raise,
-               leg->fork + 0.2 * leg->centre, 0.4 * leg->top, leg->fork, 0);
-    draw_quadratic(outline, 0, 0, 0.6 * inner, 0.3 * knee);
-    draw_straight(outline, inner, knee);
+    return (struct draw_outline){
+        .n = INNER_CALF + 1,
+        .line = {[CUFF] = {.corner = {leg->middle - 0.5 * leg->hem, -inseam}},
+                 [CALF] = {.corner = {leg->middle + 0.5 * leg->hem, -inseam}},
+                 [THIGH] = {{outer, knee}, GARMENT_QUADRATIC, {{side, 0.3 * knee}}, 0},
+                 [HIP_SIDE] = {{side, 0.36 * top}, GARMENT_QUADRATIC, {{side, 0.6 * top}}, 0},
+                 [TOP] = {.corner = {side - leg->side, top}},
+                 [CROTCH] = {{leg->fork + leg->centre, top + leg->raise},
+                             GARMENT_CUBIC,
+                             {{leg->fork + 0.2 * leg->centre, 0.4 * top}, {leg->fork, 0}},
+                             0},
+                 [INNER_THIGH] = {{0, 0}, GARMENT_QUADRATIC, {{0.6 * inner, 0.3 * knee}}, 0},
+                 [INNER_CALF] = {.corner = {inner, knee}}}};
 }
 
 /* The leg's width `below` the crotch, m, is between what narrows too fast, which would make front
@@ -79,39 +81,25 @@ static int check_width(struct draw *draw, const double *value, int measure, doub
     const double least = 2 * (back.fork + back.hip - 0.01 - 2 * STEEPEST * below);
     if (value[measure] >= least && value[measure] <= most)
         return CLOTH_OK;
-    return cloth_fail(draw->error, CLOTH_E_INPUT,
-                      "trousers: a leg of %g m at the %s does not go with a hip of %g m and an "
-                      "inseam of %g m; %s has to be %g to %g",
-                      value[measure], draw_trousers_measures[measure].name, value[HIP],
-                      value[INSEAM], draw_trousers_measures[measure].name, fmax(least, 0), most);
-}
-
-static int trousers_check(struct draw *draw, const double *value)
-{
-    const double least = 0.6 * value[HIP], most = value[HIP] + 0.3;
-    const int code = check_width(draw, value, KNEE, KNEE_AT * value[INSEAM]);
-    if (code)
-        return code;
-    if (value[WAIST] < least || value[WAIST] > most)
-        return cloth_fail(draw->error, CLOTH_E_INPUT,
-                          "trousers: a waist of %g m does not go with a hip of %g m; waist has to "
-                          "be %g to %g",
-                          value[WAIST], value[HIP], least, most);
-    return check_width(draw, value, HEM, value[INSEAM]);
+    return DRAW_FAIL(draw,
+                     "a leg of %g m at the %s does not go with a hip of %g m and an inseam of %g "
+                     "m; %s has to be %g to %g",
+                     value[measure], draw_trousers_measures[measure].name, value[HIP],
+                     value[INSEAM], draw_trousers_measures[measure].name, fmax(least, 0), most);
 }
 
 /* The waistband's half; `waist`: the line that it is sewn to on either side, m. */
 static uint32_t put_band(struct draw *draw, const double *value, double waist, bool back)
 {
     const double y = value[HEIGHT] / 1.75 * 0.79 + value[RISE] - value[BAND] + 0.035;
-    const struct draw_place place = {
-        .back = back, .y = y, .z = (back ? -0.5 : 0.5) * value[APART] + 0.01};
-    struct draw_outline outline = {0};
-    draw_straight(&outline, -waist, 0);
-    draw_straight(&outline, 0, 0);
-    draw_straight(&outline, waist, 0);
-    draw_straight(&outline, waist, value[BAND]);
-    draw_straight(&outline, -waist, value[BAND]);
+    const struct draw_place place = {.back = back, .y = y, .z = draw_apart(back, value[APART])};
+    const struct draw_outline outline = {
+        .n = BAND_OTHER_SIDE + 1,
+        .line = {[BAND_RIGHT] = {.corner = {-waist, 0}},
+                 [BAND_LEFT] = {.corner = {0, 0}},
+                 [BAND_SIDE] = {.corner = {waist, 0}},
+                 [BAND_TOP] = {.corner = {waist, value[BAND]}},
+                 [BAND_OTHER_SIDE] = {.corner = {-waist, value[BAND]}}}};
     return draw_panel(draw, back ? "band_back" : "band_front", &outline, &place);
 }
 
@@ -121,15 +109,13 @@ static void put_half(struct draw *draw, const double *value, bool back, uint32_t
     static const char *const name[2][2] = {{"left_front", "right_front"},
                                            {"left_back", "right_back"}};
     const struct leg shape = leg_of(value, back);
-    struct draw_outline outline;
-    draw_leg(&outline, &shape, value[INSEAM]);
+    const struct draw_outline outline = draw_leg(&shape, value[INSEAM]);
     for (int right = 0; right < 2; right++) {
-        const struct draw_place place = {right,
-                                         back,
-                                         0,
-                                         GAP,
-                                         value[HEIGHT] / 1.75 * 0.79,
-                                         (back ? -0.5 : 0.5) * value[APART] + 0.01};
+        const struct draw_place place = {.right = right,
+                                         .back = back,
+                                         .x = GAP,
+                                         .y = value[HEIGHT] / 1.75 * 0.79,
+                                         .z = draw_apart(back, value[APART])};
         leg[right] = draw_panel(draw, name[back][right], &outline, &place);
     }
     leg[2] = put_band(draw, value, draw_length(&outline, TOP), back);
@@ -142,7 +128,9 @@ void draw_trousers(struct draw *draw, const double *value)
 {
     static const uint32_t seams[SEAMS] = {CALF, THIGH, HIP_SIDE, INNER_THIGH, INNER_CALF};
     uint32_t front[3], back[3];
-    draw->code = trousers_check(draw, value);
+    int code = check_width(draw, value, KNEE, KNEE_AT * value[INSEAM]);
+    code = code ? code : draw_check_waist(draw, value[WAIST], value[HIP]);
+    draw->code = code ? code : check_width(draw, value, HEM, value[INSEAM]);
     if (draw->code)
         return;
     put_half(draw, value, false, front);

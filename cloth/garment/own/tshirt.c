@@ -38,86 +38,94 @@ static int tshirt_check(struct draw *draw, const struct shirt *shirt, const doub
 {
     const double length = shirt->drop + value[ARMHOLE] + 0.05;
     if (shirt->shoulder < shirt->neck + 0.03)
-        return cloth_fail(draw->error, CLOTH_E_INPUT,
-                          "tshirt: shoulders of %g m are too narrow for a neck of %g m; shoulders "
-                          "have to be at least %g",
-                          value[SHOULDERS], value[NECK], 2 * (shirt->neck + 0.02));
+        return DRAW_FAIL(draw,
+                         "shoulders of %g m are too narrow for a neck of %g m; shoulders have to "
+                         "be at least %g",
+                         value[SHOULDERS], value[NECK], 2 * (shirt->neck + 0.02));
     if (shirt->chest < shirt->shoulder + 0.01)
-        return cloth_fail(
-            draw->error, CLOTH_E_INPUT,
-            "tshirt: a chest of %g m with an ease of %g m is too narrow for shoulders "
-            "of %g m; chest has to be at least %g",
-            value[CHEST], value[EASE], value[SHOULDERS],
-            4 * (shirt->shoulder + 0.01) - value[EASE]);
+        return DRAW_FAIL(draw,
+                         "a chest of %g m with an ease of %g m is too narrow for shoulders of %g "
+                         "m; chest has to be at least %g",
+                         value[CHEST], value[EASE], value[SHOULDERS],
+                         4 * (shirt->shoulder + 0.01) - value[EASE]);
     if (shirt->chest > shirt->shoulder + 0.6 * value[ARMHOLE])
-        return cloth_fail(draw->error, CLOTH_E_INPUT,
-                          "tshirt: a chest of %g m with an ease of %g m is too wide for shoulders "
-                          "of %g m and an armhole of %g m; chest has to be at most %g",
-                          value[CHEST], value[EASE], value[SHOULDERS], value[ARMHOLE],
-                          4 * (shirt->shoulder + 0.6 * value[ARMHOLE]) - value[EASE]);
+        return DRAW_FAIL(draw,
+                         "a chest of %g m with an ease of %g m is too wide for shoulders of %g m "
+                         "and an armhole of %g m; chest has to be at most %g",
+                         value[CHEST], value[EASE], value[SHOULDERS], value[ARMHOLE],
+                         4 * (shirt->shoulder + 0.6 * value[ARMHOLE]) - value[EASE]);
     if (value[LENGTH] < length)
-        return cloth_fail(draw->error, CLOTH_E_INPUT,
-                          "tshirt: a length of %g m ends above the armholes; length has to be at "
-                          "least %g",
-                          value[LENGTH], length);
+        return DRAW_FAIL(draw,
+                         "a length of %g m ends above the armholes; length has to be at least %g",
+                         value[LENGTH], length);
     return CLOTH_OK;
 }
 
 /* A half of the body, unfolded; depth: of the neckline. */
-static void draw_body(struct draw_outline *outline, const struct shirt *shirt, double length,
-                      double depth, double round)
+static struct draw_outline draw_body(const struct shirt *shirt, double length, double depth,
+                                     double round)
 {
-    const double hole = -shirt->drop - shirt->bottom;
-    const struct draw_line hem = {.curve = GARMENT_STRAIGHT};
-    const struct draw_line top = {
-        GARMENT_CUBIC,
-        {{round * shirt->neck, -depth / 0.75}, {-round * shirt->neck, -depth / 0.75}},
-        0};
-    *outline = (struct draw_outline){0};
-    draw_straight(outline, shirt->chest, -length);
-    draw_cubic(outline, shirt->chest, shirt->bottom, shirt->shoulder - 0.07 * shirt->shoulder,
-               shirt->bottom, shirt->shoulder - 0.14 * shirt->shoulder, shirt->bottom + 0.5 * hole);
-    draw_straight(outline, shirt->shoulder, -shirt->drop);
-    draw_straight(outline, shirt->neck, 0);
-    draw_unfold(outline, &hem, &top);
+    const double hole = -shirt->drop - shirt->bottom, edge = shirt->shoulder;
+    struct draw_outline outline = {
+        .n = TOP + 1,
+        .line = {
+            [SIDE] = {.corner = {shirt->chest, -length}},
+            [HOLE] = {{shirt->chest, shirt->bottom},
+                      GARMENT_CUBIC,
+                      {{edge - 0.07 * edge, shirt->bottom},
+                       {edge - 0.14 * edge, shirt->bottom + 0.5 * hole}},
+                      0},
+            [SHOULDER] = {.corner = {edge, -shirt->drop}},
+            [TOP] = {{shirt->neck, 0},
+                     GARMENT_CUBIC,
+                     {{round * shirt->neck, -depth / 0.75}, {-round * shirt->neck, -depth / 0.75}},
+                     0}}};
+    draw_unfold(&outline);
+    return outline;
 }
 
 /* A half of a sleeve, x along the arm from the cap's top on, y = 0 in its middle. */
-static void draw_sleeve(struct draw_outline *outline, const struct shirt *shirt, double length)
+static struct draw_outline draw_sleeve(const struct shirt *shirt, double length)
 {
     const double half = 0.5 * shirt->sleeve, cuff = 0.9 * shirt->sleeve;
-    *outline = (struct draw_outline){0};
-    draw_straight(outline, shirt->cap, -half);
-    draw_straight(outline, length, half - cuff);
-    draw_straight(outline, length, half);
-    draw_cubic(outline, 0, half, 0, 0.1 * half, shirt->cap, -0.1 * half);
+    return (struct draw_outline){
+        .n = CAP + 1,
+        .line = {
+            [UNDERARM] = {.corner = {shirt->cap, -half}},
+            [CUFF] = {.corner = {length, half - cuff}},
+            [OVERARM] = {.corner = {length, half}},
+            [CAP] = {{0, half}, GARMENT_CUBIC, {{0, 0.1 * half}, {shirt->cap, -0.1 * half}}, 0}}};
+}
+
+/* Whether a cap of this height is longer than the armhole, m. */
+static bool is_longer(struct shirt *shirt, double cap, double sleeve, double hole)
+{
+    shirt->cap = cap;
+    const struct draw_outline outline = draw_sleeve(shirt, sleeve);
+    return draw_length(&outline, CAP) > hole;
 }
 
 /* Finds the height of the cap by halving. hole: the armhole's length, m. */
 static int fit_cap(struct draw *draw, struct shirt *shirt, const double *value, double hole)
 {
-    struct draw_outline outline;
     double low = 0.02, high = hole;
-    shirt->cap = low;
-    draw_sleeve(&outline, shirt, value[SLEEVE]);
-    if (draw_length(&outline, CAP) > hole)
-        return cloth_fail(draw->error, CLOTH_E_INPUT,
-                          "tshirt: an armhole of %g m is too small for a sleeve of %g m, the girth "
-                          "of arm and ease: a larger armhole or a smaller arm is needed",
-                          value[ARMHOLE], value[ARM] + value[EASE]);
+    if (is_longer(shirt, low, value[SLEEVE], hole))
+        return DRAW_FAIL(draw,
+                         "an armhole of %g m is too small for a sleeve of %g m, the girth of arm "
+                         "and ease: a larger armhole or a smaller arm is needed",
+                         value[ARMHOLE], value[ARM] + value[EASE]);
     for (int i = 0; i < 60; i++) {
-        shirt->cap = 0.5 * (low + high);
-        draw_sleeve(&outline, shirt, value[SLEEVE]);
-        if (draw_length(&outline, CAP) > hole)
-            high = shirt->cap;
+        const double cap = 0.5 * (low + high);
+        if (is_longer(shirt, cap, value[SLEEVE], hole))
+            high = cap;
         else
-            low = shirt->cap;
+            low = cap;
     }
     if (value[SLEEVE] < shirt->cap + LEAST_UNDERARM)
-        return cloth_fail(draw->error, CLOTH_E_INPUT,
-                          "tshirt: a sleeve of %g m ends above the armhole's bottom; sleeve has to "
-                          "be at least %g",
-                          value[SLEEVE], shirt->cap + LEAST_UNDERARM);
+        return DRAW_FAIL(draw,
+                         "a sleeve of %g m ends above the armhole's bottom; sleeve has to be at "
+                         "least %g",
+                         value[SLEEVE], shirt->cap + LEAST_UNDERARM);
     return CLOTH_OK;
 }
 
@@ -130,9 +138,8 @@ static void sew_sleeve(struct draw *draw, const struct shirt *shirt, const doubl
     const double x = 0.19 * shirt->scale, y = 1.4 * shirt->scale; /* where the arm begins */
     const double beside = (shirt->chest + 0.02 - x) / DIAGONAL + 0.5 * shirt->sleeve - shirt->cap;
     const double along = fmax(beside, 0.03) * DIAGONAL;
-    struct draw_outline outline;
+    const struct draw_outline outline = draw_sleeve(shirt, value[SLEEVE]);
     uint32_t half[2];
-    draw_sleeve(&outline, shirt, value[SLEEVE]);
     for (int back = 0; back < 2; back++) {
         const struct draw_place place = {right,     back,      45,
                                          x + along, y - along, (back ? -0.3 : 0.3) * value[APART]};
@@ -145,19 +152,19 @@ static void sew_sleeve(struct draw *draw, const struct shirt *shirt, const doubl
 
 static void draw_all(struct draw *draw, struct shirt *shirt, const double *value)
 {
-    const double y = 1.51 * shirt->scale;
-    const struct draw_place before = {.y = y, .z = 0.5 * value[APART] + 0.01};
-    const struct draw_place behind = {.back = true, .y = y, .z = 0.01 - 0.5 * value[APART]};
-    struct draw_outline front, back;
-    draw_body(&front, shirt, value[LENGTH], value[NECK] / 6 + 0.03, 0.95);
-    draw_body(&back, shirt, value[LENGTH], 0.025, 0.6);
-    draw->code = fit_cap(draw, shirt, value, draw_length(&front, HOLE));
-    const uint32_t body[2] = {draw_panel(draw, "front", &front, &before),
-                              draw_panel(draw, "back", &back, &behind)};
-    draw_sew(draw, body[0], SIDE, body[1], SIDE);
-    draw_sew(draw, body[0], OTHER_SIDE, body[1], OTHER_SIDE);
-    draw_sew(draw, body[0], SHOULDER, body[1], SHOULDER);
-    draw_sew(draw, body[0], OTHER_SHOULDER, body[1], OTHER_SHOULDER);
+    const struct draw_outline outline[2] = {
+        draw_body(shirt, value[LENGTH], value[NECK] / 6 + 0.03, 0.95),
+        draw_body(shirt, value[LENGTH], 0.025, 0.6)};
+    uint32_t body[2];
+    draw->code = fit_cap(draw, shirt, value, draw_length(&outline[0], HOLE));
+    for (int back = 0; back < 2; back++) {
+        const struct draw_place place = {
+            .back = back, .y = 1.51 * shirt->scale, .z = draw_apart(back, value[APART])};
+        body[back] = draw_panel(draw, back ? "back" : "front", &outline[back], &place);
+    }
+    static const uint32_t seams[4] = {SIDE, OTHER_SIDE, SHOULDER, OTHER_SHOULDER};
+    for (int i = 0; i < 4; i++)
+        draw_sew(draw, body[0], seams[i], body[1], seams[i]);
     sew_sleeve(draw, shirt, value, body, false);
     sew_sleeve(draw, shirt, value, body, true);
 }

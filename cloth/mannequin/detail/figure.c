@@ -1,9 +1,7 @@
 /* Sums and products in a fixed order; the nearest part melts with those near it, one after the
  * other. */
 #include "cloth/mannequin/detail/figure.h"
-#include "cloth/mannequin/detail/vector.h"
-
-#include <math.h>
+#include "cloth/base/vector.h"
 
 static const double FAR = 0.09;   /* m: further from the box of a part it does not count */
 static const double SOLE = 0.012; /* m: how round the edges of soles are */
@@ -37,11 +35,11 @@ static double limit(double t, double low, double high)
 static double part_distance(const struct figure_part *part, const double x[3], double *least)
 {
     const double from[3] = {x[0] - part->origin[0], x[1] - part->origin[1], x[2] - part->origin[2]};
-    const double along = vector_dot(from, part->axis);
+    const double along = cloth_dot(from, part->axis);
     const double t = limit(along, part->station[0].t, part->station[part->n - 1].t);
     double v[FIGURE_VALUES];
     values_at(part, t, v);
-    const double a = vector_dot(from, part->side) - v[0], b = vector_dot(from, part->front) - v[1];
+    const double a = cloth_dot(from, part->side) - v[0], b = cloth_dot(from, part->front) - v[1];
     const double width[3] = {v[2], b > 0 ? v[3] : v[4], along < t ? part->cap[0] : part->cap[1]};
     const double p[3] = {a / width[0], b / width[1], (along - t) / width[2]};
     const double flat = p[0] * p[0] + p[1] * p[1];
@@ -49,7 +47,7 @@ static double part_distance(const struct figure_part *part, const double x[3], d
         flat > 0 ? 1 - part->square * (4 * p[0] * p[0] * p[1] * p[1]) / (flat * flat) : 1;
     const double q = sqrt(flat * full * full + p[2] * p[2]);
     const double g[3] = {p[0] / width[0], p[1] / width[1], p[2] / width[2]};
-    const double slope = sqrt(vector_dot(g, g));
+    const double slope = sqrt(cloth_dot(g, g));
     *least = fmin(v[2], 0.5 * (v[3] + v[4]));
     return slope > 1e-9 ? q * (q - 1) / slope : -*least;
 }
@@ -88,56 +86,36 @@ static double pair_distance(const struct figure_part *part, const double x[3], d
     return e < FAR ? melt(d, part_distance(part, there, &other), PAIR) : d;
 }
 
-/* *least: half the least width of the part that is nearest, *part. */
-static double detail_figure_distance(const struct figure *figure, const double x[3], double *least,
-                                     uint32_t *part)
+struct figure_near figure_near(const struct figure *figure, const double x[3])
 {
+    struct figure_near near = {.least = 1};
     double sum = 1, nearest = 1;
-    *least = 1;
-    *part = 0;
     for (uint32_t i = 0; i < figure->n; i++) {
         double thin = 1;
         const double d = pair_distance(&figure->part[i], x, &thin);
         if (d < nearest) {
             nearest = d;
-            *least = thin;
-            *part = i;
+            near.least = thin;
+            near.part = i;
         }
         sum = melt(sum, d, figure->part[i].blend);
     }
-    return -melt(-sum, x[1], SOLE);
-}
-
-double figure_distance(const struct figure *figure, const double x[3])
-{
-    double least;
-    uint32_t part;
-    return detail_figure_distance(figure, x, &least, &part);
+    near.distance = -melt(-sum, x[1], SOLE);
+    return near;
 }
 
 double figure_gradient(const struct figure *figure, const double x[3], double gradient[3])
 {
-    const double d = figure_distance(figure, x);
+    const double d = figure_near(figure, x).distance;
     for (int c = 0; c < 3; c++) {
         double y[3] = {x[0], x[1], x[2]};
         y[c] += STEP;
-        gradient[c] = (figure_distance(figure, y) - d) / STEP;
+        gradient[c] = (figure_near(figure, y).distance - d) / STEP;
     }
     return d;
 }
 
 double figure_edge(const struct figure *figure, const double x[3], double edge)
 {
-    double least;
-    uint32_t part;
-    detail_figure_distance(figure, x, &least, &part);
-    return limit(THIN * least, SHORT * edge, edge);
-}
-
-uint32_t figure_nearest(const struct figure *figure, const double x[3])
-{
-    double least;
-    uint32_t part;
-    detail_figure_distance(figure, x, &least, &part);
-    return part;
+    return limit(THIN * figure_near(figure, x).least, SHORT * edge, edge);
 }

@@ -37,17 +37,19 @@ struct figure {
 /* The parts for factors on the girths: 1 gives about those of the table. */
 void figure_make(struct figure *figure, const double factor[MANNEQUIN_GIRTHS]);
 
-/* About the distance from the surface, m, below 0 inside. Mirror images have the same. */
-double figure_distance(const struct figure *figure, const double x[3]);
+/* Where a point is. Mirror images are alike. */
+struct figure_near {
+    double distance; /* about that from the surface, m, below 0 inside */
+    uint32_t part;   /* the number of the nearest part, */
+    double least;    /* m: half its least width there */
+};
+struct figure_near figure_near(const struct figure *figure, const double x[3]);
 
-/* The same, with its gradient (m/m). */
+/* The distance alone, with its gradient (m/m). */
 double figure_gradient(const struct figure *figure, const double x[3], double gradient[3]);
 
 /* How long edges are to be near a point, m, where they are at most `edge`. */
 double figure_edge(const struct figure *figure, const double x[3], double edge);
-
-/* The number of the part that is nearest to a point. */
-uint32_t figure_nearest(const struct figure *figure, const double x[3]);
 
 /* What moves as one: bones, those of the left side; the chest has neck and head, too. */
 enum figure_bone {

@@ -1,7 +1,7 @@
 /* The shape of the figure: where its parts lie, and their sections. */
+#include "cloth/base/vector.h"
 #include "cloth/mannequin/detail/figure.h"
 
-#include <math.h>
 #include <string.h>
 
 /* A station as it is written: widths for girths of the table. They are multiplied by the factor of
@@ -237,12 +237,11 @@ void figure_section(const struct figure *figure, uint32_t measure, double point[
 
 enum figure_bone figure_bone(const struct figure *figure, const double x[3])
 {
-    const uint32_t part = figure_nearest(figure, x);
     const struct figure_part *arm = &figure->part[ARM];
-    double along = 0;
-    for (int c = 0; c < 3; c++)
-        along += ((c ? x[c] : fabs(x[c])) - arm->origin[c]) * arm->axis[c];
-    switch (part) {
+    const double *origin = arm->origin;
+    const double from[3] = {fabs(x[0]) - origin[0], x[1] - origin[1], x[2] - origin[2]};
+    const double along = cloth_dot(from, arm->axis);
+    switch (figure_near(figure, x).part) {
     case TORSO:
         return x[1] < WAIST_HEIGHT ? FIGURE_PELVIS : FIGURE_CHEST;
     case LEG:

@@ -1,7 +1,6 @@
 /* A lattice of cubes, each cut in six tetrahedra along its diagonal (Kuhn). Tetrahedra of
  * neighbours share their faces, so the surface is closed but at x = 0, where a plane of the lattice
  * is. The places on edges are linear between nodes. */
-#include "cloth/base/memory.h"
 #include "cloth/mannequin/detail/surface.h"
 
 #include <math.h>
@@ -14,7 +13,6 @@ struct lattice {
     double low[3], cell;
     double *value;    /* of a node; below 0: inside */
     uint32_t *vertex; /* of the edge from a node along a direction, 1 to 7: its bits are axes */
-    struct cloth_error *error;
 };
 
 static uint32_t node_at(const struct lattice *lattice, uint32_t node, uint32_t corner)
@@ -39,29 +37,18 @@ static uint32_t vertex_on(struct lattice *lattice, uint32_t node, uint32_t a, ui
     uint32_t *vertex = &lattice->vertex[7 * (size_t)from + (low ^ high) - 1];
     if (*vertex != UINT32_MAX)
         return *vertex;
-    const uint32_t v = surface_add_vertex(lattice->surface, lattice->error);
-    if (v == UINT32_MAX)
-        return v;
-    double x[3], y[3], *at = lattice->surface->x[v];
+    double x[3], y[3];
     const double p = lattice->value[from], q = lattice->value[to], part = p / (p - q);
     march_place_of(lattice, from, x);
     march_place_of(lattice, to, y);
+    const bool middle = !(x[0] > 0) && !(y[0] > 0);
     for (int c = 0; c < 3; c++)
-        at[c] = x[c] + part * (y[c] - x[c]);
-    lattice->surface->middle[v] = !(x[0] > 0) && !(y[0] > 0);
-    return *vertex = v;
-}
-
-static int march_add(struct lattice *lattice, const uint32_t v[3])
-{
-    const uint32_t t = surface_add_triangle(lattice->surface, lattice->error);
-    if (t != UINT32_MAX)
-        memcpy(lattice->surface->triangle[t], v, sizeof lattice->surface->triangle[t]);
-    return lattice->error->code;
+        x[c] += part * (y[c] - x[c]);
+    return *vertex = surface_add_vertex(lattice->surface, x, middle);
 }
 
 /* The part of a tetrahedron, whose corners are those of the cube at a node and turn right. */
-static int march_cut(struct lattice *lattice, uint32_t node, const uint32_t corner[4])
+static void march_cut(struct lattice *lattice, uint32_t node, const uint32_t corner[4])
 {
     /* Corners that are inside, and even orders in which they come first. */
     static const unsigned char order[16][4] = {
@@ -73,7 +60,7 @@ static int march_cut(struct lattice *lattice, uint32_t node, const uint32_t corn
     for (uint32_t i = 0; i < 4; i++)
         inside |= (uint32_t)(lattice->value[node_at(lattice, node, corner[i])] < 0) << i;
     if (inside == 0 || inside == 15)
-        return CLOTH_OK;
+        return;
     for (uint32_t i = 0; i < 4; i++)
         c[i] = corner[order[inside][i]];
     const int count = __builtin_popcount(inside);
@@ -82,24 +69,24 @@ static int march_cut(struct lattice *lattice, uint32_t node, const uint32_t corn
         for (int i = 0; i < 4; i++)
             v[i] = vertex_on(lattice, node, c[end[i][0]], c[end[i][1]]);
         const uint32_t second[3] = {v[0], v[2], v[3]};
-        return march_add(lattice, v) ? lattice->error->code : march_add(lattice, second);
+        surface_add_triangle(lattice->surface, v);
+        surface_add_triangle(lattice->surface, second);
+        return;
     }
     for (uint32_t i = 0; i < 3; i++)
         v[count == 1 ? i : 2 - i] = vertex_on(lattice, node, c[0], c[i + 1]);
-    return march_add(lattice, v);
+    surface_add_triangle(lattice->surface, v);
 }
 
-static int cut_cube(struct lattice *lattice, uint32_t node)
+static void cut_cube(struct lattice *lattice, uint32_t node)
 {
     static const uint32_t kuhn[6][4] = {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7},
                                         {0, 3, 2, 7}, {0, 6, 4, 7}, {0, 5, 1, 7}};
     uint32_t inside = 0;
     for (uint32_t k = 0; k < 8; k++)
         inside += lattice->value[node_at(lattice, node, k)] < 0;
-    int code = CLOTH_OK;
-    for (int i = 0; i < 6 && !code && inside % 8; i++)
-        code = march_cut(lattice, node, kuhn[i]);
-    return code;
+    for (int i = 0; i < 6 && inside % 8; i++)
+        march_cut(lattice, node, kuhn[i]);
 }
 
 /* The box of all parts, from x = 0 on, and a cell more. */
@@ -117,27 +104,25 @@ static void march_find_box(struct lattice *lattice, const struct figure *figure)
     }
 }
 
-int surface_march(struct surface *surface, const struct figure *figure, double cell,
-                  struct cloth_error *error)
+void surface_march(struct surface *surface, double cell)
 {
-    struct lattice lattice = {.surface = surface, .cell = cell, .error = error};
-    march_find_box(&lattice, figure);
+    struct cloth_error *error = surface->error;
+    struct lattice lattice = {.surface = surface, .cell = cell};
+    march_find_box(&lattice, surface->figure);
     const uint32_t *n = lattice.n, nodes = n[0] * n[1] * n[2];
     lattice.value = cloth_alloc(nodes, sizeof *lattice.value, error);
     lattice.vertex = cloth_alloc(7 * (size_t)nodes, sizeof *lattice.vertex, error);
-    int code = lattice.value && lattice.vertex ? CLOTH_OK : error->code;
-    if (!code)
+    if (!error->code)
         memset(lattice.vertex, 0xff, 7 * (size_t)nodes * sizeof *lattice.vertex);
-    for (uint32_t i = 0; i < nodes && !code; i++) {
+    for (uint32_t i = 0; i < nodes && !error->code; i++) {
         double x[3];
         march_place_of(&lattice, i, x);
-        lattice.value[i] = figure_distance(figure, x);
+        lattice.value[i] = figure_near(surface->figure, x).distance;
     }
     for (uint32_t k = 0; k + 1 < n[2]; k++)
         for (uint32_t j = 0; j + 1 < n[1]; j++)
-            for (uint32_t i = 0; i + 1 < n[0] && !code; i++)
-                code = cut_cube(&lattice, i + n[0] * (j + n[1] * k));
+            for (uint32_t i = 0; i + 1 < n[0] && !error->code; i++)
+                cut_cube(&lattice, i + n[0] * (j + n[1] * k));
     free(lattice.value);
     free(lattice.vertex);
-    return code;
 }

@@ -1,8 +1,7 @@
 /* A pass goes over the edges in their order. What a change touches is marked, and left alone for
  * the rest of the pass. */
-#include "cloth/base/memory.h"
+#include "cloth/base/vector.h"
 #include "cloth/mannequin/detail/surface.h"
-#include "cloth/mannequin/detail/vector.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -10,92 +9,84 @@
 static const double LONG = 4.0 / 3, SHORT = 0.8; /* of the length that is wanted */
 static const double BENT = 0.5; /* the cosine by which a change may turn a triangle */
 
-/* What a pass works with. */
+/* A pass. touched: by triangle (split), by vertex (others). */
 struct pass {
     struct surface *surface;
-    struct surface_edges edges;
-    struct surface_fans fans;
-    unsigned char *touched; /* by triangle (split), by vertex (others) */
+    double wanted; /* how long edges are to be at most, m */
+    struct surface_links links;
+    unsigned char *touched;
 };
 
-static int refine_begin(struct pass *pass, struct surface *surface, struct cloth_error *error)
+/* Goes over all edges; `change` may change the surface at one. */
+static void run_pass(struct surface *surface, double wanted,
+                     void (*change)(struct pass *pass, const struct surface_edge *))
 {
-    *pass = (struct pass){.surface = surface};
-    int code = surface_edges_find(&pass->edges, surface, error);
-    if (!code)
-        code = surface_fans_find(&pass->fans, surface, error);
-    const size_t n = surface->n > surface->m ? surface->n : surface->m;
-    pass->touched = code ? NULL : cloth_alloc(n, 1, error);
-    return code || pass->touched ? code : error->code;
+    struct pass pass = {.surface = surface, .wanted = wanted};
+    const uint32_t n = surface->n, m = surface->m;
+    if (surface_links_find(&pass.links, surface))
+        pass.touched = cloth_alloc(n > m ? n : m, 1, surface->error);
+    for (uint32_t e = 0; !surface->error->code && e < pass.links.n_edges; e++)
+        change(&pass, &pass.links.edge[e]);
+    surface_links_free(&pass.links);
+    free(pass.touched);
 }
 
-static void end(struct pass *pass)
+static void middle_of(const struct surface *surface, const struct surface_edge *edge, double x[3])
 {
-    surface_edges_free(&pass->edges);
-    surface_fans_free(&pass->fans);
-    free(pass->touched);
+    const double *a = surface->x[edge->end[0]], *b = surface->x[edge->end[1]];
+    for (int c = 0; c < 3; c++)
+        x[c] = 0.5 * (a[c] + b[c]);
 }
 
 /* Its length as a part of what is wanted there. */
-static double relative_length(const struct surface *surface, const struct figure *figure,
-                              double wanted, const struct surface_edge *edge)
+static double relative_length(const struct pass *pass, const struct surface_edge *edge)
 {
-    const double *a = surface->x[edge->end[0]], *b = surface->x[edge->end[1]];
-    const double middle[3] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
-    return vector_distance(a, b) / figure_edge(figure, middle, wanted);
+    const struct surface *surface = pass->surface;
+    double x[3];
+    middle_of(surface, edge, x);
+    return cloth_distance(surface->x[edge->end[0]], surface->x[edge->end[1]]) /
+           figure_edge(surface->figure, x, pass->wanted);
+}
+
+/* The cosine of the angle between two vectors; 0 if one has no length. */
+static double refine_cosine(const double a[3], const double b[3])
+{
+    const double lengths = sqrt(cloth_dot(a, a) * cloth_dot(b, b));
+    return lengths > 0 ? cloth_dot(a, b) / lengths : 0;
 }
 
 /* ---- Split ---- */
 
-/* The half of a triangle at the end `old` goes to `vertex`; the other half is new. */
-static int halve(struct surface *surface, uint32_t t, uint32_t a, uint32_t b, uint32_t vertex,
-                 struct cloth_error *error)
+/* The half of a triangle at the end a stays; the other half, at b, is new. */
+static void halve(struct surface *surface, uint32_t t, uint32_t a, uint32_t b, uint32_t vertex)
 {
-    const uint32_t u = surface_add_triangle(surface, error);
-    if (u == UINT32_MAX)
-        return error->code;
+    uint32_t *old = surface->triangle[t], new[3];
     for (int i = 0; i < 3; i++) {
-        const uint32_t v = surface->triangle[t][i];
-        surface->triangle[u][i] = v == a ? vertex : v;
-        surface->triangle[t][i] = v == b ? vertex : v;
+        new[i] = old[i] == a ? vertex : old[i];
+        old[i] = old[i] == b ? vertex : old[i];
     }
-    return CLOTH_OK;
+    surface_add_triangle(surface, new);
 }
 
-static int refine_split_edge(struct pass *pass, const struct surface_edge *edge,
-                             struct cloth_error *error)
+static void split_edge(struct pass *pass, const struct surface_edge *edge)
 {
-    struct surface *surface = pass->surface;
-    const uint32_t a = edge->end[0], b = edge->end[1], v = surface_add_vertex(surface, error);
-    if (v == UINT32_MAX)
-        return error->code;
-    for (int c = 0; c < 3; c++)
-        surface->x[v][c] = 0.5 * (surface->x[a][c] + surface->x[b][c]);
-    surface->middle[v] = edge->triangle[1] == UINT32_MAX;
-    int code = CLOTH_OK;
-    for (int i = 0; i < 2 && !code; i++)
-        if (edge->triangle[i] != UINT32_MAX) {
-            pass->touched[edge->triangle[i]] = 1;
-            code = halve(surface, edge->triangle[i], a, b, v, error);
+    const uint32_t *t = edge->triangle, a = edge->end[0], b = edge->end[1];
+    double x[3];
+    if (pass->touched[t[0]] || (t[1] != UINT32_MAX && pass->touched[t[1]]) ||
+        !(relative_length(pass, edge) > LONG))
+        return;
+    middle_of(pass->surface, edge, x);
+    const uint32_t v = surface_add_vertex(pass->surface, x, t[1] == UINT32_MAX);
+    for (int i = 0; i < 2 && v != UINT32_MAX; i++)
+        if (t[i] != UINT32_MAX) {
+            pass->touched[t[i]] = 1;
+            halve(pass->surface, t[i], a, b, v);
         }
-    return code;
 }
 
-int surface_split(struct surface *surface, const struct figure *figure, double edge,
-                  struct cloth_error *error)
+void surface_split(struct surface *surface, double edge)
 {
-    struct pass pass;
-    int code = refine_begin(&pass, surface, error);
-    for (uint32_t e = 0; e < pass.edges.n && !code; e++) {
-        const struct surface_edge *here = &pass.edges.edge[e];
-        const uint32_t *t = here->triangle;
-        if (pass.touched[t[0]] || (t[1] != UINT32_MAX && pass.touched[t[1]]))
-            continue;
-        if (relative_length(surface, figure, edge, here) > LONG)
-            code = refine_split_edge(&pass, here, error);
-    }
-    end(&pass);
-    return code;
+    run_pass(surface, edge, split_edge);
 }
 
 /* ---- Collapse ---- */
@@ -108,7 +99,7 @@ static bool has(const uint32_t triangle[3], uint32_t v)
 /* How many neighbours two vertices share; UINT32_MAX: one of them or of theirs is touched. */
 static uint32_t shared(const struct pass *pass, uint32_t a, uint32_t b)
 {
-    const struct surface_fans *fans = &pass->fans;
+    const struct surface_links *fans = &pass->links;
     uint32_t near[64], n = 0, count = 0;
     for (uint32_t i = fans->first[a]; i < fans->first[a + 1]; i++)
         for (int k = 0; k < 3; k++) {
@@ -139,20 +130,20 @@ static bool may_move(const struct pass *pass, uint32_t a, uint32_t b, const doub
                      double most)
 {
     const struct surface *surface = pass->surface;
-    for (uint32_t i = pass->fans.first[a]; i < pass->fans.first[a + 1]; i++) {
-        const uint32_t *v = surface->triangle[pass->fans.fan[i]];
+    for (uint32_t i = pass->links.first[a]; i < pass->links.first[a + 1]; i++) {
+        const uint32_t *v = surface->triangle[pass->links.fan[i]];
         const double *x[3];
         double before[3], after[3];
         if (has(v, b))
             continue;
-        vector_normal(surface->x[v[0]], surface->x[v[1]], surface->x[v[2]], before);
+        cloth_normal(surface->x[v[0]], surface->x[v[1]], surface->x[v[2]], before);
         for (int k = 0; k < 3; k++) {
             x[k] = v[k] == a ? to : surface->x[v[k]];
-            if (v[k] != a && vector_distance(x[k], to) > most)
+            if (v[k] != a && cloth_distance(x[k], to) > most)
                 return false;
         }
-        vector_normal(x[0], x[1], x[2], after);
-        if (!(vector_cosine(before, after) > BENT))
+        cloth_normal(x[0], x[1], x[2], after);
+        if (!(refine_cosine(before, after) > BENT))
             return false;
     }
     return true;
@@ -164,11 +155,11 @@ static void refine_join(struct pass *pass, uint32_t a, uint32_t b, const double 
     struct surface *surface = pass->surface;
     const uint32_t both[2] = {a, b};
     for (int s = 0; s < 2; s++)
-        for (uint32_t i = pass->fans.first[both[s]]; i < pass->fans.first[both[s] + 1]; i++)
+        for (uint32_t i = pass->links.first[both[s]]; i < pass->links.first[both[s] + 1]; i++)
             for (int k = 0; k < 3; k++)
-                pass->touched[surface->triangle[pass->fans.fan[i]][k]] = 1;
-    for (uint32_t i = pass->fans.first[b]; i < pass->fans.first[b + 1]; i++) {
-        uint32_t *v = surface->triangle[pass->fans.fan[i]];
+                pass->touched[surface->triangle[pass->links.fan[i]][k]] = 1;
+    for (uint32_t i = pass->links.first[b]; i < pass->links.first[b + 1]; i++) {
+        uint32_t *v = surface->triangle[pass->links.fan[i]];
         const bool gone = has(v, a);
         for (int k = 0; k < 3; k++)
             v[k] = gone ? UINT32_MAX : v[k] == b ? a : v[k];
@@ -177,14 +168,19 @@ static void refine_join(struct pass *pass, uint32_t a, uint32_t b, const double 
     surface->middle[a] = surface->middle[a] || surface->middle[b];
 }
 
-static void collapse_edge(struct pass *pass, const struct surface_edge *edge, double most)
+static void collapse_edge(struct pass *pass, const struct surface_edge *edge)
 {
     const struct surface *surface = pass->surface;
     const uint32_t a = edge->end[0], b = edge->end[1];
     const bool boundary = edge->triangle[1] == UINT32_MAX;
     double to[3];
-    if (surface->middle[a] && surface->middle[b] && !boundary)
+    if (pass->touched[a] || pass->touched[b] ||
+        (surface->middle[a] && surface->middle[b] && !boundary))
         return;
+    const double relative = relative_length(pass, edge);
+    if (!(relative < SHORT))
+        return;
+    const double most = LONG * cloth_distance(surface->x[a], surface->x[b]) / relative;
     const double part = surface->middle[a] == surface->middle[b] ? 0.5 : surface->middle[b];
     for (int c = 0; c < 3; c++)
         to[c] = surface->x[a][c] + part * (surface->x[b][c] - surface->x[a][c]);
@@ -195,11 +191,11 @@ static void collapse_edge(struct pass *pass, const struct surface_edge *edge, do
 }
 
 /* Leaves out triangles without corners, and vertices without triangles. */
-static int compact(struct surface *surface, struct cloth_error *error)
+static void compact(struct surface *surface)
 {
-    uint32_t *place = cloth_alloc(surface->n, sizeof *place, error), m = 0, n = 0;
+    uint32_t *place = cloth_alloc(surface->n, sizeof *place, surface->error), m = 0, n = 0;
     if (!place)
-        return error->code;
+        return;
     for (uint32_t t = 0; t < surface->m; t++)
         if (surface->triangle[t][0] != UINT32_MAX)
             memmove(surface->triangle[m++], surface->triangle[t], sizeof *surface->triangle);
@@ -218,26 +214,13 @@ static int compact(struct surface *surface, struct cloth_error *error)
         for (int k = 0; k < 3; k++)
             surface->triangle[t][k] = place[surface->triangle[t][k]];
     free(place);
-    return CLOTH_OK;
 }
 
-int surface_collapse(struct surface *surface, const struct figure *figure, double edge,
-                     struct cloth_error *error)
+void surface_collapse(struct surface *surface, double edge)
 {
-    struct pass pass;
-    int code = refine_begin(&pass, surface, error);
-    for (uint32_t e = 0; e < pass.edges.n && !code; e++) {
-        const struct surface_edge *here = &pass.edges.edge[e];
-        const uint32_t a = here->end[0], b = here->end[1];
-        if (pass.touched[a] || pass.touched[b])
-            continue;
-        const double relative = relative_length(surface, figure, edge, here);
-        const double length = vector_distance(surface->x[a], surface->x[b]);
-        if (relative < SHORT)
-            collapse_edge(&pass, here, LONG * length / relative);
-    }
-    end(&pass);
-    return code ? code : compact(surface, error);
+    run_pass(surface, edge, collapse_edge);
+    if (!surface->error->code)
+        compact(surface);
 }
 
 /* ---- Turn ---- */
@@ -251,16 +234,16 @@ static uint32_t opposite(const uint32_t v[3], const struct surface_edge *edge)
  * of those of a vertex in the middle plane are in the mirror image. */
 static int64_t excess(const struct pass *pass, uint32_t v, int change)
 {
-    const uint32_t n = pass->fans.first[v + 1] - pass->fans.first[v];
+    const uint32_t n = pass->links.first[v + 1] - pass->links.first[v];
     const int64_t d = (int64_t)n + change - (pass->surface->middle[v] ? 3 : 6);
     return pass->surface->middle[v] ? 4 * d * d : d * d;
 }
 
 static bool is_edge(const struct pass *pass, uint32_t a, uint32_t b)
 {
-    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
-    for (uint32_t e = pass->edges.first[low]; e < pass->edges.first[low + 1]; e++)
-        if (pass->edges.edge[e].end[1] == high)
+    const uint32_t *first = pass->links.first_edge, low = a < b ? a : b, high = a < b ? b : a;
+    for (uint32_t e = first[low]; e < first[low + 1]; e++)
+        if (pass->links.edge[e].end[1] == high)
             return true;
     return false;
 }
@@ -270,21 +253,24 @@ static bool lies_well(const struct surface *surface, uint32_t a, uint32_t b, uin
 {
     const double(*x)[3] = (const double(*)[3])surface->x;
     double old[2][3], new[2][3];
-    vector_normal(x[a], x[b], x[c], old[0]);
-    vector_normal(x[b], x[a], x[d], old[1]);
-    vector_normal(x[a], x[d], x[c], new[0]);
-    vector_normal(x[d], x[b], x[c], new[1]);
+    cloth_normal(x[a], x[b], x[c], old[0]);
+    cloth_normal(x[b], x[a], x[d], old[1]);
+    cloth_normal(x[a], x[d], x[c], new[0]);
+    cloth_normal(x[d], x[b], x[c], new[1]);
     for (int i = 0; i < 4; i++)
-        if (!(vector_cosine(old[i / 2], new[i % 2]) > BENT))
+        if (!(refine_cosine(old[i / 2], new[i % 2]) > BENT))
             return false;
-    return vector_cosine(new[0], new[1]) > BENT;
+    return refine_cosine(new[0], new[1]) > BENT;
 }
 
 static void turn_edge(struct pass *pass, const struct surface_edge *edge)
 {
     struct surface *surface = pass->surface;
-    uint32_t *one = surface->triangle[edge->triangle[0]],
-             *two = surface->triangle[edge->triangle[1]];
+    if (pass->touched[edge->end[0]] || pass->touched[edge->end[1]] ||
+        edge->triangle[1] == UINT32_MAX)
+        return;
+    uint32_t *one = surface->triangle[edge->triangle[0]];
+    uint32_t *two = surface->triangle[edge->triangle[1]];
     const uint32_t c = opposite(one, edge), d = opposite(two, edge);
     uint32_t k = 0;
     while (one[k] != c)
@@ -294,9 +280,8 @@ static void turn_edge(struct pass *pass, const struct surface_edge *edge)
     int64_t gain = 0;
     if (pass->touched[c] || pass->touched[d])
         return;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i++)
         gain += excess(pass, all[i], 0) - excess(pass, all[i], i < 2 ? -1 : 1);
-    }
     if (gain <= 0 || is_edge(pass, c, d) || !lies_well(surface, a, b, c, d))
         return;
     memcpy(one, (uint32_t[3]){a, d, c}, sizeof(uint32_t[3]));
@@ -305,14 +290,7 @@ static void turn_edge(struct pass *pass, const struct surface_edge *edge)
         pass->touched[all[i]] = 1;
 }
 
-int surface_turn(struct surface *surface, struct cloth_error *error)
+void surface_turn(struct surface *surface)
 {
-    struct pass pass;
-    int code = refine_begin(&pass, surface, error);
-    for (uint32_t e = 0; e < pass.edges.n && !code; e++)
-        if (!pass.touched[pass.edges.edge[e].end[0]] && !pass.touched[pass.edges.edge[e].end[1]] &&
-            pass.edges.edge[e].triangle[1] != UINT32_MAX)
-            turn_edge(&pass, &pass.edges.edge[e]);
-    end(&pass);
-    return code;
+    run_pass(surface, 0, turn_edge);
 }

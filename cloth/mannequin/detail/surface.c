@@ -1,133 +1,171 @@
-/* Edges and fans by counting: their order is that of vertices and triangles. */
+/* The order of edges and of triangles at a vertex is that of vertices and triangles. Where vertices
+ * are moved, those of the middle plane see their neighbours and the mirror images of these. */
 #include "cloth/mannequin/detail/surface.h"
-#include "cloth/base/memory.h"
+#include "cloth/base/vector.h"
 
 #include <stdlib.h>
 
-static uint32_t more(uint32_t room)
+/* Adds an item behind the first n of a list. False: after an error. */
+static bool put_behind(const struct surface *surface, struct cloth_list *list, uint32_t n,
+                       const void *item, size_t size)
 {
-    return room ? 2 * room : 4096;
+    list->n = n;
+    return !surface->error->code && !cloth_list_put(list, item, size, surface->error);
 }
 
-uint32_t surface_add_vertex(struct surface *surface, struct cloth_error *error)
+uint32_t surface_add_vertex(struct surface *surface, const double x[3], bool middle)
 {
-    if (surface->n == surface->room) {
-        const uint32_t room = more(surface->room);
-        double(*x)[3] = realloc(surface->x, room * sizeof *x);
-        if (x)
-            surface->x = x;
-        bool *middle = realloc(surface->middle, room * sizeof *middle);
-        if (middle)
-            surface->middle = middle;
-        if (!x || !middle) {
-            cloth_fail(error, CLOTH_E_MEMORY, "no memory for %u vertices of a figure", room);
-            return UINT32_MAX;
-        }
-        surface->room = room;
-    }
+    if (!put_behind(surface, &surface->places, surface->n, x, sizeof *surface->x) ||
+        !put_behind(surface, &surface->middles, surface->n, &middle, sizeof middle))
+        return UINT32_MAX;
+    surface->x = surface->places.items;
+    surface->middle = surface->middles.items;
     return surface->n++;
 }
 
-uint32_t surface_add_triangle(struct surface *surface, struct cloth_error *error)
+void surface_add_triangle(struct surface *surface, const uint32_t corner[3])
 {
-    if (surface->m == surface->space) {
-        const uint32_t space = more(surface->space);
-        uint32_t(*triangle)[3] = realloc(surface->triangle, space * sizeof *triangle);
-        if (!triangle) {
-            cloth_fail(error, CLOTH_E_MEMORY, "no memory for %u triangles of a figure", space);
-            return UINT32_MAX;
-        }
-        surface->triangle = triangle;
-        surface->space = space;
+    if (put_behind(surface, &surface->triangles, surface->m, corner, sizeof *surface->triangle)) {
+        surface->triangle = surface->triangles.items;
+        surface->m++;
     }
-    return surface->m++;
 }
 
 void surface_free(struct surface *surface)
 {
-    free(surface->x);
-    free(surface->middle);
-    free(surface->triangle);
+    free(surface->places.items);
+    free(surface->middles.items);
+    free(surface->triangles.items);
     *surface = (struct surface){0};
 }
 
-/* Counts become places: first[v] is where v's begin. */
-static void detail_surface_sum_up(uint32_t *first, uint32_t n)
+static void find_fans(struct surface_links *links, const struct surface *surface)
 {
-    uint32_t sum = 0;
-    for (uint32_t v = 0; v <= n; v++) {
-        const uint32_t count = first[v];
-        first[v] = sum;
-        sum += count;
+    const uint32_t *corner = (const uint32_t *)surface->triangle, n = 3 * surface->m;
+    uint32_t *next = links->first + 1; /* of a vertex: until its fan is full, where it goes on */
+    for (uint32_t s = 0; s < n; s++)
+        next[corner[s] + 1]++;
+    for (uint32_t v = 0; v < surface->n; v++)
+        next[v + 1] += next[v];
+    for (uint32_t s = 0; s < n; s++)
+        links->fan[next[corner[s]]++] = s / 3;
+}
+
+/* The edge between two vertices of triangle t, whose lower one is v, among those of v so far. */
+static void find_edge(struct surface_links *links, uint32_t v, uint32_t high, uint32_t t)
+{
+    for (uint32_t e = links->first_edge[v]; e < links->n_edges; e++)
+        if (links->edge[e].end[1] == high) {
+            links->edge[e].triangle[1] = t;
+            return;
+        }
+    links->edge[links->n_edges++] = (struct surface_edge){{v, high}, {t, UINT32_MAX}};
+}
+
+bool surface_links_find(struct surface_links *links, const struct surface *surface)
+{
+    struct cloth_error *error = surface->error;
+    *links = (struct surface_links){
+        .edge = cloth_alloc(3 * (size_t)surface->m, sizeof *links->edge, error),
+        .first_edge = cloth_alloc((size_t)surface->n + 1, sizeof *links->first_edge, error),
+        .first = cloth_alloc((size_t)surface->n + 2, sizeof *links->first, error),
+        .fan = cloth_alloc(3 * (size_t)surface->m, sizeof *links->fan, error),
+    };
+    if (error->code)
+        return false;
+    find_fans(links, surface);
+    for (uint32_t v = 0; v < surface->n; v++) {
+        for (uint32_t i = links->first[v]; i < links->first[v + 1]; i++)
+            for (int k = 0; k < 3; k++) {
+                const uint32_t *corner = surface->triangle[links->fan[i]];
+                const uint32_t a = corner[k], b = corner[(k + 1) % 3];
+                if (a == v ? b > v : b == v && a > v)
+                    find_edge(links, v, a == v ? b : a, links->fan[i]);
+            }
+        links->first_edge[v + 1] = links->n_edges;
+    }
+    return true;
+}
+
+void surface_links_free(struct surface_links *links)
+{
+    free(links->edge);
+    free(links->first_edge);
+    free(links->first);
+    free(links->fan);
+    *links = (struct surface_links){0};
+}
+
+/* ---- Onto the figure ---- */
+
+static const double WAY = 0.7; /* towards the middle of the neighbours */
+
+static const double STEP = 0.008; /* m: no step is longer, since beyond thin parts slopes end */
+
+/* Newton's steps along the gradient. */
+static void project(const struct surface *surface, uint32_t v, int steps)
+{
+    double *x = surface->x[v];
+    for (int i = 0; i < steps; i++) {
+        double g[3];
+        const double d = figure_gradient(surface->figure, x, g);
+        if (surface->middle[v])
+            g[0] = 0;
+        const double square = fmax(cloth_dot(g, g), fmax(0.01, fabs(d) * fabs(d) / (STEP * STEP)));
+        for (int c = 0; c < 3; c++)
+            x[c] -= d * g[c] / square;
     }
 }
 
-/* Each vertex has room for the edges of all sides that begin or end there; then gaps close. */
-int surface_edges_find(struct surface_edges *edges, const struct surface *surface,
-                       struct cloth_error *error)
+void surface_project(struct surface *surface)
 {
-    edges->first = cloth_alloc((size_t)surface->n + 1, sizeof *edges->first, error);
-    edges->edge = cloth_alloc(3 * (size_t)surface->m, sizeof *edges->edge, error);
-    uint32_t *used = cloth_alloc((size_t)surface->n + 1, sizeof *used, error);
-    const bool fine = edges->first && edges->edge && used;
-    for (uint32_t s = 0; fine && s < 3 * surface->m; s++) {
-        const uint32_t a = surface->triangle[s / 3][s % 3];
-        const uint32_t b = surface->triangle[s / 3][(s + 1) % 3];
-        edges->first[a < b ? a : b]++;
-    }
-    if (fine)
-        detail_surface_sum_up(edges->first, surface->n);
-    for (uint32_t s = 0; fine && s < 3 * surface->m; s++) {
-        const uint32_t a = surface->triangle[s / 3][s % 3];
-        const uint32_t b = surface->triangle[s / 3][(s + 1) % 3];
-        const uint32_t low = a < b ? a : b, high = a < b ? b : a;
-        struct surface_edge *list = edges->edge + edges->first[low];
-        uint32_t k = 0;
-        while (k < used[low] && list[k].end[1] != high)
-            k++;
-        if (k < used[low])
-            list[k].triangle[1] = s / 3;
-        else
-            list[used[low]++] = (struct surface_edge){{low, high}, {s / 3, UINT32_MAX}};
-    }
-    edges->n = 0;
-    for (uint32_t v = 0; fine && v < surface->n; v++) {
-        const uint32_t from = edges->first[v];
-        edges->first[v] = edges->n;
-        for (uint32_t k = 0; k < used[v]; k++)
-            edges->edge[edges->n++] = edges->edge[from + k];
-    }
-    if (fine)
-        edges->first[surface->n] = edges->n;
-    free(used);
-    return fine ? CLOTH_OK : error->code;
+    for (uint32_t v = 0; v < surface->n; v++)
+        project(surface, v, 3);
 }
 
-void surface_edges_free(struct surface_edges *edges)
+/* Sums of neighbours, by edges: those of a boundary's edge once, others twice, as seen from the
+ * middle plane. */
+static void sum_neighbours(const struct surface *surface, const struct surface_links *links,
+                           double (*sum)[4])
 {
-    free(edges->first);
-    free(edges->edge);
-    *edges = (struct surface_edges){0};
+    for (uint32_t e = 0; e < links->n_edges; e++) {
+        const struct surface_edge *edge = &links->edge[e];
+        for (int i = 0; i < 2; i++) {
+            const uint32_t v = edge->end[i], w = edge->end[1 - i];
+            const double weight = surface->middle[v] && edge->triangle[1] != UINT32_MAX ? 2 : 1;
+            for (int c = surface->middle[v]; c < 3; c++)
+                sum[v][c] += weight * surface->x[w][c];
+            sum[v][3] += weight;
+        }
+    }
 }
 
-int surface_fans_find(struct surface_fans *fans, const struct surface *surface,
-                      struct cloth_error *error)
+static void slide(const struct surface *surface, uint32_t v, const double sum[4])
 {
-    fans->first = cloth_alloc((size_t)surface->n + 2, sizeof *fans->first, error);
-    fans->fan = cloth_alloc(3 * (size_t)surface->m, sizeof *fans->fan, error);
-    if (!fans->first || !fans->fan)
-        return error->code;
-    for (uint32_t s = 0; s < 3 * surface->m; s++)
-        fans->first[surface->triangle[s / 3][s % 3] + 1]++;
-    detail_surface_sum_up(fans->first + 1, surface->n);
-    for (uint32_t s = 0; s < 3 * surface->m; s++)
-        fans->fan[fans->first[surface->triangle[s / 3][s % 3] + 1]++] = s / 3;
-    return CLOTH_OK;
+    double *x = surface->x[v], g[3], way[3];
+    figure_gradient(surface->figure, x, g);
+    if (surface->middle[v])
+        g[0] = 0;
+    for (int c = 0; c < 3; c++)
+        way[c] = WAY * (sum[c] / sum[3] - x[c]);
+    const double across = cloth_dot(way, g) / cloth_dot(g, g);
+    for (int c = 0; c < 3; c++)
+        x[c] += way[c] - across * g[c];
+    if (surface->middle[v])
+        x[0] = 0;
+    project(surface, v, 1);
 }
 
-void surface_fans_free(struct surface_fans *fans)
+void surface_smooth(struct surface *surface)
 {
-    free(fans->first);
-    free(fans->fan);
-    *fans = (struct surface_fans){0};
+    struct surface_links links;
+    double(*sum)[4] = NULL;
+    if (surface_links_find(&links, surface))
+        sum = cloth_alloc(surface->n, sizeof *sum, surface->error);
+    if (sum)
+        sum_neighbours(surface, &links, sum);
+    for (uint32_t v = 0; sum && v < surface->n; v++)
+        slide(surface, v, sum[v]);
+    free(sum);
+    surface_links_free(&links);
 }

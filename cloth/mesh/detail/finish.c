@@ -3,16 +3,21 @@
 #include "cloth/mesh/detail/finish.h"
 
 #include "cloth/base/memory.h"
-#include "cloth/mesh/detail/polygon.h"
 #include "cloth/mesh/detail/sides.h"
 
+#include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-struct place {
-    char text[700];
+struct finish {
+    struct mesh *mesh;
+    const struct mesh_source *source;
+    struct cloth_error *error;
 };
+
+enum finish_item { FINISH_FACE, FINISH_EDGE };
 
 const char *mesh_path_shown(const char *path)
 {
@@ -20,120 +25,115 @@ const char *mesh_path_shown(const char *path)
     return length > max ? path + (length - max) : path;
 }
 
-static struct place detail_finish_place_of(const struct mesh_source *source, const char *array,
-                                           const size_t *lines, size_t index)
+/* Fails with a sentence about a face or a lone edge, behind where it stands. */
+__attribute__((format(printf, 4, 5))) static int
+refuse(const struct finish *of, enum finish_item item, size_t index, const char *format, ...)
 {
-    struct place place;
-    if (source->path)
-        snprintf(place.text, sizeof place.text, "%s:%zu", mesh_path_shown(source->path),
-                 lines[index]);
-    else
-        snprintf(place.text, sizeof place.text, "%s[%zu]", array, index);
-    return place;
-}
-
-static struct place face_place(const struct mesh_source *source, size_t face)
-{
-    return detail_finish_place_of(source, "triangles", source->face_line, face);
+    const struct mesh_source *source = of->source;
+    char text[256];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    if (!source->path)
+        return cloth_fail(of->error, CLOTH_E_INPUT, "%s[%zu]: %s",
+                          item == FINISH_EDGE ? "edges" : "triangles", index, text);
+    return cloth_fail(of->error, CLOTH_E_INPUT, "%s:%zu: %s", mesh_path_shown(source->path),
+                      (item == FINISH_EDGE ? source->edge_line : source->face_line)[index], text);
 }
 
 /* Files count vertices from 1. */
-static uint32_t shown(const struct mesh_source *source, uint32_t vertex)
+static uint32_t shown(const struct finish *of, uint32_t vertex)
 {
-    return vertex + (source->path ? 1 : 0);
+    return vertex + (of->source->path ? 1 : 0);
 }
 
-static int no_such_vertex(const struct mesh *mesh, const struct mesh_source *source,
-                          struct place place, uint32_t vertex, struct cloth_error *error)
+static int check_vertex(const struct finish *of, enum finish_item item, size_t index,
+                        uint32_t vertex)
 {
-    uint32_t first = shown(source, 0);
-    return cloth_fail(error, CLOTH_E_INPUT,
-                      "%s: there is no vertex %u; the mesh has the vertices %u to %u", place.text,
-                      shown(source, vertex), first, first + mesh->n_vertices - 1);
+    const uint32_t first = shown(of, 0);
+    return vertex < of->mesh->n_vertices
+               ? CLOTH_OK
+               : refuse(of, item, index,
+                        "there is no vertex %u; the mesh has the vertices %u to %u",
+                        shown(of, vertex), first, first + of->mesh->n_vertices - 1);
 }
 
 /* last_face: n_vertices, zeroed: the number + 1 of the last face that used a vertex. */
-static int check_faces(const struct mesh *mesh, const struct mesh_source *source,
-                       uint32_t *last_face, struct cloth_error *error)
+static int check_faces(const struct finish *of, uint32_t *last_face)
 {
+    const struct mesh *mesh = of->mesh;
     for (uint32_t f = 0; f < mesh->n_faces; f++) {
         for (uint32_t c = mesh->face_start[f]; c < mesh->face_start[f + 1]; c++) {
-            uint32_t vertex = mesh->face_corner[c];
-            if (vertex >= mesh->n_vertices)
-                return no_such_vertex(mesh, source, face_place(source, f), vertex, error);
+            const uint32_t vertex = mesh->face_corner[c];
+            const int code = check_vertex(of, FINISH_FACE, f, vertex);
+            if (code)
+                return code;
             if (last_face[vertex] == f + 1)
-                return cloth_fail(error, CLOTH_E_INPUT,
-                                  "%s: the face has vertex %u at two corners; corners must differ",
-                                  face_place(source, f).text, shown(source, vertex));
+                return refuse(of, FINISH_FACE, f,
+                              "the face has vertex %u at two corners; corners must differ",
+                              shown(of, vertex));
             last_face[vertex] = f + 1;
         }
     }
     return CLOTH_OK;
 }
 
-static int detail_finish_check_edges(const struct mesh *mesh, const struct mesh_source *source,
-                                     struct cloth_error *error)
+static int check_lone_edges(const struct finish *of)
 {
-    for (size_t i = 0; i < 2 * (size_t)mesh->n_lone_edges; i++) {
-        uint32_t vertex = mesh->lone_edge[i];
-        struct place place;
-        if (vertex < mesh->n_vertices && (i % 2 == 0 || vertex != mesh->lone_edge[i - 1]))
-            continue;
-        place = detail_finish_place_of(source, "edges", source->edge_line, i / 2);
-        if (vertex >= mesh->n_vertices)
-            return no_such_vertex(mesh, source, place, vertex, error);
-        return cloth_fail(error, CLOTH_E_INPUT,
-                          "%s: the edge joins vertex %u to itself; its ends must differ",
-                          place.text, shown(source, vertex));
+    for (size_t e = 0; e < of->mesh->n_lone_edges; e++) {
+        const uint32_t *end = of->mesh->lone_edge + 2 * e;
+        int code = check_vertex(of, FINISH_EDGE, e, end[0]);
+        code = code ? code : check_vertex(of, FINISH_EDGE, e, end[1]);
+        if (!code && end[0] == end[1])
+            code = refuse(of, FINISH_EDGE, e,
+                          "the edge joins vertex %u to itself; its ends must differ",
+                          shown(of, end[0]));
+        if (code)
+            return code;
     }
     return CLOTH_OK;
 }
 
-static int refuse_polygon(const struct mesh *mesh, const struct mesh_source *source, uint32_t f,
-                          const struct mesh_polygon_fault *fault, struct cloth_error *error)
+static int refuse_polygon(const struct finish *of, uint32_t f, enum mesh_polygon why,
+                          const uint32_t side[2])
 {
-    const uint32_t *corner = mesh->face_corner + mesh->face_start[f];
-    const uint32_t n = mesh->face_start[f + 1] - mesh->face_start[f];
-    const struct place place = face_place(source, f);
-    if (fault->kind == MESH_POLYGON_TOO_LARGE)
-        return cloth_fail(error, CLOTH_E_INPUT,
-                          "%s: the face is not convex and has %u corners; at most %d can be cut "
-                          "into triangles",
-                          place.text, n, MESH_MAX_CORNERS);
-    if (fault->kind == MESH_POLYGON_NO_AREA)
-        return cloth_fail(error, CLOTH_E_INPUT,
-                          "%s: the face has no area: its corners lie on a line, or it crosses "
-                          "itself",
-                          place.text);
-    const uint32_t *side = fault->side;
-    return cloth_fail(error, CLOTH_E_INPUT,
-                      "%s: the face crosses or touches itself where its sides between vertices %u "
-                      "and %u and between %u and %u meet; cut it into faces that do not",
-                      place.text, shown(source, corner[side[0]]),
-                      shown(source, corner[(side[0] + 1) % n]), shown(source, corner[side[1]]),
-                      shown(source, corner[(side[1] + 1) % n]));
+    const uint32_t *corner = of->mesh->face_corner + of->mesh->face_start[f];
+    const uint32_t n = of->mesh->face_start[f + 1] - of->mesh->face_start[f];
+    if (why == MESH_POLYGON_NO_MEMORY)
+        return CLOTH_E_MEMORY;
+    if (why == MESH_POLYGON_TOO_LARGE)
+        return refuse(of, FINISH_FACE, f,
+                      "the face is not convex and has %u corners; at most %d can be cut into "
+                      "triangles",
+                      n, MESH_MAX_CORNERS);
+    if (why == MESH_POLYGON_NO_AREA)
+        return refuse(of, FINISH_FACE, f,
+                      "the face has no area: its corners lie on a line, or it crosses itself");
+    return refuse(of, FINISH_FACE, f,
+                  "the face crosses or touches itself where its sides between vertices %u and %u "
+                  "and between %u and %u meet; cut it into faces that do not",
+                  shown(of, corner[side[0]]), shown(of, corner[(side[0] + 1) % n]),
+                  shown(of, corner[side[1]]), shown(of, corner[(side[1] + 1) % n]));
 }
 
-static int cut_faces(struct mesh *mesh, const struct mesh_source *source, struct cloth_error *error)
+static int cut_faces(const struct finish *of)
 {
+    struct mesh *mesh = of->mesh;
     size_t n = mesh->n_faces ? mesh->face_start[mesh->n_faces] - 2 * (size_t)mesh->n_faces : 0;
-    mesh->triangle = cloth_alloc(3 * n, sizeof *mesh->triangle, error);
-    if (!mesh->triangle)
+    uint32_t *to = mesh->triangle = cloth_alloc(3 * n, sizeof *mesh->triangle, of->error);
+    if (!to)
         return CLOTH_E_MEMORY;
-    uint32_t *to = mesh->triangle;
     for (uint32_t f = 0; f < mesh->n_faces; f++) {
         const uint32_t *corner = mesh->face_corner + mesh->face_start[f];
         const uint32_t n_corners = mesh->face_start[f + 1] - mesh->face_start[f];
-        struct mesh_polygon_fault fault;
-        int code = mesh_polygon_cut(mesh->position, n_corners, corner, to, &fault, error);
-        if (code == CLOTH_E_INPUT && source->fans && fault.kind == MESH_POLYGON_CROSSES) {
+        uint32_t side[2];
+        const enum mesh_polygon cut =
+            mesh_polygon_cut(mesh->position, n_corners, corner, to, side, of->error);
+        if (cut == MESH_POLYGON_CROSSES && of->source->fans)
             mesh_polygon_fan(n_corners, corner, to);
-            code = CLOTH_OK;
-        }
-        if (code == CLOTH_E_INPUT)
-            return refuse_polygon(mesh, source, f, &fault, error);
-        if (code)
-            return code;
+        else if (cut != MESH_POLYGON_CUT)
+            return refuse_polygon(of, f, cut, side);
         to += 3 * (size_t)(n_corners - 2);
     }
     mesh->n_triangles = (uint32_t)n;
@@ -142,20 +142,16 @@ static int cut_faces(struct mesh *mesh, const struct mesh_source *source, struct
 
 static uint32_t face_of(const struct mesh *mesh, uint32_t triangle)
 {
-    uint32_t face = 0, before = 0;
-    for (; face < mesh->n_faces; face++) {
-        before += mesh->face_start[face + 1] - mesh->face_start[face] - 2;
-        if (triangle < before)
-            break;
-    }
+    uint32_t face = 0; /* each has two corners more than triangles */
+    while (triangle >= mesh->face_start[face + 1] - 2 * (face + 1))
+        face++;
     return face;
 }
 
 /* An edge that stands twice would be one. That a triangle has it, too, is allowed. */
-static int check_twice(const struct mesh *mesh, const struct mesh_source *source,
-                       const struct mesh_sides *sides, struct cloth_error *error)
+static int check_twice(const struct finish *of, const struct mesh_sides *sides)
 {
-    const uint32_t first = 3 * mesh->n_triangles;
+    const uint32_t first = 3 * of->mesh->n_triangles;
     uint32_t before = 0, twice = UINT32_MAX;
     for (uint32_t i = 0, end; i < sides->n; i = end) {
         end = mesh_sides_run(sides, i);
@@ -169,19 +165,19 @@ static int check_twice(const struct mesh *mesh, const struct mesh_source *source
         return CLOTH_OK;
     const uint32_t *pair = sides->pair + 2 * (size_t)twice;
     const size_t at = before - first;
-    return cloth_fail(
-        error, CLOTH_E_INPUT,
-        "%s: the edge between vertices %u and %u stands here again, after %s %zu; give it once",
-        detail_finish_place_of(source, "edges", source->edge_line, twice - first).text,
-        shown(source, pair[0]), shown(source, pair[1]), source->path ? "line" : "entry",
-        source->path ? source->edge_line[at] : at);
+    return refuse(of, FINISH_EDGE, twice - first,
+                  "the edge between vertices %u and %u stands here again, after %s %zu; give it "
+                  "once",
+                  shown(of, pair[0]), shown(of, pair[1]), of->source->path ? "line" : "entry",
+                  of->source->path ? of->source->edge_line[at] : at);
 }
 
 /* Of the lone edges those that no triangle has come first, else as they were. Uses up the sides. */
-static int put_bare_first(struct mesh *mesh, struct mesh_sides *sides, struct cloth_error *error)
+static int put_bare_first(const struct finish *of, struct mesh_sides *sides)
 {
+    struct mesh *mesh = of->mesh;
     const uint32_t first = 3 * mesh->n_triangles, n = mesh->n_lone_edges;
-    uint32_t *sorted = cloth_alloc(n, 2 * sizeof *sorted, error), *next = sorted;
+    uint32_t *sorted = cloth_alloc(n, 2 * sizeof *sorted, of->error), *next = sorted;
     if (!sorted)
         return CLOTH_E_MEMORY;
     for (uint32_t i = 0, end; i < sides->n; i = end) { /* a run's sides of triangles come first */
@@ -203,36 +199,84 @@ static int put_bare_first(struct mesh *mesh, struct mesh_sides *sides, struct cl
     return CLOTH_OK;
 }
 
-static int check_manifold(struct mesh *mesh, const struct mesh_source *source,
-                          struct cloth_error *error)
+static int check_manifold(const struct finish *of)
 {
     struct mesh_sides sides;
     uint32_t third;
-    int code = mesh_sides_sort(&sides, mesh, error);
-    if (!code)
-        code = check_twice(mesh, source, &sides, error);
-    if (!code && mesh_sides_third(&sides, mesh->n_triangles, &third)) {
+    int code = mesh_sides_sort(&sides, of->mesh, of->error);
+    code = code ? code : check_twice(of, &sides);
+    if (!code && mesh_sides_third(&sides, of->mesh->n_triangles, &third)) {
         const uint32_t *pair = sides.pair + 2 * (size_t)third;
-        code = cloth_fail(error, CLOTH_E_INPUT,
-                          "%s: this face is the third at the edge between vertices %u and %u "
-                          "(non-manifold); an edge may have at most two triangles",
-                          face_place(source, face_of(mesh, third / 3)).text, shown(source, pair[0]),
-                          shown(source, pair[1]));
+        code = refuse(of, FINISH_FACE, face_of(of->mesh, third / 3),
+                      "this face is the third at the edge between vertices %u and %u "
+                      "(non-manifold); an edge may have at most two triangles",
+                      shown(of, pair[0]), shown(of, pair[1]));
     }
-    if (!code)
-        code = put_bare_first(mesh, &sides, error);
+    code = code ? code : put_bare_first(of, &sides);
     mesh_sides_free(&sides);
     return code;
 }
 
 int mesh_finish(struct mesh *mesh, const struct mesh_source *source, struct cloth_error *error)
 {
+    const struct finish finish = {mesh, source, error};
     uint32_t *last_face = cloth_alloc(mesh->n_vertices, sizeof *last_face, error);
-    int code = last_face ? check_faces(mesh, source, last_face, error) : CLOTH_E_MEMORY;
+    int code = last_face ? check_faces(&finish, last_face) : CLOTH_E_MEMORY;
     free(last_face);
-    if (!code)
-        code = detail_finish_check_edges(mesh, source, error);
-    if (!code)
-        code = cut_faces(mesh, source, error);
-    return code ? code : check_manifold(mesh, source, error);
+    code = code ? code : check_lone_edges(&finish);
+    code = code ? code : cut_faces(&finish);
+    return code ? code : check_manifold(&finish);
+}
+
+/* ---- Meshes of a caller's arrays, which are copied ---- */
+
+static int check_input(uint32_t n_vertices, const double *vertices, uint32_t n_edges,
+                       uint32_t n_triangles, struct cloth_error *error)
+{
+    if (n_vertices == 0)
+        return cloth_fail(error, CLOTH_E_INPUT, "the mesh has no vertices; it needs at least one");
+    if (n_vertices > MESH_MAX || n_triangles > MESH_MAX / 3 || n_edges > MESH_MAX / 2)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "the mesh is too large: at most %u vertices, %u triangles and %u edges",
+                          MESH_MAX, MESH_MAX / 3, MESH_MAX / 2);
+    for (size_t i = 0; i < 3 * (size_t)n_vertices; i++)
+        if (!isfinite(vertices[i]))
+            return cloth_fail(error, CLOTH_E_INPUT, "vertices[%zu]: %g is not a finite number",
+                              i / 3, vertices[i]);
+    return CLOTH_OK;
+}
+
+static void *copy_array(const void *from, size_t n, size_t size, struct cloth_error *error)
+{
+    void *to = cloth_alloc(n, size, error);
+    if (to && n)
+        memcpy(to, from, n * size);
+    return to;
+}
+
+int mesh_inline(struct mesh *mesh, uint32_t n_vertices, const double *vertices, uint32_t n_edges,
+                const uint32_t *edges, uint32_t n_triangles, const uint32_t *triangles,
+                struct cloth_error *error)
+{
+    *mesh = (struct mesh){0};
+    int code = check_input(n_vertices, vertices, n_edges, n_triangles, error);
+    if (code)
+        return code;
+    mesh->n_vertices = n_vertices;
+    mesh->n_lone_edges = n_edges;
+    mesh->n_faces = n_triangles;
+    mesh->position = copy_array(vertices, n_vertices, 3 * sizeof *vertices, error);
+    mesh->lone_edge = copy_array(edges, n_edges, 2 * sizeof *edges, error);
+    mesh->face_corner = copy_array(triangles, n_triangles, 3 * sizeof *triangles, error);
+    mesh->face_start = cloth_alloc((size_t)n_triangles + 1, sizeof *mesh->face_start, error);
+    if (!mesh->position || !mesh->lone_edge || !mesh->face_corner || !mesh->face_start) {
+        mesh_free(mesh);
+        return CLOTH_E_MEMORY;
+    }
+    for (uint32_t f = 0; f <= n_triangles; f++)
+        mesh->face_start[f] = 3 * f;
+    code = mesh_finish(mesh, &(struct mesh_source){0}, error);
+    if (code)
+        mesh_free(mesh);
+    return code;
 }

@@ -3,9 +3,6 @@
 
 #include "cloth/mesh/blocks.h"
 
-#include <stddef.h>
-#include <stdint.h>
-
 /* A graph: the neighbours of node i are neighbour[start[i]] .. neighbour[start[i + 1] - 1],
  * ascending, each once, without i itself. Numbers of 32 bits, as METIS takes them: the graph of a
  * large mesh is not copied for it. Local. */
@@ -28,10 +25,20 @@ void mesh_graph_free(struct mesh_graph *graph);
  * nodes farthest from the lowest node, one of lowest degree, then of lowest number. This search is
  * repeated while the nodes get farther away. Neighbours join by rising degree within the part, then
  * by number; at last the whole order is reversed. part: of each node. nodes: n of the same part,
- * all that part has; rewritten in the new order. order: from mesh_order_new, for any number of
- * calls on one graph. */
-struct mesh_order;
-struct mesh_order *mesh_order_new(const struct mesh_graph *graph, struct cloth_error *error);
+ * all that part has; rewritten in the new order. order: from mesh_order_make, for any number of
+ * calls on one graph; to be freed also after its error, CLOTH_E_MEMORY. */
+struct mesh_order {
+    const struct mesh_graph *graph;
+    const uint32_t *part;
+    uint32_t *degree; /* of each node within its part */
+    uint32_t *seen; /* the number of the last walk that met a node; the largest once it is placed */
+    uint32_t *queue;  /* the walk: nodes as they are met */
+    uint32_t *placed; /* the new order */
+    uint64_t *sorted; /* of one node's neighbours: degree * 2^32 + node */
+    uint32_t walk;
+};
+int mesh_order_make(struct mesh_order *order, const struct mesh_graph *graph,
+                    struct cloth_error *error);
 void mesh_order_part(struct mesh_order *order, const uint32_t *part, uint32_t n, uint32_t *nodes);
 void mesh_order_free(struct mesh_order *order);
 
@@ -41,5 +48,11 @@ void mesh_order_free(struct mesh_order *order);
  * random numbers, which it seeds). Errors: CLOTH_E_LIBRARY, CLOTH_E_MEMORY. */
 int mesh_partition(uint32_t *part, const struct mesh_graph *graph, uint32_t n_parts,
                    struct cloth_error *error);
+
+/* Makes n_parts parts without an empty one where some are empty: splits the others into pieces
+ * until there are n_parts pieces. size: of each part; their sum is at least n_parts. pieces: of
+ * each part, 0 for empty ones. The largest piece is as small as it can be, which decides all else;
+ * of equal choices lower parts are split first. Linear in n_parts but for a logarithm. */
+void mesh_pieces(uint32_t n_parts, const uint32_t *size, uint32_t *pieces);
 
 #endif

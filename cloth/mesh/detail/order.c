@@ -1,61 +1,45 @@
 /* Reverse Cuthill-McKee: every choice is by degree, then by number, so that there are no ties. */
+#include "cloth/base/order.h"
 #include "cloth/base/memory.h"
 #include "cloth/mesh/detail/graph.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-struct mesh_order {
-    const struct mesh_graph *graph;
-    const uint32_t *part;
-    uint32_t *degree; /* of each node within its part */
-    uint32_t *seen;   /* the number of the last walk that met a node; DONE once it has its place */
-    uint32_t *queue;  /* the walk: nodes as they are met */
-    uint32_t *placed; /* the new order */
-    uint64_t *sorted; /* of one node's neighbours: degree * 2^32 + node */
-    uint32_t walk;
-};
-
 #define DONE UINT32_MAX
 
-struct mesh_order *mesh_order_new(const struct mesh_graph *graph, struct cloth_error *error)
+int mesh_order_make(struct mesh_order *order, const struct mesh_graph *graph,
+                    struct cloth_error *error)
 {
-    struct mesh_order *order = cloth_alloc(1, sizeof *order, error);
-    if (!order)
-        return NULL;
     uint32_t widest = 0;
     for (size_t v = 0; v < graph->n_nodes; v++)
         if (graph->start[v + 1] - graph->start[v] > widest)
             widest = graph->start[v + 1] - graph->start[v];
-    order->graph = graph;
-    order->degree = cloth_alloc(graph->n_nodes, sizeof *order->degree, error);
-    order->seen = cloth_alloc(graph->n_nodes, sizeof *order->seen, error);
-    order->queue = cloth_alloc(graph->n_nodes, sizeof *order->queue, error);
-    order->placed = cloth_alloc(graph->n_nodes, sizeof *order->placed, error);
-    order->sorted = cloth_alloc(widest, sizeof *order->sorted, error);
-    if (order->degree && order->seen && order->queue && order->placed && order->sorted)
-        return order;
-    mesh_order_free(order);
-    return NULL;
+    *order = (struct mesh_order){
+        .graph = graph,
+        .degree = cloth_alloc(graph->n_nodes, sizeof *order->degree, error),
+        .seen = cloth_alloc(graph->n_nodes, sizeof *order->seen, error),
+        .queue = cloth_alloc(graph->n_nodes, sizeof *order->queue, error),
+        .placed = cloth_alloc(graph->n_nodes, sizeof *order->placed, error),
+        .sorted = cloth_alloc(widest, sizeof *order->sorted, error),
+    };
+    return order->degree && order->seen && order->queue && order->placed && order->sorted
+               ? CLOTH_OK
+               : CLOTH_E_MEMORY;
 }
 
 void mesh_order_free(struct mesh_order *order)
 {
-    if (!order)
-        return;
     free(order->degree);
     free(order->seen);
     free(order->queue);
     free(order->placed);
     free(order->sorted);
-    free(order);
 }
 
 static int order_by_key(const void *left, const void *right)
 {
-    uint64_t a, b;
-    memcpy(&a, left, sizeof a);
-    memcpy(&b, right, sizeof b);
+    const uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
     return (a > b) - (a < b);
 }
 
@@ -124,14 +108,6 @@ static void find_degrees(struct mesh_order *order, uint32_t n, const uint32_t *n
     }
 }
 
-static int order_by_number(const void *left, const void *right)
-{
-    uint32_t a, b;
-    memcpy(&a, left, sizeof a);
-    memcpy(&b, right, sizeof b);
-    return (a > b) - (a < b);
-}
-
 void mesh_order_part(struct mesh_order *order, const uint32_t *part, uint32_t n, uint32_t *nodes)
 {
     uint32_t placed = 0;
@@ -139,7 +115,7 @@ void mesh_order_part(struct mesh_order *order, const uint32_t *part, uint32_t n,
         return;
     order->part = part;
     order->walk = 0;
-    qsort(nodes, n, sizeof *nodes, order_by_number);
+    qsort(nodes, n, sizeof *nodes, cloth_compare_items_u32);
     find_degrees(order, n, nodes);
     for (uint32_t i = 0; i < n; i++) {
         if (order->seen[nodes[i]] == DONE)

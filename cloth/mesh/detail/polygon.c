@@ -1,6 +1,6 @@
 /* A polygon that leaves here without a fault is simple, so that it has an ear until three corners
  * are left. */
-#include "cloth/mesh/detail/polygon.h"
+#include "cloth/mesh/detail/finish.h"
 
 #include "cloth/base/memory.h"
 
@@ -215,33 +215,25 @@ static bool clip(const struct polygon *p, uint32_t *left, uint32_t *triangle)
     return true;
 }
 
-int mesh_polygon_cut(const double *position, uint32_t n, const uint32_t *corner, uint32_t *triangle,
-                     struct mesh_polygon_fault *fault, struct cloth_error *error)
+enum mesh_polygon mesh_polygon_cut(const double *position, uint32_t n, const uint32_t *corner,
+                                   uint32_t *triangle, uint32_t side[2], struct cloth_error *error)
 {
     struct polygon p = {.position = position, .corner = corner, .n = n};
-    *fault = (struct mesh_polygon_fault){.kind = MESH_POLYGON_NO_AREA};
-    if (n == 3) {
-        mesh_polygon_fan(n, corner, triangle);
-        return CLOTH_OK;
-    }
-    if (!polygon_look(&p))
-        return CLOTH_E_INPUT;
-    const bool convex = is_convex(&p);
-    fault->kind = MESH_POLYGON_TOO_LARGE;
+    if (n > 3 && !polygon_look(&p))
+        return MESH_POLYGON_NO_AREA;
+    const bool convex = n == 3 || is_convex(&p);
     if (!convex && n > MESH_MAX_CORNERS)
-        return CLOTH_E_INPUT;
-    fault->kind = MESH_POLYGON_CROSSES;
-    if (!convex && !is_simple(&p, fault->side))
-        return CLOTH_E_INPUT;
+        return MESH_POLYGON_TOO_LARGE;
+    if (!convex && !is_simple(&p, side))
+        return MESH_POLYGON_CROSSES;
     if (convex || fans(&p)) {
         mesh_polygon_fan(n, corner, triangle);
-        return CLOTH_OK;
+        return MESH_POLYGON_CUT;
     }
     uint32_t *left = cloth_alloc(n, sizeof *left, error);
     if (!left)
-        return CLOTH_E_MEMORY;
-    const bool cut = clip(&p, left, triangle);
+        return MESH_POLYGON_NO_MEMORY;
+    const bool found = clip(&p, left, triangle);
     free(left);
-    fault->kind = MESH_POLYGON_NO_AREA;
-    return cut ? CLOTH_OK : CLOTH_E_INPUT;
+    return found ? MESH_POLYGON_CUT : MESH_POLYGON_NO_AREA;
 }

@@ -3,7 +3,11 @@
 
 #include "cloth/mesh/mesh.h"
 
-#include <stdbool.h>
+/* order[0 .. n-1] becomes the permutation that sorts the n pairs by (first, second); equal pairs
+ * keep their order. pair: n x 2, each number below n_keys; n <= UINT32_MAX. Time and memory linear
+ * in n + n_keys. Errors: CLOTH_E_MEMORY. Local. */
+int mesh_sort_pairs(uint32_t *order, size_t n, const uint32_t *pair, uint32_t n_keys,
+                    struct cloth_error *error);
 
 /* The sides of all triangles, then the lone edges, brought next to each other where they join the
  * same vertices. Side 3 t + s is that of triangle t between its corners s and s + 1 (mod 3), with

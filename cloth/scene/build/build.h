@@ -1,20 +1,27 @@
 #ifndef CLOTH_SCENE_BUILD_BUILD_H
 #define CLOTH_SCENE_BUILD_BUILD_H
 
+#include "cloth/base/memory.h"
+#include "cloth/garment/garment.h"
+#include "cloth/mannequin/pose.h"
 #include "cloth/model/model.h"
 #include "cloth/scene/yaml/tree.h"
 
-/* These functions complete a model that scene_check filled. They make the parts that are no copy of
- * a value: meshes, motions, indices for names. They check what a table cannot: names, sizes,
- * indices, files. Their allocations belong to the model, also after an error. */
+/* These functions complete tree->model, which scene_check filled. They make the parts that are no
+ * copy of a value: meshes, motions, indices for names. They check what a table cannot: names,
+ * sizes, indices, files. Their allocations belong to the model, also after an error. Each returns
+ * 0, or another number after a failure, which tree->error tells. `node` is a map or value of the
+ * scene where nothing else is said. */
 
-/* A step of the whole scene. scene.c has their order, in which each relies on those before. */
-typedef int scene_build_step(struct model *model, struct scene_tree *tree,
-                             struct cloth_error *error);
+/* A step of the whole scene, and one of a cloth, by number, and its map. scene.c has their order,
+ * in which each relies on those before. */
+typedef int scene_build_step(struct scene_tree *tree);
+typedef int scene_build_cloth_step(struct scene_tree *tree, uint32_t cloth, int node);
 
 /* The names of the phases, no two of which are the same; all but the cloths; the cloths, which name
  * materials. */
-scene_build_step scene_build_phases, scene_build_world, scene_build_obstacles, scene_build_cloths;
+scene_build_step scene_build_phases, scene_build_world, scene_build_obstacles;
+scene_build_cloth_step scene_build_cloth;
 
 /* No two obstacles exclude each other around a cloth. */
 scene_build_step scene_build_check_obstacles;
@@ -29,200 +36,204 @@ scene_build_step scene_build_contact_idle;
 /* What a run reports. */
 scene_build_step scene_build_probes, scene_build_hdf5, scene_build_drape;
 
-/* Joints and welds; those of mesh.weld; those of seams; a warning of unjoined vertices at one
- * place; edges that are shorter than contact.thickness; folds of sewn cloths. */
-scene_build_step scene_build_joints, scene_build_welds, scene_build_mesh_welds, scene_build_seams;
-scene_build_step scene_build_pieces, scene_build_short_edges, scene_build_folds;
+/* Joints and welds; those of mesh.weld; those of seams, and all vertices that seams make meet as
+ * one; a warning of unjoined vertices at one place; edges that are shorter than contact.thickness;
+ * folds of sewn cloths. */
+scene_build_step scene_build_joints, scene_build_welds, scene_build_sewn;
+scene_build_cloth_step scene_build_mesh_weld, scene_build_seams, scene_build_pieces;
+scene_build_cloth_step scene_build_short_edges, scene_build_folds;
 
 /* Warnings: sewn cloths that are too small for a body, where it starts at rest; seams of one cloth
  * that cross where it starts; values that are hardly ever meant; keys that do nothing, after all
  * others, as the tree gets a default. */
-scene_build_step scene_build_girths, scene_build_warn_seams, scene_build_unusual, scene_build_needs;
+scene_build_cloth_step scene_build_girths, scene_build_warn_seams;
+scene_build_step scene_build_unusual, scene_build_needs;
 
 /* Writes the settings of the model. */
 scene_build_step scene_build_settings;
 
-/* One more weld of the model, with room for n pairs of vertices of a cloth, but no place. NULL:
- * out of memory. */
-struct model_weld *scene_build_add_weld(struct model *model, double tolerance, uint32_t cloth,
-                                        uint32_t n, struct cloth_error *error);
-/* The pair of a mesh that says its kind, of the cloth at a node. */
-yaml_node_pair_t scene_build_mesh_kind(const struct scene_tree *tree, int node);
+/* ---- Names (names.c) ---- */
 
-/* Reads the seams of an OBJ mesh (docs/garments.md), for a mesh that has as many vertices and
- * triangles. Faults of the file are in `inner`. The seams belong to `seams`, also after an
- * error. */
-int scene_read_seams(struct model_seams *seams, const struct mesh *mesh, const char *path,
-                     struct cloth_error *inner);
+/* Kinds of things with names. Fabrics and groups (of cloths and obstacles) are only listed. */
+enum scene_named {
+    SCENE_CLOTHS,
+    SCENE_MATERIALS,
+    SCENE_OBSTACLES,
+    SCENE_PROBES,
+    SCENE_FABRICS,
+    SCENE_GROUPS
+};
+
+/* The number of a name; UINT32_MAX: there is none. */
+uint32_t scene_build_find(const struct model *model, enum scene_named kind, const char *name);
+
+/* Gives an entry that has no name its usual one, "cloth1", and refuses a name that one before it
+ * has. node: its map, with the key name. */
+int scene_build_name(const struct scene_tree *tree, enum scene_named kind, uint32_t i, int node);
+
+/* The error that a node names no `what`; it lists n names. The same with all names of several
+ * kinds, bits 1 << kind. */
+int scene_build_no_such(const struct scene_tree *tree, int node, const char *what,
+                        const char *const *names, size_t n);
+int scene_build_no_name(const struct scene_tree *tree, int node, const char *what, unsigned kinds);
+
+/* The list of the groups of a side, cloths before obstacles; 0: it has none. */
+int scene_build_groups(const struct scene_tree *tree, uint32_t side);
 
 /* The cloth, by number, that the key cloth of a map names; the only cloth where the key is missing.
  * what: whose key it is, in messages: "a probe". */
-int scene_build_cloth_of(uint32_t *cloth, const char *what, const struct model *model,
-                         const struct scene_tree *tree, int node, struct cloth_error *error);
-
-/* The settings of a node, a line each: its path and its value. To be freed. NULL: CLOTH_E_MEMORY.
- */
-char *scene_build_text(const struct scene_tree *tree, int node, const char *path,
-                       struct cloth_error *error);
+int scene_build_cloth_of(uint32_t *cloth, const char *what, const struct scene_tree *tree,
+                         int node);
 
 /* The material, by number, that the key material of a map names, for a cloth whose
  * mass_per_vertex is known. */
 int scene_build_material(uint32_t *material, const struct model_cloth *cloth,
-                         const struct model *model, const struct scene_tree *tree, int node,
-                         struct cloth_error *error);
+                         const struct scene_tree *tree, int node);
 
-/* The panels and regions of a cloth that has its mesh, name and material. */
-int scene_build_parts(struct model_cloth *cloth, struct model *model, struct scene_tree *tree,
-                      int node, struct cloth_error *error);
-
-/* Checks that the materials of a cloth with its regions have the moduli that its mesh needs. */
-int scene_build_check_moduli(const struct model_cloth *cloth, const struct model *model,
-                             const struct scene_tree *tree, int node, struct cloth_error *error);
+/* ---- Vertices (pick.c) ---- */
 
 /* The group of the cloth's mesh that a node names, by number. */
 int scene_build_group(uint32_t *group, const struct model_cloth *cloth,
-                      const struct scene_tree *tree, int node, struct cloth_error *error);
-
-/* Checks that a map that picks vertices has no radius without nearest. */
-int scene_build_check_radius(const struct scene_tree *tree, int node, struct cloth_error *error);
+                      const struct scene_tree *tree, int node);
 
 /* Checks a pick that a map with one of the keys vertices, nearest, box, group filled: there are
  * such vertices. Puts the corners of a box in order, and lists the vertices of a group. */
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
-                     const struct model_cloth *cloth, struct cloth_error *error);
+                     const struct model_cloth *cloth);
 
 /* The same, and refuses a vertex that stands twice in its list. what: "one load", and the remedy.
  */
 int scene_build_pick_once(struct model_pick *pick, const struct scene_tree *tree, int node,
-                          const struct model_cloth *cloth, const char *what,
-                          struct cloth_error *error);
+                          const struct model_cloth *cloth, const char *what);
 
-/* The error `inner` of a file or part, at the node that names it: "what: sentence". Without one:
- * code. */
-int scene_build_blame(int code, const struct cloth_error *inner, const char *what,
-                      const struct scene_tree *tree, int node, struct cloth_error *error);
-
-/* Checks n numbers of vertices, which the list at a node has. */
+/* Checks n numbers of vertices, which a node has: a list, or one value. */
 int scene_build_check_vertices(const uint32_t *vertices, uint32_t n,
                                const struct model_cloth *cloth, const struct scene_tree *tree,
-                               int list, struct cloth_error *error);
+                               int node);
 
-/* The error that the mesh of the cloth has no vertex of this number. */
-int scene_build_no_vertex(uint32_t vertex, const struct model_cloth *cloth,
-                          const struct scene_tree *tree, int node, struct cloth_error *error);
+/* ---- Parts of a cloth, which has its name and those before ---- */
+
+/* Its mesh, transformed; that of a map pattern: a file, or an own garment, whose faults are in
+ * tree->inner; its panels and regions; its start by the key from; its masses and starts; its loads.
+ * Files, curves and motions are added to the model's. */
+typedef int scene_build_part(struct model_cloth *cloth, struct scene_tree *tree, int node);
+scene_build_part scene_build_mesh, scene_build_pattern, scene_build_parts, scene_build_settled;
+scene_build_part scene_build_starts, scene_build_loads;
+
+/* Reads the seams of an OBJ mesh (docs/garments.md), for a mesh that has as many vertices and
+ * triangles. The seams belong to `seams`, also after an error. */
+int scene_read_seams(struct model_seams *seams, const struct mesh *mesh, const char *path,
+                     struct cloth_error *error);
+
+/* Gives new pairs of vertices of a cloth the place of a node, and room for n of them; adds one. */
+int scene_build_room(struct model_pairs *pairs, uint32_t cloth, uint32_t n,
+                     const struct scene_tree *tree, int node);
+void scene_build_pair(struct model_pairs *pairs, uint32_t a, uint32_t b);
+
+/* The pairs of all seams of a cloth. */
+size_t scene_build_count_pairs(const struct model_seams *seams);
 
 /* The key curve of a map, if it has one: of a load, or of the air. *number: the model's new one;
  * 0: there is none. After the time. */
-int scene_build_curve(struct model *model, uint32_t *number, const struct scene_tree *tree,
-                      int node, struct cloth_error *error);
+int scene_build_curve(uint32_t *number, const struct scene_tree *tree, int node);
 
-/* The loads of a cloth that has its mesh and name; their curves are added to the model's. */
-int scene_build_loads(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,
-                      int node, struct cloth_error *error);
+/* ---- Places and motions (motion.c) ---- */
 
-/* The masses and starts of a cloth that has its mesh and name. */
-int scene_build_starts(struct model_cloth *cloth, const struct scene_tree *tree, int node,
-                       struct cloth_error *error);
+/* The constraint of a pin, and its motion: motions and sliders are added to the model's. */
+int scene_build_constraint(struct model_pin *pin, const struct scene_tree *tree, int node);
 
-/* The start of a cloth by its key from; the cloth has its mesh, name and velocity. Files of the
- * folder are added to the model's. */
-int scene_build_settled(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
-                        int node, struct cloth_error *error);
+/* A motion by key frames, whose keys become the model's last. */
+int scene_build_motion(struct model_motion *motion, const struct scene_tree *tree, int node);
 
 /* Checks that the key rotate of a map, which filled the transform, is a rotation. */
 int scene_build_check_turn(const struct mesh_transform *transform, const struct scene_tree *tree,
-                           int node, struct cloth_error *error);
+                           int node);
 
-/* The constraint of a pin, and its motion: motions and sliders are added to the model's. */
-int scene_build_constraint(struct model *model, struct model_pin *pin,
-                           const struct scene_tree *tree, int node, struct cloth_error *error);
-
-/* A motion by key frames, whose keys become the model's last. */
-int scene_build_motion(struct model *model, struct model_motion *motion,
-                       const struct scene_tree *tree, int node, struct cloth_error *error);
-
-/* A quaternion, made of length 1; what: "a rotation of a motion". */
+/* A quaternion, made of length 1; what: "a rotation of a motion". A direction, likewise; what: "the
+ * normal of a plane". */
 int scene_build_rotation(double rotate[4], const char *what, const struct scene_tree *tree,
-                         int node, struct cloth_error *error);
-
-/* A direction, made of length 1; what: "the normal of a plane". */
+                         int node);
 int scene_build_direction(double direction[3], const char *what, const struct scene_tree *tree,
-                          int node, struct cloth_error *error);
+                          int node);
 
-/* The error that there is no `what` of this name; it lists the existing names. names: n strings. */
-int scene_build_no_such(const char *what, const char *name, const char *const *names, size_t n,
-                        const struct scene_tree *tree, int node, struct cloth_error *error);
+/* ---- Bodies ---- */
 
-/* The obstacle, by number, of a name; UINT32_MAX: there is none. The error that a node names none.
- */
-uint32_t scene_build_obstacle_named(const struct model *model, const char *name);
-int scene_build_no_obstacle(const struct model *model, const struct scene_tree *tree, int node,
-                            struct cloth_error *error);
+/* The frames of a body that has the key frames. mesh: that of the body, transformed, as frames
+ * are. *place: the memory of the frames, to be freed in any case. */
+int scene_build_frames(struct contact_frames *frames, double **place, const struct mesh *mesh,
+                       const struct mesh_transform *transform, struct scene_tree *tree, int body);
 
-/* Adds the names of obstacles behind the first n of a list. Returns how many there are then. */
-size_t scene_build_add_obstacles(const struct model *model, size_t n, const char **names);
-
-/* Adds the path of a file that is read to the model's. */
-int scene_build_file(struct model *model, const char *path, struct cloth_error *error);
-
-/* The mesh of a cloth, the map `node`, transformed; its file is added to the model's. */
-int scene_build_mesh(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
-                     int node, struct cloth_error *error);
-
-/* The mesh of the pattern that the map `node` names: a file, which is added to the model's, or an
- * own garment. Faults of the pattern are in `inner`, without the place in the scene. */
-int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
-                        int node, struct cloth_error *error, struct cloth_error *inner);
-
-/* Checks that this machine may have room for a mesh of n vertices. node: the key that asks for so
- * many; what: "nx times ny is". */
-int scene_build_check_memory(uint64_t n, const char *what, const struct scene_tree *tree, int node,
-                             struct cloth_error *error);
-
-/* The path of the file that a node names, relative to the scene's folder; the file is added to the
- * model's. NULL: out of memory. */
-char *scene_build_path(struct model *model, const struct scene_tree *tree, int node,
-                       struct cloth_error *error);
-
-/* The frames of a body's key; n 0: it has none. mesh: that of the body, transformed, as frames are.
- * *place: the memory of the frames, to be freed in any case. */
-int scene_build_frames(struct model *model, struct contact_frames *frames, double **place,
-                       const struct mesh *mesh, const struct mesh_transform *transform,
-                       const struct scene_tree *tree, int body, struct cloth_error *error);
-
-/* The mesh of the figure of a body's key mannequin, transformed. Its frames if it walks or has
+/* The mesh of the figure of a body's key mannequin. Its frames, transformed, if it walks or has
  * poses; else frames are unchanged. *place: the memory of the frames, to be freed in any case.
  * After the time. */
-int scene_build_mannequin(const struct model *model, struct mesh *mesh,
-                          const struct mesh_transform *transform, struct contact_frames *frames,
-                          double **place, struct scene_tree *tree, int body,
-                          struct cloth_error *error);
+int scene_build_mannequin(struct mesh *mesh, const struct mesh_transform *transform,
+                          struct contact_frames *frames, double **place, struct scene_tree *tree,
+                          int body);
 
 /* Warns of a body whose surface meets itself where the run starts. place: of its vertices in the
  * first of its frames; NULL: it has none. */
-int scene_build_warn_crossed(struct model *model, const struct mesh *mesh, const double *place,
-                             const struct scene_tree *tree, int file, struct cloth_error *error);
+int scene_build_warn_crossed(const struct mesh *mesh, const double *place,
+                             const struct scene_tree *tree, int file);
 
-/* The mesh of the OBJ file that a node names, relative to the scene's folder, by mesh_read_obj or
- * mesh_read_surface; the file is added to the model's. Faults of the file are in `inner`, without
- * the place in the scene. */
-typedef int scene_obj_reader(struct mesh *mesh, const char *path, struct cloth_error *error);
-int scene_build_obj(struct model *model, struct mesh *mesh, scene_obj_reader *reads,
-                    const struct scene_tree *tree, int node, struct cloth_error *error,
-                    struct cloth_error *inner);
+/* ---- Helpers (build.c) ---- */
 
-/* Adds the warning "place: sentence" of a node to the model's. */
-int scene_build_warn(struct model *model, const struct scene_tree *tree, int node,
-                     struct cloth_error *error, const char *format, ...)
-    __attribute__((format(printf, 5, 6)));
-
-/* n zeroed entries (at least one), or NULL with an error. */
-void *scene_build_array(size_t n, size_t size, struct cloth_error *error);
-/* A list of n entries, moved, with zeroed room for `more`; or NULL with an error: the list stays.
- */
-void *scene_build_grow(void *list, size_t n, size_t more, size_t size, struct cloth_error *error);
+/* Adds `more` > 0 zeroed entries of `size` bytes to a list of *n; list: the address of its pointer.
+ * Returns the first of them, or NULL with an error: the list stays. */
+void *scene_build_add(void *list, uint32_t *n, size_t more, size_t size, struct cloth_error *error);
+/* NULL, with the error that there is no memory. */
+void *scene_build_out_of_memory(struct cloth_error *error);
 char *scene_build_copy(const char *text, struct cloth_error *error);
 /* The place of a node, for the model. */
-char *scene_build_place(const struct scene_tree *tree, int node, struct cloth_error *error);
+char *scene_build_place(const struct scene_tree *tree, int node);
+
+/* Adds the warning "place: sentence" of a node to the model's. Only memory can fail. */
+int scene_build_warn(const struct scene_tree *tree, int node, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* The error of a file or part, which tree->inner has, at the node that names it: "what: sentence".
+ * Without one: code. */
+int scene_build_blame(int code, const char *what, struct scene_tree *tree, int node);
+
+/* Adds the path of a file that is read to the model's. The path of one that a node names, relative
+ * to the scene's folder, is added, too; NULL: out of memory. */
+int scene_build_file(const struct scene_tree *tree, const char *path);
+char *scene_build_path(const struct scene_tree *tree, int node);
+
+/* The mesh of the OBJ file that a node names, by mesh_read_obj or mesh_read_surface; the file is
+ * added to the model's. what: as of scene_build_blame. */
+typedef int scene_obj_reader(struct mesh *mesh, const char *path, struct cloth_error *error);
+int scene_build_obj(struct mesh *mesh, scene_obj_reader *reads, const char *what,
+                    struct scene_tree *tree, int node);
+
+/* Checks that this machine may have room for a mesh of n vertices. node: the key that asks for so
+ * many; what: "nx times ny is". */
+int scene_build_check_memory(uint64_t n, const char *what, const struct scene_tree *tree, int node);
+
+/* The settings of a node, a line each: its path and its value, sorted. To be freed. NULL:
+ * CLOTH_E_MEMORY. */
+char *scene_build_text(const struct scene_tree *tree, int node, const char *path);
+
+/* ---- Parts that phases share (build.c) ---- */
+
+/* Garments and figures of the scene that is read, each made once for all its phases. One is known
+ * by its key: the settings that it follows from. All begins as zero. Local. */
+struct scene_made_part {
+    struct scene_made_part *next;
+    char *key;
+    size_t size; /* bytes of the key */
+    bool is_made;
+    struct garment_pattern pattern;
+    struct garment garment;
+    struct mesh mesh;
+    struct mannequin_rig rig;
+};
+struct scene_made {
+    struct scene_made_part *parts;
+};
+
+/* The part of a key, to be made where is_made is false. NULL: CLOTH_E_MEMORY. */
+struct scene_made_part *scene_made_part(struct scene_made *made, const void *key, size_t size,
+                                        struct cloth_error *error);
+void scene_made_free(struct scene_made *made);
 
 #endif

@@ -7,76 +7,59 @@
 static const double MARGIN = 1e-9; /* m: of a certificate */
 static const double OPEN = 0.1;    /* part of the thickness that steps leave open */
 
-/* ---- Its default ---- */
-
-/* True if a cloth meets more than planes. If only vertices are put out, thin or sharp obstacles go
- * through a cloth, and cloths go through each other. */
-static bool meets_surfaces(const struct model *model, uint32_t cloth)
+/* True if a cloth meets itself, one before it or an obstacle. surfaces: planes and cloths without
+ * triangles do not count. */
+static bool meets_anything(const struct model *model, uint32_t cloth, bool surfaces)
 {
     bool meets = false;
     for (uint32_t c = 0; c <= cloth; c++)
-        meets = meets || (model->cloths[c].mesh.n_triangles && model_meets(model, cloth, c));
+        meets = meets ||
+                ((!surfaces || model->cloths[c].mesh.n_triangles) && model_meets(model, cloth, c));
     for (uint32_t i = 0; i < model->n_obstacles; i++)
-        meets = meets || (contact_kinds[model->obstacles[i].kind] != &contact_plane &&
-                          model_meets(model, cloth, model->n_cloths + i));
+        meets =
+            meets || ((!surfaces || contact_kinds[model->obstacles[i].kind] != &contact_plane) &&
+                      model_meets(model, cloth, model->n_cloths + i));
     return meets;
 }
 
-static bool has_surfaces(const struct model *model)
+/* ---- Its default ---- */
+
+/* True if a cloth meets more than planes: thin or sharp obstacles go through a cloth whose vertices
+ * alone are put out, and cloths through each other. Edges without triangles are in no certificate,
+ * which would let them through obstacles. */
+static bool wants_certificate(const struct model *model)
 {
-    bool has = false;
-    for (uint32_t c = 0; c < model->n_cloths; c++)
-        has = has || (model->cloths[c].mesh.n_triangles && meets_surfaces(model, c));
-    return has;
+    bool surfaces = false, edges = false;
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        const struct mesh *mesh = &model->cloths[c].mesh;
+        surfaces = surfaces || (mesh->n_triangles && meets_anything(model, c, true));
+        edges = edges || mesh->n_bare_edges;
+    }
+    return surfaces && !(edges && model->n_obstacles);
 }
 
-/* A certificate is of triangles. Obstacles would let edges that have none through. */
-static bool has_edges_to_stop(const struct model *model)
+int scene_build_contact(struct scene_tree *tree)
 {
-    bool has = false;
-    for (uint32_t c = 0; c < model->n_cloths; c++)
-        has = has || model->cloths[c].mesh.n_bare_edges;
-    return has && model->n_obstacles;
-}
-
-int scene_build_contact(struct model *model, struct scene_tree *tree, struct cloth_error *error)
-{
-    const int contact = scene_tree_get(tree, 1, "contact");
-    (void)error;
-    if (scene_tree_get(tree, contact, "mode"))
+    struct model *model = tree->model;
+    if (scene_tree_at(tree, 1, "contact.mode"))
         return CLOTH_OK;
     model->contact.assumed = true;
-    if (model_is_implicit(model) && has_surfaces(model) && !has_edges_to_stop(model) &&
-        !model_has_maps(model))
+    if (model_is_implicit(model) && wants_certificate(model) && !model_has_maps(model))
         model->contact.mode = MODEL_CONTACT_BEST;
     return CLOTH_OK;
 }
 
-/* ---- Scenes without contact ---- */
-
-static bool meets_anything(const struct model *model, uint32_t cloth)
+int scene_build_contact_idle(struct scene_tree *tree)
 {
-    bool meets = false;
-    for (uint32_t c = 0; c <= cloth; c++)
-        meets = meets || model_meets(model, cloth, c);
-    for (uint32_t i = 0; i < model->n_obstacles; i++)
-        meets = meets || model_meets(model, cloth, model->n_cloths + i);
-    return meets;
-}
-
-int scene_build_contact_idle(struct model *model, struct scene_tree *tree,
-                             struct cloth_error *error)
-{
+    const struct model *model = tree->model;
     bool idle = true;
-    (void)tree;
-    (void)error;
     for (uint32_t c = 0; c < model->n_cloths; c++)
-        idle = idle && !meets_anything(model, c);
+        idle = idle && !meets_anything(model, c, false);
     for (uint32_t i = 0; i < model->n_probes; i++) {
         const struct model_probe *probe = model->probes + i;
         idle = idle && !probe->by_obstacle && !probe->contact && !probe->contact_total;
     }
-    model->contact.idle = idle;
+    tree->model->contact.idle = idle;
     return CLOTH_OK;
 }
 
@@ -97,51 +80,47 @@ static double farthest_coordinate(const struct model *model)
 
 /* Points that steps leave apart must stay apart in frames. Floats move each coordinate by up to
  * 2^-24 of it, so two points approach by up to 2 sqrt(3) of that. */
-static int check_thickness(const struct model *model, const struct scene_tree *tree, int node,
-                           struct cloth_error *error)
+static int check_thickness(const struct scene_tree *tree, int node)
 {
+    const struct model *model = tree->model;
     const double far = farthest_coordinate(model);
     const double least = (MARGIN + 2 * sqrt(3) * far / 16777216) / OPEN;
     if (model->contact.thickness >= least)
         return CLOTH_OK;
-    return scene_tree_fail(tree, node, error,
+    return scene_tree_fail(tree, node,
                            "contact.thickness is %g m; at least %.3g m is expected: frames are in "
                            "float, and cloth that is %g m from the origin needs that much%s",
                            model->contact.thickness, least, far, model_contact_cure(model));
 }
 
 /* Checks that no body is met by maps. */
-static int check_bodies(const struct model *model, const struct scene_tree *tree,
-                        struct cloth_error *error)
+static int check_bodies(const struct scene_tree *tree)
 {
+    const struct model *model = tree->model;
     const int list = scene_tree_get(tree, 1, "obstacles");
     uint32_t i = 0;
     while (i < model->n_obstacles && !model->obstacles[i].view.height)
         i++;
     if (i == model->n_obstacles)
         return CLOTH_OK;
-    const int body = scene_tree_get(tree, scene_tree_item(tree, list, i), "body");
-    return scene_tree_fail(tree, scene_tree_get(tree, body, "meet"), error,
+    return scene_tree_fail(tree, scene_tree_at(tree, scene_tree_item(tree, list, i), "body.meet"),
                            "a body that is met by image, in contact.mode %s%s; meet: bvh, or "
                            "contact: {mode: project}, is expected",
                            model_contact_name(model),
                            model_contact_is[model->contact.mode].no_maps);
 }
 
-int scene_build_check_contact(struct model *model, struct scene_tree *tree,
-                              struct cloth_error *error)
+int scene_build_check_contact(struct scene_tree *tree)
 {
-    const int contact = scene_tree_get(tree, 1, "contact");
-    const int mode = scene_tree_get(tree, contact, "mode");
+    const struct model *model = tree->model;
     const struct model_contact_is *is = model_contact_is + model->contact.mode;
     if (is->solves && !model_is_implicit(model))
-        return scene_tree_fail(tree, mode, error,
+        return scene_tree_fail(tree, scene_tree_at(tree, 1, "contact.mode"),
                                "contact.mode is %s, which implicit_euler and bdf2 can do: "
                                "explicit steps (integrator: %s) solve no system that knows of "
                                "contact; repulsion or project is expected",
                                model_contact_name(model), model_scheme(model)->name);
-    const int code = is->no_maps ? check_bodies(model, tree, error) : CLOTH_OK;
-    return code || !is->promise.apart
-               ? code
-               : check_thickness(model, tree, scene_tree_get(tree, contact, "thickness"), error);
+    return (is->no_maps && check_bodies(tree)) ||
+           (is->promise.apart &&
+            check_thickness(tree, scene_tree_at(tree, 1, "contact.thickness")));
 }

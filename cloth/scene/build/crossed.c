@@ -7,37 +7,42 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int warn_of_pairs(struct model *model, const struct mesh *mesh,
-                         const struct cloth_list *pairs, const struct scene_tree *tree, int file,
-                         struct cloth_error *error)
+/* The pairs of triangles of a surface that intersect. */
+static int find_pairs(struct cloth_list *pairs, uint32_t n_points, const double *x,
+                      uint32_t n_triangles, const uint32_t *corner, struct cloth_error *error)
 {
-    const struct verify_pair *first = pairs->items;
-    if (!pairs->n)
-        return CLOTH_OK;
-    const uint32_t *a = mesh->triangle + 3 * (size_t)first->triangle[0];
-    const uint32_t *b = mesh->triangle + 3 * (size_t)first->triangle[1];
-    return scene_build_warn(model, tree, file, error,
-                            "the body goes through itself: %zu pairs of its triangles intersect, "
-                            "the first are %u %u %u and %u %u %u (vertices count from 1); cloth "
-                            "can be pinched there: move its parts apart, or join them",
-                            pairs->n, a[0] + 1, a[1] + 1, a[2] + 1, b[0] + 1, b[1] + 1, b[2] + 1);
+    const struct verify_soup soup = {.n_points = n_points,
+                                     .n_triangles = n_triangles,
+                                     .n_first = n_triangles,
+                                     .x = (const double(*)[3])x,
+                                     .corner = (const uint32_t(*)[3])corner};
+    return verify_pairs(&soup, pairs, error);
 }
 
-int scene_build_warn_crossed(struct model *model, const struct mesh *mesh, const double *place,
-                             const struct scene_tree *tree, int file, struct cloth_error *error)
+static void warn_of_pairs(const struct mesh *mesh, const struct cloth_list *pairs,
+                          const struct scene_tree *tree, int file)
 {
-    const double *x = place ? place : mesh->position;
-    const struct verify_soup soup = {.n_points = mesh->n_vertices,
-                                     .n_triangles = mesh->n_triangles,
-                                     .n_first = mesh->n_triangles,
-                                     .x = (const double(*)[3])x,
-                                     .corner = (const uint32_t(*)[3])mesh->triangle};
+    const struct verify_pair *first = pairs->items;
+    const uint32_t *a = mesh->triangle + 3 * (size_t)first->triangle[0];
+    const uint32_t *b = mesh->triangle + 3 * (size_t)first->triangle[1];
+    scene_build_warn(
+        tree, file,
+        "the body goes through itself: %zu pairs of its triangles intersect, the "
+        "first are %u %u %u and %u %u %u (vertices count from 1); cloth can be pinched "
+        "there: move its parts apart, or join them",
+        pairs->n, a[0] + 1, a[1] + 1, a[2] + 1, b[0] + 1, b[1] + 1, b[2] + 1);
+}
+
+int scene_build_warn_crossed(const struct mesh *mesh, const double *place,
+                             const struct scene_tree *tree, int file)
+{
     struct cloth_list pairs = {0};
-    int code = verify_pairs(&soup, &pairs, error);
-    if (!code)
-        code = warn_of_pairs(model, mesh, &pairs, tree, file, error);
+    if (!find_pairs(&pairs, mesh->n_vertices, place ? place : mesh->position, mesh->n_triangles,
+                    mesh->triangle, tree->error) &&
+        pairs.n)
+        warn_of_pairs(mesh, &pairs, tree, file);
     free(pairs.items);
-    return code;
+    return tree->error->code;
 }
 
 /* ---- Seams ---- */
@@ -106,63 +111,43 @@ static bool find_crossed(const struct threads *threads, const struct cloth_list 
     return false;
 }
 
-static int warn_of_threads(struct model *model, const struct model_cloth *cloth,
-                           const struct threads *threads, const struct cloth_list *pairs,
-                           const struct scene_tree *tree, int node, struct cloth_error *error)
+static void warn_of_threads(const struct model_cloth *cloth, const struct threads *threads,
+                            const struct cloth_list *pairs, const struct scene_tree *tree, int node)
 {
     char one[MODEL_SEAM_NAME], other[MODEL_SEAM_NAME];
-    uint32_t found[2], *room = scene_build_array(2 * cloth->seams.n, sizeof *room, error);
-    const bool cross =
-        room && find_crossed(threads, pairs, &cloth->seams, room, room + cloth->seams.n, found);
+    uint32_t found[2], *room = cloth_alloc(2 * cloth->seams.n, sizeof *room, tree->error);
+    if (room && find_crossed(threads, pairs, &cloth->seams, room, room + cloth->seams.n, found)) {
+        model_name_seam(cloth, found[0], one);
+        model_name_seam(cloth, found[1], other);
+        scene_build_warn(
+            tree, node,
+            "%.160s and %.160s cross where the run starts: what they pull goes through "
+            "each other; place the panels otherwise, or see seams.reversed",
+            one, other);
+    }
     free(room);
-    if (!cross)
-        return error->code;
-    model_name_seam(cloth, found[0], one);
-    model_name_seam(cloth, found[1], other);
-    return scene_build_warn(model, tree, node, error,
-                            "%.160s and %.160s cross where the run starts: what they pull goes "
-                            "through each other; place the panels otherwise, or see seams.reversed",
-                            one, other);
 }
 
-static int warn_of_seams(struct model *model, const struct model_cloth *cloth,
-                         const struct scene_tree *tree, int node, struct cloth_error *error)
+int scene_build_warn_seams(struct scene_tree *tree, uint32_t c, int node)
 {
+    const struct model_cloth *cloth = tree->model->cloths + c;
     const struct model_seams *seams = &cloth->seams;
-    size_t n = 0;
-    for (uint32_t s = 0; s < seams->n; s++)
-        n += seams->seam[s].n_pairs;
-    struct threads threads = {.x = scene_build_array(2 * n, sizeof *threads.x, error),
-                              .corner = scene_build_array(2 * n, sizeof *threads.corner, error),
-                              .seam = scene_build_array(2 * n, sizeof *threads.seam, error)};
+    const size_t n = 2 * scene_build_count_pairs(seams);
     struct cloth_list pairs = {0};
-    for (uint32_t s = 0; s < seams->n && !error->code; s++)
+    if (!n)
+        return CLOTH_OK;
+    struct threads threads = {.x = cloth_alloc(n, sizeof *threads.x, tree->error),
+                              .corner = cloth_alloc(n, sizeof *threads.corner, tree->error),
+                              .seam = cloth_alloc(n, sizeof *threads.seam, tree->error)};
+    for (uint32_t s = 0; s < seams->n && !tree->error->code; s++)
         if (seams->seam[s].sewing.state == MODEL_SEAMS_PULLED)
             crossed_add_seam(&threads, cloth->mesh.position, seams->seam + s, s);
-    const struct verify_soup soup = {.n_points = threads.n_points,
-                                     .n_triangles = threads.n_triangles,
-                                     .n_first = threads.n_triangles,
-                                     .x = (const double(*)[3])threads.x,
-                                     .corner = (const uint32_t(*)[3])threads.corner};
-    int code = error->code ? error->code : verify_pairs(&soup, &pairs, error);
-    if (!code)
-        code = warn_of_threads(model, cloth, &threads, &pairs, tree, node, error);
+    if (!tree->error->code && !find_pairs(&pairs, threads.n_points, *threads.x, threads.n_triangles,
+                                          *threads.corner, tree->error))
+        warn_of_threads(cloth, &threads, &pairs, tree, scene_tree_get(tree, node, "seams"));
     free(threads.x);
     free(threads.corner);
     free(threads.seam);
     free(pairs.items);
-    return code;
-}
-
-int scene_build_warn_seams(struct model *model, struct scene_tree *tree, struct cloth_error *error)
-{
-    const int list = scene_tree_get(tree, 1, "cloths");
-    int code = CLOTH_OK;
-    for (uint32_t i = 0; i < model->n_cloths && !code; i++) {
-        const struct model_cloth *cloth = model->cloths + i;
-        const int node = scene_tree_get(tree, scene_tree_item(tree, list, i), "seams");
-        if (cloth->seams.n)
-            code = warn_of_seams(model, cloth, tree, node, error);
-    }
-    return code;
+    return tree->error->code;
 }

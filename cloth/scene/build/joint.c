@@ -1,235 +1,151 @@
-/* Joints of vertices of any cloths: keys at the top of a scene that name pairs of vertices. */
+/* Joints and welds: pairs of vertices of two cloths or of one, or of vertices and points on
+ * edges. */
 #include "cloth/scene/build/build.h"
 
 #include <stdlib.h>
-#include <string.h>
-
-static int no_cloth(const char *name, const struct model *model, const struct scene_tree *tree,
-                    int node, struct cloth_error *error)
-{
-    const char **names = scene_build_array(model->n_cloths, sizeof *names, error);
-    if (!names)
-        return error->code;
-    for (uint32_t i = 0; i < model->n_cloths; i++)
-        names[i] = model->cloths[i].name;
-    int code = scene_build_no_such("cloth", name, names, model->n_cloths, tree, node, error);
-    free(names);
-    return code;
-}
-
-int scene_build_cloth_of(uint32_t *cloth, const char *what, const struct model *model,
-                         const struct scene_tree *tree, int node, struct cloth_error *error)
-{
-    const char *name = scene_tree_text(tree, node, "cloth");
-    *cloth = 0;
-    if (!name && model->n_cloths == 1)
-        return CLOTH_OK;
-    if (!name)
-        return scene_tree_fail(tree, node, error,
-                               "%s does not name its cloth, of which there are %u", what,
-                               model->n_cloths);
-    for (; *cloth < model->n_cloths; (*cloth)++)
-        if (!strcmp(model->cloths[*cloth].name, name))
-            return CLOTH_OK;
-    return no_cloth(name, model, tree, scene_tree_get(tree, node, "cloth"), error);
-}
 
 /* ---- Ends on edges ---- */
 
-/* One edge is a list of one. */
-static int joint_take_edge(struct model_end *end, const struct scene_tree *tree, int node,
-                           struct cloth_error *error)
-{
-    const int one = scene_tree_get(tree, node, "edge");
-    double number[2];
-    if (!one)
-        return CLOTH_OK;
-    end->edges = scene_build_array(1, sizeof *end->edges, error);
-    if (!end->edges)
-        return error->code;
-    end->n = 1;
-    scene_tree_vector(tree, one, 2, number);
-    for (int i = 0; i < 2; i++)
-        end->edges[0][i] = (uint32_t)number[i];
-    return CLOTH_OK;
-}
-
 /* Checks that the mesh has the edges. all: those of the cloth. */
-static int check_end_edges(const struct model_end *end, const struct model *model,
-                           const struct mesh_edges *all, const struct scene_tree *tree, int node,
-                           struct cloth_error *error)
+static int check_end_edges(const struct model_end *end, const struct mesh_edges *all,
+                           const struct scene_tree *tree, int node)
 {
     const int one = scene_tree_get(tree, node, "edge");
     const int list = scene_tree_get(tree, node, "edges");
-    const struct model_cloth *cloth = model->cloths + end->cloth;
     for (uint32_t i = 0; i < end->n; i++) {
         const uint32_t a = end->edges[i][0], b = end->edges[i][1];
         if (!mesh_edges_get(all, a, b))
-            return scene_tree_fail(tree, one ? one : scene_tree_item(tree, list, i), error,
+            return scene_tree_fail(tree, one ? one : scene_tree_item(tree, list, i),
                                    "vertices %u and %u are not the ends of an edge of cloth "
                                    "'%.60s'; such two are expected",
-                                   a, b, cloth->name);
+                                   a, b, tree->model->cloths[end->cloth].name);
     }
     return CLOTH_OK;
 }
 
-static int fail_at(const struct scene_tree *tree, int node, double at, struct cloth_error *error)
-{
-    return scene_tree_fail(tree, node, error,
-                           "a joint ends at %g of an edge; a number from 0, its first end, to 1, "
-                           "its second, is expected",
-                           at);
-}
-
 /* The places on its edges where a joint ends. */
-static int build_at(struct model_end *end, const struct scene_tree *tree, int node,
-                    struct cloth_error *error)
+static int build_at(struct model_end *end, const struct scene_tree *tree, int node)
 {
     const int at = scene_tree_get(tree, node, "at");
     if (!at)
-        return scene_tree_fail(tree, node, error,
+        return scene_tree_fail(tree, node,
                                "the end of a joint on an edge has no at; a number from 0 to 1 is "
                                "expected, or a list of them, one for each edge");
     const size_t n = scene_tree_scalar(tree, at) ? 1 : scene_tree_length(tree, at);
     if (n != end->n)
-        return scene_tree_fail(tree, at, error,
-                               "at has %zu numbers for %u edges; as many are expected", n, end->n);
-    end->at = scene_build_array(n, sizeof *end->at, error);
+        return scene_tree_fail(tree, at, "at has %zu numbers for %u edges; as many are expected", n,
+                               end->n);
+    end->at = cloth_alloc(n, sizeof *end->at, tree->error);
     if (!end->at)
-        return error->code;
-    if (scene_tree_scalar(tree, at))
-        end->at[0] = scene_tree_number(tree, node, "at");
-    else
-        scene_tree_vector(tree, at, n, end->at);
+        return tree->error->code;
+    scene_tree_vector(tree, at, n, end->at);
     for (size_t i = 0; i < n; i++)
         if (!(end->at[i] >= 0 && end->at[i] <= 1))
-            return fail_at(tree, scene_tree_scalar(tree, at) ? at : scene_tree_item(tree, at, i),
-                           end->at[i], error);
+            return scene_tree_fail(tree, scene_tree_part(tree, at, i),
+                                   "a joint ends at %g of an edge; a number from 0, its first end, "
+                                   "to 1, its second, is expected",
+                                   end->at[i]);
     return CLOTH_OK;
 }
 
-/* all: of each cloth, those that have been needed. */
-static int joint_build_edges(struct model_end *end, const struct model *model,
-                             struct mesh_edges *all, const struct scene_tree *tree, int node,
-                             struct cloth_error *error)
+/* edges: of each cloth, those that have been needed. */
+static int joint_build_edges(struct model_end *end, struct mesh_edges *edges,
+                             const struct scene_tree *tree, int node)
 {
     const int at = scene_tree_get(tree, node, "at");
-    int code = joint_take_edge(end, tree, node, error);
-    if (!code && at && !end->edges)
-        return scene_tree_fail(tree, at, error,
+    if (at && !end->edges)
+        return scene_tree_fail(tree, at,
                                "at is given without an edge, which it is a place on; edge or edges "
                                "is expected");
-    if (code || !end->edges)
-        return code;
-    if (!all[end->cloth].edge)
-        code = mesh_edges_find(all + end->cloth, &model->cloths[end->cloth].mesh, error);
-    if (!code)
-        code = check_end_edges(end, model, all + end->cloth, tree, node, error);
-    return code ? code : build_at(end, tree, node, error);
+    if (!end->edges)
+        return CLOTH_OK;
+    struct mesh_edges *all = edges + end->cloth;
+    return (!all->edge &&
+            mesh_edges_find(all, &tree->model->cloths[end->cloth].mesh, tree->error)) ||
+           check_end_edges(end, all, tree, node) || build_at(end, tree, node);
 }
 
 /* ---- Pairs ---- */
 
 /* Finds the cloth, and checks the vertices, of one end. what: "a joint" */
-static int build_end(struct model_end *end, const char *what, const struct model *model,
-                     const struct scene_tree *tree, int node, struct cloth_error *error)
+static int build_end(struct model_end *end, const char *what, const struct scene_tree *tree,
+                     int node)
 {
     const int one = scene_tree_get(tree, node, "vertex");
-    const int list = scene_tree_get(tree, node, "vertices");
-    const int code = scene_build_cloth_of(&end->cloth, what, model, tree, node, error);
-    if (code)
-        return code;
-    if (one) {
-        end->vertices = scene_build_array(1, sizeof *end->vertices, error);
-        if (!end->vertices)
-            return error->code;
-        end->n = 1;
-        end->vertices[0] = scene_tree_integer(tree, node, "vertex");
-    }
-    const struct model_cloth *cloth = model->cloths + end->cloth;
-    for (uint32_t i = 0; i < end->n && end->vertices; i++)
-        if (end->vertices[i] >= cloth->mesh.n_vertices)
-            return scene_build_no_vertex(end->vertices[i], cloth, tree,
-                                         one ? one : scene_tree_item(tree, list, i), error);
-    return CLOTH_OK;
+    return scene_build_cloth_of(&end->cloth, what, tree, node) ||
+           (end->vertices &&
+            scene_build_check_vertices(end->vertices, end->n, tree->model->cloths + end->cloth,
+                                       tree, one ? one : scene_tree_get(tree, node, "vertices")));
 }
 
 /* The keys from and to of a map. edges: of each cloth, as above. */
-static int build_pairs(struct model_pairs *pairs, const char *what, const struct model *model,
-                       struct mesh_edges *edges, const struct scene_tree *tree, int node,
-                       struct cloth_error *error)
+static int build_pairs(struct model_pairs *pairs, const char *what, struct mesh_edges *edges,
+                       const struct scene_tree *tree, int node)
 {
-    const int from = scene_tree_get(tree, node, "from"), to = scene_tree_get(tree, node, "to");
-    int code = build_end(&pairs->end[0], what, model, tree, from, error);
-    if (!code)
-        code = build_end(&pairs->end[1], what, model, tree, to, error);
-    if (!code)
-        code = joint_build_edges(&pairs->end[1], model, edges, tree, to, error);
-    if (code || pairs->end[0].n == pairs->end[1].n)
-        return code;
-    return scene_tree_fail(tree, to, error,
+    struct model_end *end = pairs->end;
+    const int to = scene_tree_get(tree, node, "to");
+    if (build_end(&end[0], what, tree, scene_tree_get(tree, node, "from")) ||
+        build_end(&end[1], what, tree, to) || joint_build_edges(&end[1], edges, tree, to))
+        return tree->error->code;
+    if (end[0].n == end[1].n)
+        return CLOTH_OK;
+    return scene_tree_fail(tree, to,
                            "%s has %u vertices in from and %u%s in to; as many are expected", what,
-                           pairs->end[0].n, pairs->end[1].n, pairs->end[1].edges ? " edges" : "");
+                           end[0].n, end[1].n, end[1].edges ? " edges" : "");
 }
 
-static int check_times(const struct model_joint *joint, const struct scene_tree *tree, int node,
-                       struct cloth_error *error)
+static int check_times(const struct model_joint *joint, const struct scene_tree *tree, int node)
 {
     if (!(joint->end > 0) || joint->end > joint->begin)
         return CLOTH_OK;
-    return scene_tree_fail(tree, scene_tree_get(tree, node, "end"), error,
+    return scene_tree_fail(tree, scene_tree_get(tree, node, "end"),
                            "a joint ends at %g s; a time after its begin, %g s, is expected",
                            joint->end, joint->begin);
 }
 
-static void free_edges(struct mesh_edges *edges, uint32_t n)
+int scene_build_joints(struct scene_tree *tree)
 {
-    for (uint32_t c = 0; c < n; c++)
-        mesh_edges_free(edges + c);
-    free(edges);
-}
-
-int scene_build_joints(struct model *model, struct scene_tree *tree, struct cloth_error *error)
-{
+    struct model *model = tree->model;
     const int list = scene_tree_get(tree, 1, "joints");
-    struct mesh_edges *edges = scene_build_array(model->n_cloths, sizeof *edges, error);
-    int code = edges ? CLOTH_OK : error->code;
+    struct mesh_edges *edges = cloth_alloc(model->n_cloths, sizeof *edges, tree->error);
+    int code = tree->error->code;
     for (size_t i = 0; !code && i < model->n_joints; i++) {
         const int node = scene_tree_item(tree, list, i);
-        code = build_pairs(&model->joints[i].pairs, "a joint", model, edges, tree, node, error);
-        if (!code)
-            code = check_times(model->joints + i, tree, node, error);
+        code = build_pairs(&model->joints[i].pairs, "a joint", edges, tree, node) ||
+               check_times(model->joints + i, tree, node);
     }
-    if (edges)
-        free_edges(edges, model->n_cloths);
+    for (uint32_t c = 0; edges && c < model->n_cloths; c++)
+        mesh_edges_free(edges + c);
+    free(edges);
     return code;
 }
 
-int scene_build_welds(struct model *model, struct scene_tree *tree, struct cloth_error *error)
+int scene_build_welds(struct scene_tree *tree)
 {
     const int list = scene_tree_get(tree, 1, "welds");
     int code = CLOTH_OK;
-    for (size_t i = 0; !code && i < model->n_welds; i++)
-        code = build_pairs(&model->welds[i].pairs, "a weld", model, NULL, tree,
-                           scene_tree_item(tree, list, i), error);
+    for (size_t i = 0; !code && i < tree->model->n_welds; i++)
+        code = build_pairs(&tree->model->welds[i].pairs, "a weld", NULL, tree,
+                           scene_tree_item(tree, list, i));
     return code;
 }
 
-struct model_weld *scene_build_add_weld(struct model *model, double tolerance, uint32_t cloth,
-                                        uint32_t n, struct cloth_error *error)
+/* ---- Pairs that the scene does not list ---- */
+
+int scene_build_room(struct model_pairs *pairs, uint32_t cloth, uint32_t n,
+                     const struct scene_tree *tree, int node)
 {
-    struct model_weld *grown =
-        scene_build_grow(model->welds, model->n_welds, 1, sizeof *grown, error);
-    if (!grown)
-        return NULL;
-    model->welds = grown;
-    struct model_weld *weld = grown + model->n_welds++;
-    weld->tolerance = tolerance;
-    bool made = true;
+    pairs->place = scene_build_place(tree, node);
     for (int k = 0; k < 2; k++) {
-        weld->pairs.end[k].cloth = cloth;
-        weld->pairs.end[k].vertices = scene_build_array(n, sizeof(uint32_t), error);
-        made = made && weld->pairs.end[k].vertices;
+        pairs->end[k].cloth = cloth;
+        pairs->end[k].vertices = cloth_alloc(n, sizeof(uint32_t), tree->error);
     }
-    return made ? weld : NULL;
+    return tree->error->code;
+}
+
+void scene_build_pair(struct model_pairs *pairs, uint32_t a, uint32_t b)
+{
+    struct model_end *end = pairs->end;
+    end[0].vertices[end[0].n++] = a;
+    end[1].vertices[end[1].n++] = b;
 }

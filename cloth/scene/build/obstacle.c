@@ -1,7 +1,6 @@
 /* Obstacles, and the check that they leave the cloths some room. */
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/check.h"
-#include "cloth/scene/yaml/scalar.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -15,11 +14,11 @@ static const double LEAST_EXTENT = 0.01, MAX_EXTENT = 10; /* m: of a figure, or 
 /* Refuses a number, or a list of numbers, beyond the bound of a scene. what: "the radius of a
  * sphere". */
 static int check_bound(const double *value, size_t n, const char *what,
-                       const struct scene_tree *tree, int node, struct cloth_error *error)
+                       const struct scene_tree *tree, int node)
 {
     for (size_t i = 0; i < n; i++)
         if (!(fabs(value[i]) < BOUND))
-            return scene_tree_fail(tree, n > 1 ? scene_tree_item(tree, node, i) : node, error,
+            return scene_tree_fail(tree, scene_tree_part(tree, node, i),
                                    "%s is %g m; a magnitude of less than %g m is expected", what,
                                    value[i], BOUND);
     return CLOTH_OK;
@@ -28,159 +27,115 @@ static int check_bound(const double *value, size_t n, const char *what,
 /* The numbers of a parameter; its range is that of the schema, which also has its default. */
 static int build_parameter(double *value, const struct contact_kind *kind,
                            const struct contact_parameter *parameter, const struct scene_tree *tree,
-                           int node, struct cloth_error *error)
+                           int node)
 {
     char what[80];
     snprintf(what, sizeof what, "the %s of a %s", parameter->name, kind->name);
     if (parameter->role == CONTACT_DIRECTION)
-        return scene_build_direction(value, what, tree, node, error);
+        return scene_build_direction(value, what, tree, node);
     if (parameter->role == CONTACT_ROTATION)
-        return scene_build_rotation(value, what, tree, node, error);
+        return scene_build_rotation(value, what, tree, node);
     const size_t n = contact_role_size(parameter->role);
-    if (parameter->role == CONTACT_LENGTH)
-        scene_scalar_number(scene_tree_scalar(tree, node), value);
-    else
-        scene_tree_vector(tree, node, n, value);
-    return check_bound(value, n, what, tree, node, error);
+    scene_tree_vector(tree, node, n, value);
+    return check_bound(value, n, what, tree, node);
 }
 
-static int check_motion(const struct phys_key *keys, const struct model_motion *motion,
-                        const struct scene_tree *tree, int node, struct cloth_error *error)
+static int check_motion(const struct model_motion *motion, const struct scene_tree *tree, int node)
 {
+    const struct phys_key *keys = tree->model->keys + motion->first;
     const int translate = scene_tree_get(tree, node, "translate");
     int code = check_bound(motion->about, 3, "the about of a motion", tree,
-                           scene_tree_get(tree, node, "about"), error);
+                           scene_tree_get(tree, node, "about"));
     for (uint32_t k = 0; translate && k < motion->n && !code; k++)
         code = check_bound(keys[k].translate, 3, "a translate of a motion", tree,
-                           scene_tree_item(tree, translate, k), error);
+                           scene_tree_item(tree, translate, k));
     return code;
 }
 
-static int build_shape_motion(struct model *model, struct contact_shape *shape,
-                              const struct scene_tree *tree, int node, struct cloth_error *error)
+static int build_shape_motion(struct contact_shape *shape, const struct scene_tree *tree, int node)
 {
     struct model_motion motion;
-    int code = scene_build_motion(model, &motion, tree, node, error);
-    if (!code)
-        code = check_motion(model->keys + motion.first, &motion, tree, node, error);
-    if (code)
-        return code;
+    if (scene_build_motion(&motion, tree, node) || check_motion(&motion, tree, node))
+        return tree->error->code;
     shape->first = motion.first;
     shape->n = motion.n;
     memcpy(shape->about, motion.about, sizeof shape->about);
     return CLOTH_OK;
 }
 
-/* The key that says which mesh a body is made of. */
-static int source_of(const struct scene_tree *tree, int node)
-{
-    const int file = scene_tree_get(tree, node, "obj");
-    return file ? file : scene_tree_get(tree, node, "mannequin");
-}
-
-static const char *source_name(const struct scene_tree *tree, int node)
-{
-    const int file = scene_tree_get(tree, node, "obj");
-    return file ? scene_tree_scalar(tree, file) : "the mannequin";
-}
-
-/* The mesh of a file that a body is made of, where it starts. */
-static int build_body_file(struct model *model, struct mesh *mesh,
-                           const struct mesh_transform *transform, const struct scene_tree *tree,
-                           int node, struct cloth_error *error)
-{
-    struct cloth_error inner = {0};
-    const int file = scene_tree_get(tree, node, "obj");
-    int code = scene_build_obj(model, mesh, mesh_read_surface, tree, file, error, &inner);
-    code = scene_build_blame(code, &inner, "body", tree, file, error);
-    if (code)
-        return code;
-    mesh_apply(mesh, transform);
-    return CLOTH_OK;
-}
-
-static int build_body_mesh(struct model *model, struct mesh *mesh, struct contact_frames *frames,
-                           double **place, struct scene_tree *tree, int node,
-                           struct cloth_error *error)
+/* The mesh of a body, where it starts, and its frames if it has any. */
+static int build_body_mesh(struct mesh *mesh, struct contact_frames *frames, double **place,
+                           struct scene_tree *tree, int node)
 {
     struct mesh_transform transform = {0};
-    *frames = (struct contact_frames){0};
-    int code = scene_fill(&transform, &scene_body, tree, node, error);
-    if (!code)
-        code = scene_build_check_turn(&transform, tree, node, error);
-    if (!code && scene_tree_get(tree, node, "obj"))
-        code = build_body_file(model, mesh, &transform, tree, node, error);
-    else if (!code)
-        code = scene_build_mannequin(model, mesh, &transform, frames, place, tree, node, error);
-    if (!code && scene_tree_get(tree, node, "frames"))
-        code = scene_build_frames(model, frames, place, mesh, &transform, tree, node, error);
-    return code;
+    const int file = scene_tree_get(tree, node, "obj");
+    if (scene_fill(&transform, &scene_body, tree, node) ||
+        scene_build_check_turn(&transform, tree, node) ||
+        (file ? scene_build_obj(mesh, mesh_read_surface, "body", tree, file)
+              : scene_build_mannequin(mesh, &transform, frames, place, tree, node)))
+        return tree->error->code;
+    mesh_apply(mesh, &transform);
+    return scene_tree_get(tree, node, "frames") &&
+           scene_build_frames(frames, place, mesh, &transform, tree, node);
 }
 
 /* Warns of a body of another size than cloth is worn on: files are often in other units. */
-static int warn_of_body(struct model *model, const struct scene_tree *tree, int file, bool turned,
-                        struct cloth_error *error)
+static int warn_of_body(const struct scene_tree *tree, int file, bool turned)
 {
-    const struct contact_body *body = contact_bodies_at(&model->bodies, model->bodies.n);
+    const struct contact_body *body =
+        contact_bodies_at(&tree->model->bodies, tree->model->bodies.n);
     double extent = 0;
-    int code = CLOTH_OK;
     for (int c = 0; c < 3; c++)
         extent = fmax(extent, body->high[c] - body->low[c]);
     if (turned)
-        code = scene_build_warn(model, tree, file, error,
-                                "the mesh of a body is inside out: its triangles are clockwise as "
-                                "seen from outside; they are turned round");
-    if (code || (extent >= LEAST_EXTENT && extent <= MAX_EXTENT))
-        return code;
-    return scene_build_warn(
-        model, tree, file, error,
-        "the body is %g m long in its largest extent, %s than %g m: is its mesh "
-        "in metres? scale changes that (0.01 for centimetres)",
-        extent, extent > MAX_EXTENT ? "more" : "less",
-        extent > MAX_EXTENT ? MAX_EXTENT : LEAST_EXTENT);
+        scene_build_warn(tree, file,
+                         "the mesh of a body is inside out: its triangles are clockwise as seen "
+                         "from outside; they are turned round");
+    if (extent < LEAST_EXTENT || extent > MAX_EXTENT)
+        scene_build_warn(tree, file,
+                         "the body is %g m long in its largest extent, %s than %g m: is its mesh "
+                         "in metres? scale changes that (0.01 for centimetres)",
+                         extent, extent > MAX_EXTENT ? "more" : "less",
+                         extent > MAX_EXTENT ? MAX_EXTENT : LEAST_EXTENT);
+    return tree->error->code;
 }
 
 /* The maps that a body is met by, if it is. */
-static void build_view(const struct model *model, struct contact_shape *shape,
-                       const struct scene_tree *tree, int node)
+static void build_view(struct contact_shape *shape, const struct scene_tree *tree, int node)
 {
     const char *along = scene_tree_text(tree, node, "view");
     const uint32_t axis = (uint32_t)scene_word_value(scene_views, along, NULL);
     if (scene_word_value(scene_meets, scene_tree_text(tree, node, "meet"), NULL))
-        contact_view_make(contact_bodies_at(&model->bodies, shape->body), axis,
-                          scene_tree_integer(tree, node, "resolution"), &shape->view);
+        contact_view_make(contact_bodies_at(&tree->model->bodies, shape->body), axis,
+                          (uint32_t)scene_tree_number(tree, node, "resolution"), &shape->view);
 }
 
-static int obstacle_build_body(struct model *model, struct contact_shape *shape,
-                               struct scene_tree *tree, int node, struct cloth_error *error)
+static int obstacle_build_body(struct contact_shape *shape, struct scene_tree *tree, int node)
 {
-    struct cloth_error inner = {0};
+    struct contact_bodies *bodies = &tree->model->bodies;
     struct mesh mesh = {0};
-    struct contact_frames frames;
+    struct contact_frames frames = {0};
     double *place = NULL;
     char what[220];
-    const int source = source_of(tree, node);
+    const int file = scene_tree_get(tree, node, "obj");
+    const int source = file ? file : scene_tree_get(tree, node, "mannequin");
     bool turned = false;
-    int code = build_body_mesh(model, &mesh, &frames, &place, tree, node, error);
+    int code =
+        build_body_mesh(&mesh, &frames, &place, tree, node) ||
+        contact_bodies_add_frames(bodies, &mesh, frames.n ? &frames : NULL, &turned, &tree->inner);
+    snprintf(what, sizeof what, "body: %.200s",
+             file ? scene_tree_scalar(tree, file) : "the mannequin");
+    code = scene_build_blame(code, what, tree, source) || warn_of_body(tree, source, turned) ||
+           scene_build_warn_crossed(&mesh, place, tree, source);
+    shape->body = bodies->n;
     if (!code)
-        code = contact_bodies_add_frames(&model->bodies, &mesh, frames.n ? &frames : NULL, &turned,
-                                         &inner);
-    snprintf(what, sizeof what, "body: %.200s", source_name(tree, node));
-    code = scene_build_blame(code, &inner, what, tree, source, error);
-    if (!code)
-        code = warn_of_body(model, tree, source, turned, error);
-    if (!code)
-        code = scene_build_warn_crossed(model, &mesh, place, tree, source, error);
-    shape->body = model->bodies.n;
-    if (!code)
-        build_view(model, shape, tree, node);
+        build_view(shape, tree, node);
     mesh_free(&mesh);
     free(place);
     return code;
 }
 
-static int build_shape(struct model *model, struct contact_shape *shape, struct scene_tree *tree,
-                       int obstacle, struct cloth_error *error)
+static int build_shape(struct contact_shape *shape, struct scene_tree *tree, int obstacle)
 {
     int node = 0, code = CLOTH_OK;
     while (!(node = scene_tree_get(tree, obstacle, contact_kinds[shape->kind]->name)))
@@ -188,64 +143,52 @@ static int build_shape(struct model *model, struct contact_shape *shape, struct 
     const struct contact_kind *kind = contact_kinds[shape->kind];
     double *value = shape->value;
     for (const struct contact_parameter *p = kind->parameter; p->name && !code; p++) {
-        code = build_parameter(value, kind, p, tree, scene_tree_get(tree, node, p->name), error);
+        code = build_parameter(value, kind, p, tree, scene_tree_get(tree, node, p->name));
         value += contact_role_size(p->role);
     }
     shape->friction = scene_tree_get(tree, node, "friction")
                           ? scene_tree_number(tree, node, "friction")
-                          : model->contact.friction;
-    if (!code && kind == &contact_body_kind)
-        code = obstacle_build_body(model, shape, tree, node, error);
+                          : tree->model->contact.friction;
     const int motion = scene_tree_get(tree, node, "motion");
-    return code || !motion ? code : build_shape_motion(model, shape, tree, motion, error);
+    return code || (kind == &contact_body_kind && obstacle_build_body(shape, tree, node)) ||
+           (motion && build_shape_motion(shape, tree, motion));
 }
 
 /* So that contact.pairs and contact.ignore can say it. */
-static int name_obstacle(struct model *model, uint32_t i, const struct scene_tree *tree,
-                         int obstacle, struct cloth_error *error)
+static int name_obstacle(uint32_t i, const struct scene_tree *tree, int obstacle)
 {
     const int shape = scene_tree_pair(tree, obstacle, 0).value;
     const int node = scene_tree_get(tree, shape, "name");
-    const char *name = scene_tree_text(tree, shape, "name");
     if (!node)
         return CLOTH_OK;
-    if (scene_build_obstacle_named(model, name) != UINT32_MAX)
-        return scene_tree_fail(tree, node, error,
-                               "a second obstacle is named '%.60s'; names must differ", name);
-    for (uint32_t k = 0; k < model->n_materials; k++)
-        if (!strcmp(model->materials[k].name, name))
-            return scene_tree_fail(tree, node, error,
-                                   "an obstacle is named '%.60s', as a material is; another name "
-                                   "is expected, since contact.pairs has names of both",
-                                   name);
-    model->obstacle_names[i] = scene_build_copy(name, error);
-    return model->obstacle_names[i] ? CLOTH_OK : error->code;
+    if (scene_build_name(tree, SCENE_OBSTACLES, i, shape))
+        return tree->error->code;
+    const char *name = scene_tree_scalar(tree, node);
+    if (scene_build_find(tree->model, SCENE_MATERIALS, name) == UINT32_MAX)
+        return CLOTH_OK;
+    return scene_tree_fail(tree, node,
+                           "an obstacle is named '%.60s', as a material is; another name is "
+                           "expected, since contact.pairs has names of both",
+                           name);
 }
 
-int scene_build_obstacles(struct model *model, struct scene_tree *tree, struct cloth_error *error)
+int scene_build_obstacles(struct scene_tree *tree)
 {
-    int list = scene_tree_get(tree, 1, "obstacles");
-    size_t n = scene_tree_length(tree, list);
-    model->obstacles = scene_build_array(n, sizeof *model->obstacles, error);
-    if (!model->obstacles)
-        return error->code;
-    model->n_obstacles = (uint32_t)n;
-    model->obstacle_names = scene_build_array(n, sizeof *model->obstacle_names, error);
-    int code = model->obstacle_names ? CLOTH_OK : error->code;
-    for (size_t i = 0; !code && i < n; i++) {
+    struct model *model = tree->model;
+    const int list = scene_tree_get(tree, 1, "obstacles");
+    const size_t n = scene_tree_length(tree, list);
+    model->obstacles = cloth_alloc(n, sizeof *model->obstacles, tree->error);
+    model->obstacle_names = cloth_alloc(n, sizeof *model->obstacle_names, tree->error);
+    int code = tree->error->code;
+    model->n_obstacles = code ? 0 : (uint32_t)n;
+    for (uint32_t i = 0; !code && i < n; i++) {
         const int node = scene_tree_item(tree, list, i);
-        code = build_shape(model, model->obstacles + i, tree, node, error);
-        if (!code)
-            code = name_obstacle(model, (uint32_t)i, tree, node, error);
+        code = build_shape(model->obstacles + i, tree, node) || name_obstacle(i, tree, node);
     }
     return code;
 }
 
-/* A point of a plane, and its normal. */
-static const double *obstacle_point_of(const struct contact_shape *plane)
-{
-    return plane->value;
-}
+/* The normal of a plane, behind a point of it. */
 static const double *normal_of(const struct contact_shape *plane)
 {
     return plane->value + contact_role_size(CONTACT_POINT);
@@ -261,7 +204,7 @@ static double height_above(const struct contact_shape *plane, const double x[3])
 {
     double sum = 0;
     for (int i = 0; i < 3; i++)
-        sum += normal_of(plane)[i] * (x[i] - obstacle_point_of(plane)[i]);
+        sum += normal_of(plane)[i] * (x[i] - plane->value[i]);
     return sum;
 }
 
@@ -292,16 +235,16 @@ static bool planes_exclude(const struct contact_shape *a, const struct contact_s
            height_above(a, middle) + height_above(b, middle) + radius * sqrt(square) < -TOUCH;
 }
 
-static int check_pair(const struct model *model, const struct scene_tree *tree, uint32_t a,
-                      uint32_t b, struct cloth_error *error)
+static int check_pair(const struct scene_tree *tree, uint32_t a, uint32_t b)
 {
+    const struct model *model = tree->model;
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct model_cloth *cloth = model->cloths + c;
         double middle[3];
         const double radius = surround_mesh(&cloth->mesh, middle);
         if (planes_exclude(model->obstacles + a, model->obstacles + b, middle, radius))
             return scene_tree_fail(
-                tree, scene_tree_item(tree, scene_tree_get(tree, 1, "obstacles"), b), error,
+                tree, scene_tree_item(tree, scene_tree_get(tree, 1, "obstacles"), b),
                 "obstacles[%u] and obstacles[%u] face each other and overlap: around cloth '%.60s' "
                 "no point is on the free sides of both; turn a normal round, or move a plane",
                 b, a, cloth->name);
@@ -309,13 +252,13 @@ static int check_pair(const struct model *model, const struct scene_tree *tree, 
     return CLOTH_OK;
 }
 
-int scene_build_check_obstacles(struct model *model, struct scene_tree *tree,
-                                struct cloth_error *error)
+int scene_build_check_obstacles(struct scene_tree *tree)
 {
+    const struct model *model = tree->model;
     int code = CLOTH_OK;
     for (uint32_t b = 0; b < model->n_obstacles; b++)
         for (uint32_t a = 0; a < b && !code; a++)
             if (is_still_plane(model->obstacles + a) && is_still_plane(model->obstacles + b))
-                code = check_pair(model, tree, a, b, error);
+                code = check_pair(tree, a, b);
     return code;
 }

@@ -1,7 +1,6 @@
 /* A cloth's mesh from a sewing pattern, or an own garment: its panels, meshed, where the pattern
- * places them. Faults of a pattern are in `inner`, without the place in the scene. */
+ * places them. Faults of a pattern are in tree->inner, without the place in the scene. */
 #include "cloth/scene/build/build.h"
-#include "cloth/scene/build/made.h"
 
 #include "cloth/garment/garment.h"
 #include "cloth/garment/own/own.h"
@@ -16,7 +15,6 @@
 static int build_pattern_take_mesh(struct mesh *mesh, const struct garment *garment,
                                    const struct garment_pattern *pattern, struct cloth_error *error)
 {
-    const size_t n = garment->n_vertices;
     int code = mesh_inline(mesh, garment->n_vertices, *garment->position, 0, NULL,
                            garment->n_triangles, *garment->triangle, error);
     for (uint32_t i = 0; i < garment->n_pieces && !code; i++)
@@ -24,11 +22,10 @@ static int build_pattern_take_mesh(struct mesh *mesh, const struct garment *garm
                               garment->piece[i].n_triangles, error);
     if (code)
         return code;
-    mesh->uv = malloc(n * sizeof *garment->uv);
-    if (!mesh->uv)
-        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for a mesh");
-    memcpy(mesh->uv, garment->uv, n * sizeof *garment->uv);
-    return CLOTH_OK;
+    mesh->uv = cloth_alloc(garment->n_vertices, sizeof *garment->uv, error);
+    if (mesh->uv)
+        memcpy(mesh->uv, garment->uv, garment->n_vertices * sizeof *garment->uv);
+    return error->code;
 }
 
 static int take_seam(struct model_seam *to, const struct garment_seam *from,
@@ -43,7 +40,7 @@ static int take_seam(struct model_seam *to, const struct garment_seam *from,
         to->side[k].edge = stitch->side[k].edge;
         to->side[k].panel = scene_build_copy(pattern->panel[stitch->side[k].panel].name, error);
     }
-    to->pair = scene_build_array(from->n_pairs, sizeof *to->pair, error);
+    to->pair = cloth_alloc(from->n_pairs, sizeof *to->pair, error);
     if (error->code)
         return error->code;
     memcpy(to->pair, from->pair, from->n_pairs * sizeof *to->pair);
@@ -54,7 +51,7 @@ static int take_seams(struct model_seams *to, const struct garment *garment,
                       const struct garment_pattern *pattern, struct cloth_error *error)
 {
     int code = CLOTH_OK;
-    to->seam = scene_build_array(garment->n_seams, sizeof *to->seam, error);
+    to->seam = cloth_alloc(garment->n_seams, sizeof *to->seam, error);
     if (!to->seam)
         return error->code;
     for (; to->n < garment->n_seams && !code; to->n++)
@@ -65,36 +62,27 @@ static int take_seams(struct model_seams *to, const struct garment *garment,
 
 /* Edge or vertices, one of the two. */
 static int build_pattern_check_fineness(const struct scene_pattern *asked,
-                                        const struct scene_tree *tree, int node,
-                                        struct cloth_error *error)
+                                        const struct scene_tree *tree, int node)
 {
     const int edge = scene_tree_get(tree, node, "edge");
     const int vertices = scene_tree_get(tree, node, "vertices");
     if (edge && vertices)
-        return scene_tree_fail(tree, vertices, error,
+        return scene_tree_fail(tree, vertices,
                                "mesh.pattern has both edge and vertices; one of them is expected");
     if (!edge && !vertices)
-        return scene_tree_fail(tree, node, error,
+        return scene_tree_fail(tree, node,
                                "mesh.pattern has neither edge nor vertices; one of them is "
                                "expected, which says how fine the mesh is");
-    return scene_build_check_memory(asked->vertices, "the pattern is to have", tree, vertices,
-                                    error);
-}
-
-static int read_pattern_file(struct garment_pattern *pattern, const char *path,
-                             struct cloth_error *inner)
-{
-    const int code = scene_read_pattern(pattern, path, inner);
-    return code == CLOTH_E_IO ? CLOTH_E_INPUT : code; /* a scene that names no readable file */
+    return scene_build_check_memory(asked->vertices, "the pattern is to have", tree, vertices);
 }
 
 /* A file has its own measures. */
-static int refuse_measures(const struct scene_tree *tree, int node, struct cloth_error *error)
+static int refuse_measures(const struct scene_tree *tree, int node)
 {
     static const char *const key[] = {"size", "measures"};
     for (int i = 0; i < 2; i++)
         if (scene_tree_get(tree, node, key[i]))
-            return scene_tree_fail(tree, scene_tree_get(tree, node, key[i]), error,
+            return scene_tree_fail(tree, scene_tree_get(tree, node, key[i]),
                                    "mesh.pattern.%s is of an own garment, which this pattern is "
                                    "not: it is a file",
                                    key[i]);
@@ -102,13 +90,12 @@ static int refuse_measures(const struct scene_tree *tree, int node, struct cloth
 }
 
 static int take_measures(const struct garment_own *own, double *value,
-                         const struct scene_pattern *asked, const struct scene_tree *tree, int node,
-                         struct cloth_error *error)
+                         const struct scene_pattern *asked, const struct scene_tree *tree, int node)
 {
     const int measures = scene_tree_get(tree, node, "measures");
     const int size = garment_size_find(asked->size ? asked->size : "M");
     if (size < 0)
-        return scene_tree_fail(tree, scene_tree_get(tree, node, "size"), error,
+        return scene_tree_fail(tree, scene_tree_get(tree, node, "size"),
                                "mesh.pattern.size is %s; one of %s is expected", asked->size,
                                garment_size_words);
     garment_own_size(own, size, value);
@@ -116,7 +103,7 @@ static int take_measures(const struct garment_own *own, double *value,
         const char *name = asked->measures[i].name;
         const int k = garment_own_measure(own, name);
         if (k < 0)
-            return scene_tree_fail(tree, scene_tree_get(tree, measures, name), error,
+            return scene_tree_fail(tree, scene_tree_get(tree, measures, name),
                                    "mesh.pattern.measures: there is no measure %s of the garment "
                                    "%s; 'duite-garment --measures %s' lists them",
                                    name, own->name, own->name);
@@ -126,28 +113,16 @@ static int take_measures(const struct garment_own *own, double *value,
 }
 
 static int make_own(struct garment_pattern *pattern, const struct scene_pattern *asked,
-                    const struct scene_tree *tree, int node, struct cloth_error *error,
-                    struct cloth_error *inner)
+                    struct scene_tree *tree, int node)
 {
     const struct garment_own *own = garment_own_find(asked->garment);
     double value[GARMENT_MEASURES];
     if (!own)
-        return scene_tree_fail(tree, scene_tree_get(tree, node, "garment"), error,
+        return scene_tree_fail(tree, scene_tree_get(tree, node, "garment"),
                                "mesh.pattern.garment is %s; one of %s is expected", asked->garment,
                                garment_own_words);
-    const int code = take_measures(own, value, asked, tree, node, error);
-    return code ? code : garment_own_make(pattern, own, value, inner);
-}
-
-/* path: NULL for an own garment. */
-static int build_pattern_take(struct garment_pattern *pattern, const struct scene_pattern *asked,
-                              const char *path, const struct scene_tree *tree, int node,
-                              struct cloth_error *error, struct cloth_error *inner)
-{
-    if (!path)
-        return make_own(pattern, asked, tree, node, error, inner);
-    const int code = refuse_measures(tree, node, error);
-    return code ? code : read_pattern_file(pattern, path, inner);
+    return take_measures(own, value, asked, tree, node) ||
+           garment_own_make(pattern, own, value, &tree->inner);
 }
 
 static void free_asked(struct scene_pattern *asked)
@@ -159,49 +134,41 @@ static void free_asked(struct scene_pattern *asked)
     free(asked->size);
 }
 
+/* path: NULL for an own garment. */
 static int make_garment(struct scene_made_part *to, const char *path, struct scene_tree *tree,
-                        int node, struct cloth_error *error, struct cloth_error *inner)
+                        int node)
 {
     struct scene_pattern asked = {0};
-    int code = scene_fill(&asked, &scene_pattern, tree, node, error);
-    code = code ? code : build_pattern_check_fineness(&asked, tree, node, error);
-    code = code ? code : build_pattern_take(&to->pattern, &asked, path, tree, node, error, inner);
+    int code =
+        scene_fill(&asked, &scene_pattern, tree, node) ||
+        build_pattern_check_fineness(&asked, tree, node) ||
+        (path ? refuse_measures(tree, node) || scene_read_pattern(&to->pattern, path, &tree->inner)
+              : make_own(&to->pattern, &asked, tree, node));
     const struct garment_fineness fineness = {asked.edge, asked.vertices};
     if (!code && asked.edge > 0)
         code = scene_build_check_memory(
             (uint64_t)fmin(garment_vertices(&to->pattern, asked.edge), 1e18),
-            "the pattern is to have", tree, scene_tree_get(tree, node, "edge"), error);
-    code = code ? code : garment_make(&to->garment, &to->pattern, &fineness, inner);
+            "the pattern is to have", tree, scene_tree_get(tree, node, "edge"));
+    code = code || garment_make(&to->garment, &to->pattern, &fineness, &tree->inner);
     to->is_made = !code;
     free_asked(&asked);
     return code;
 }
 
-static int warn_of_file(struct model *model, const struct garment_pattern *pattern,
-                        const char *path, const struct scene_tree *tree, int file,
-                        struct cloth_error *error)
-{
-    char text[200];
-    return garment_pattern_unusual(pattern, text, sizeof text)
-               ? scene_build_warn(model, tree, file, error, "mesh: %.200s: %s", path, text)
-               : CLOTH_OK;
-}
-
-int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
-                        int node, struct cloth_error *error, struct cloth_error *inner)
+int scene_build_pattern(struct model_cloth *cloth, struct scene_tree *tree, int node)
 {
     const int file = scene_tree_get(tree, node, "file");
-    char *path = file ? scene_build_path(model, tree, file, error) : NULL;
-    char *key = scene_build_text(tree, node, "mesh.pattern", error);
-    struct scene_made_part *of =
-        key && !error->code ? scene_made_part(tree->made, key, strlen(key), error) : NULL;
-    int code = of ? CLOTH_OK : error->code;
-    if (!code && !of->is_made)
-        code = make_garment(of, path, tree, node, error, inner);
-    if (!code && path)
-        code = warn_of_file(model, &of->pattern, path, tree, file, error);
-    code = code ? code : build_pattern_take_mesh(&cloth->mesh, &of->garment, &of->pattern, inner);
-    code = code ? code : take_seams(&cloth->seams, &of->garment, &of->pattern, error);
+    char *path = file ? scene_build_path(tree, file) : NULL;
+    char *key = scene_build_text(tree, node, "mesh.pattern");
+    char text[200];
+    struct scene_made_part *of = NULL;
+    const int code =
+        tree->error->code || !(of = scene_made_part(tree->made, key, strlen(key), tree->error)) ||
+        (!of->is_made && make_garment(of, path, tree, node)) ||
+        (path && garment_pattern_unusual(&of->pattern, text, sizeof text) &&
+         scene_build_warn(tree, file, "mesh: %.200s: %s", path, text)) ||
+        build_pattern_take_mesh(&cloth->mesh, &of->garment, &of->pattern, &tree->inner) ||
+        take_seams(&cloth->seams, &of->garment, &of->pattern, tree->error);
     free(key);
     free(path);
     return code;

@@ -9,44 +9,34 @@
 /* m: vertices so near are meant to be at one place; the advice gives this number, too. */
 static const double ONE_PLACE = 1e-5;
 
-static int weld_cloth(struct model *model, uint32_t c, const struct scene_tree *tree, int node,
-                      struct cloth_error *error)
+int scene_build_mesh_weld(struct scene_tree *tree, uint32_t c, int node)
 {
+    struct model *model = tree->model;
     const struct model_cloth *cloth = model->cloths + c;
+    const int at = scene_tree_at(tree, node, "mesh.weld");
     const uint32_t n = cloth->mesh.n_vertices;
-    uint32_t *same = scene_build_array(n, sizeof *same, error), joined = 0;
-    int code = same ? mesh_coincide(&cloth->mesh, cloth->weld, same, error) : error->code;
+    uint32_t *same = at ? cloth_alloc(n, sizeof *same, tree->error) : NULL, joined = 0;
+    if (!same)
+        return tree->error->code;
+    int code = mesh_coincide(&cloth->mesh, cloth->weld, same, tree->error);
     for (uint32_t v = 0; !code && v < n; v++)
         joined += same[v] != v;
     if (!code && !joined)
-        code = scene_build_warn(model, tree, node, error,
+        code = scene_build_warn(tree, at,
                                 "weld joins no vertices: no two of cloth '%.60s' are within %g m",
                                 cloth->name, cloth->weld);
     struct model_weld *weld =
-        !code && joined ? scene_build_add_weld(model, cloth->weld, c, joined, error) : NULL;
-    if (weld)
-        weld->pairs.place = scene_build_place(tree, node, error);
-    for (uint32_t v = 0; weld && v < n; v++)
-        if (same[v] != v) {
-            uint32_t *at = &weld->pairs.end[0].n;
-            weld->pairs.end[0].vertices[*at] = same[v];
-            weld->pairs.end[1].vertices[(*at)++] = v;
-            weld->pairs.end[1].n = *at;
-        }
-    free(same);
-    return code ? code : error->code;
-}
-
-int scene_build_mesh_welds(struct model *model, struct scene_tree *tree, struct cloth_error *error)
-{
-    const int list = scene_tree_get(tree, 1, "cloths");
-    int code = CLOTH_OK;
-    for (uint32_t c = 0; c < model->n_cloths && !code; c++) {
-        const int mesh = scene_tree_get(tree, scene_tree_item(tree, list, c), "mesh");
-        if (model->cloths[c].weld > 0)
-            code = weld_cloth(model, c, tree, scene_tree_get(tree, mesh, "weld"), error);
+        joined ? scene_build_add(&model->welds, &model->n_welds, 1, sizeof *weld, tree->error)
+               : NULL;
+    if (weld) {
+        weld->tolerance = cloth->weld;
+        code = scene_build_room(&weld->pairs, c, joined, tree, at);
     }
-    return code;
+    for (uint32_t v = 0; weld && !code && v < n; v++)
+        if (same[v] != v)
+            scene_build_pair(&weld->pairs, same[v], v);
+    free(same);
+    return tree->error->code;
 }
 
 /* ---- Unjoined pieces ---- */
@@ -97,50 +87,46 @@ static uint32_t count_pieces(const struct mesh *mesh, uint32_t *set, unsigned ch
     return pieces;
 }
 
-/* set, same: a number a vertex; mark: a byte. */
-static int look_at_cloth(struct model *model, uint32_t c, uint32_t *set, uint32_t *same,
-                         unsigned char *mark, const struct scene_tree *tree, int node,
-                         struct cloth_error *error)
+/* Counts the vertices at borders that lie on another's place and are not joined with it. set, same:
+ * a number a vertex; mark: a byte. */
+static int count_unjoined(struct model_cloth *cloth, uint32_t *set, uint32_t *same,
+                          unsigned char *mark, struct cloth_error *error)
 {
-    struct model_cloth *cloth = model->cloths + c;
     const struct mesh *mesh = &cloth->mesh;
     uint32_t near = 0;
-    join_all(set, model, c);
-    int code = mesh_coincide(mesh, ONE_PLACE, same, error);
-    for (uint32_t v = 0; v < mesh->n_vertices && !code; v++)
+    if (mesh_coincide(mesh, ONE_PLACE, same, error))
+        return error->code;
+    for (uint32_t v = 0; v < mesh->n_vertices; v++)
         near += same[v] != v;
-    if (near)
-        code = mark_borders(mesh, mark, error);
-    for (uint32_t v = 0; v < mesh->n_vertices && near && !code; v++)
+    if (near && mark_borders(mesh, mark, error))
+        return error->code;
+    for (uint32_t v = 0; v < mesh->n_vertices && near; v++)
         cloth->n_unjoined += same[v] != v && mark[v] && mark[same[v]] &&
                              cloth_sets_root(set, v) != cloth_sets_root(set, same[v]);
-    if (code || !cloth->n_unjoined)
-        return code;
-    const uint32_t pieces = count_pieces(mesh, set, mark);
-    return scene_build_warn(model, tree, node, error,
-                            "the mesh of cloth '%.60s' has %u piece%s; %u vertices at borders lie "
-                            "on another's place, and nothing joins them: mesh: {weld: 1e-5} does",
-                            cloth->name, pieces, pieces == 1 ? "" : "s", cloth->n_unjoined);
+    return CLOTH_OK;
 }
 
-int scene_build_pieces(struct model *model, struct scene_tree *tree, struct cloth_error *error)
+int scene_build_pieces(struct scene_tree *tree, uint32_t c, int node)
 {
-    const int list = scene_tree_get(tree, 1, "cloths");
-    int code = CLOTH_OK;
-    for (uint32_t c = 0; c < model->n_cloths && !code; c++) {
-        const struct mesh *mesh = &model->cloths[c].mesh;
-        const int node = scene_tree_get(tree, scene_tree_item(tree, list, c), "mesh");
-        const bool given =
-            scene_tree_get(tree, node, "file") || scene_tree_get(tree, node, "inline");
-        if (!given)
-            continue;
-        uint32_t *set = scene_build_array(mesh->n_vertices, 2 * sizeof *set, error);
-        unsigned char *mark = scene_build_array(mesh->n_vertices, 1, error);
-        code = set && mark
-                   ? look_at_cloth(model, c, set, set + mesh->n_vertices, mark, tree, node, error)
-                   : error->code;
-        free(set);
-        free(mark);
+    struct model_cloth *cloth = tree->model->cloths + c;
+    const struct mesh *mesh = &cloth->mesh;
+    const int at = scene_tree_get(tree, node, "mesh");
+    if (!scene_tree_get(tree, at, "file") && !scene_tree_get(tree, at, "inline"))
+        return CLOTH_OK;
+    uint32_t *set = cloth_alloc(mesh->n_vertices, 2 * sizeof *set, tree->error);
+    unsigned char *mark = cloth_alloc(mesh->n_vertices, 1, tree->error);
+    if (set && mark) {
+        join_all(set, tree->model, c);
+        count_unjoined(cloth, set, set + mesh->n_vertices, mark, tree->error);
     }
-    return code;
+    if (!tree->error->code && cloth->n_unjoined) {
+        const uint32_t pieces = count_pieces(mesh, set, mark);
+        scene_build_warn(tree, at,
+                         "the mesh of cloth '%.60s' has %u piece%s; %u vertices at borders lie on "
+                         "another's place, and nothing joins them: mesh: {weld: 1e-5} does",
+                         cloth->name, pieces, pieces == 1 ? "" : "s", cloth->n_unjoined);
+    }
+    free(set);
+    free(mark);
+    return tree->error->code;
 }

@@ -24,13 +24,11 @@ static bool has_edge(const struct model_cloth *cloth, uint64_t bit)
     return false;
 }
 
-static int mark_region(struct model_cloth *cloth, struct scene_tree *tree, int node, uint64_t bit,
-                       struct cloth_error *error)
+static int mark_region(struct model_cloth *cloth, struct scene_tree *tree, int node, uint64_t bit)
 {
     struct model_pick pick = {0};
-    int code = scene_fill(&pick, &scene_region, tree, node, error);
-    if (!code)
-        code = scene_build_pick(&pick, tree, node, cloth, error);
+    int code =
+        scene_fill(&pick, &scene_region, tree, node) || scene_build_pick(&pick, tree, node, cloth);
     for (uint32_t i = 0; i < pick.n_vertices && !code; i++)
         cloth->mask[pick.vertices[i]] |= bit;
     for (uint32_t v = 0; v < cloth->mesh.n_vertices && !code; v++)
@@ -40,7 +38,7 @@ static int mark_region(struct model_cloth *cloth, struct scene_tree *tree, int n
     free(pick.vertices);
     if (code || has_edge(cloth, bit))
         return code;
-    return scene_tree_fail(tree, node, error,
+    return scene_tree_fail(tree, node,
                            "no edge of cloth '%.60s' lies whole in this region; both ends of one, "
                            "at least, are expected",
                            cloth->name);
@@ -48,8 +46,7 @@ static int mark_region(struct model_cloth *cloth, struct scene_tree *tree, int n
 
 /* Keys that hold for a whole cloth must be the same in all its parts. what: "region" */
 static int check_alike(const struct model_material *base, const struct model_material *material,
-                       const char *what, const struct scene_tree *tree, int node,
-                       struct cloth_error *error)
+                       const char *what, const struct scene_tree *tree, int node)
 {
     const bool bent = base->bending != MODEL_NO_BENDING && material->bending != MODEL_NO_BENDING;
     const char *other = NULL;
@@ -61,24 +58,23 @@ static int check_alike(const struct model_material *base, const struct model_mat
         other = "diagonals";
     if (!other)
         return CLOTH_OK;
-    return scene_tree_fail(tree, scene_tree_get(tree, node, "material"), error,
+    return scene_tree_fail(tree, scene_tree_get(tree, node, "material"),
                            "material '%.60s' of a %s has another %s than '%.60s', that of the "
                            "cloth; the same is expected",
                            material->name, what, other, base->name);
 }
 
 /* The material of the next part, whose number it then has. */
-static int add_material(struct model_cloth *cloth, const struct model *model, const char *what,
-                        const struct scene_tree *tree, int node, struct cloth_error *error)
+static int add_material(struct model_cloth *cloth, const char *what, const struct scene_tree *tree,
+                        int node)
 {
+    const struct model_material *all = tree->model->materials;
     uint32_t *material = cloth->region + cloth->n_regions;
-    int code = scene_build_material(material, cloth, model, tree, node, error);
-    for (uint32_t k = 0; k < cloth->n_regions && !code; k++) /* all that bend do so alike */
-        code = check_alike(model->materials + cloth->region[k], model->materials + *material, what,
-                           tree, node, error);
-    if (!code)
-        code = check_alike(model->materials + cloth->material, model->materials + *material, what,
-                           tree, node, error);
+    int code = scene_build_material(material, cloth, tree, node);
+    for (uint32_t k = 0; k <= cloth->n_regions && !code; k++) { /* all that bend do so alike */
+        const uint32_t base = k < cloth->n_regions ? cloth->region[k] : cloth->material;
+        code = check_alike(all + base, all + *material, what, tree, node);
+    }
     cloth->n_regions += code == CLOTH_OK;
     return code;
 }
@@ -94,13 +90,12 @@ static void mark_group(const struct model_cloth *cloth, uint32_t group, unsigned
         mask[v] |= room[v] ? bit : 0;
 }
 
-static int build_grain(struct model_cloth *cloth, const struct scene_tree *tree, int node,
-                       struct cloth_error *error)
+static int build_grain(struct model_cloth *cloth, const struct scene_tree *tree, int node)
 {
     const int grain = scene_tree_get(tree, node, "grain");
     double uv[2];
     if (!mesh_uv(&cloth->mesh, 0, uv))
-        return scene_tree_fail(tree, grain, error,
+        return scene_tree_fail(tree, grain,
                                "the grain of a panel is measured from u, but the mesh of cloth "
                                "'%.60s' has no uv; an OBJ file with vt, or a pattern, is expected",
                                cloth->name);
@@ -110,56 +105,52 @@ static int build_grain(struct model_cloth *cloth, const struct scene_tree *tree,
 }
 
 /* room: a byte a vertex. */
-static int build_panel(struct model_cloth *cloth, const struct model *model, unsigned char *room,
-                       const struct scene_tree *tree, int node, struct cloth_error *error)
+static int build_panel(struct model_cloth *cloth, unsigned char *room,
+                       const struct scene_tree *tree, int node)
 {
     const bool has_material = scene_tree_get(tree, node, "material");
     const bool has_grain = scene_tree_get(tree, node, "grain");
     uint32_t group;
-    int code = scene_build_group(&group, cloth, tree, scene_tree_get(tree, node, "group"), error);
-    if (!code && !has_material && !has_grain)
-        code = scene_tree_fail(tree, node, error,
+    if (scene_build_group(&group, cloth, tree, scene_tree_get(tree, node, "group")))
+        return tree->error->code;
+    if (!has_material && !has_grain)
+        return scene_tree_fail(tree, node,
                                "a panel has neither material nor grain; one of them, at least, is "
                                "expected");
-    if (!code && has_material)
-        code = add_material(cloth, model, "panel", tree, node, error);
-    if (!code && has_grain)
-        code = build_grain(cloth, tree, node, error);
-    if (!code && has_material)
+    if ((has_material && add_material(cloth, "panel", tree, node)) ||
+        (has_grain && build_grain(cloth, tree, node)))
+        return tree->error->code;
+    if (has_material)
         mark_group(cloth, group, room, cloth->mask, UINT64_C(1) << (cloth->n_regions - 1));
-    if (!code && has_grain)
+    if (has_grain)
         mark_group(cloth, group, room, cloth->grain_mask, UINT64_C(1) << (cloth->n_grains - 1));
-    return code;
+    return CLOTH_OK;
 }
 
 /* Checks that no group stands twice. */
-static int region_check_once(const struct scene_tree *tree, int list, size_t i,
-                             struct cloth_error *error)
+static int region_check_once(const struct scene_tree *tree, int list, size_t i)
 {
-    const int node = scene_tree_item(tree, list, i);
-    const char *name = scene_tree_text(tree, node, "group");
+    const int group = scene_tree_get(tree, scene_tree_item(tree, list, i), "group");
+    const char *name = scene_tree_scalar(tree, group);
     for (size_t k = 0; k < i; k++)
         if (!strcmp(scene_tree_text(tree, scene_tree_item(tree, list, k), "group"), name))
-            return scene_tree_fail(tree, scene_tree_get(tree, node, "group"), error,
+            return scene_tree_fail(tree, group,
                                    "group '%.60s' stands twice in panels; once is expected", name);
     return CLOTH_OK;
 }
 
-static int build_panels(struct model_cloth *cloth, const struct model *model,
-                        const struct scene_tree *tree, int list, struct cloth_error *error)
+static int build_panels(struct model_cloth *cloth, const struct scene_tree *tree, int list)
 {
     const size_t n = scene_tree_length(tree, list);
     if (!n)
         return CLOTH_OK;
-    cloth->grain_mask = scene_build_array(cloth->mesh.n_vertices, sizeof(uint64_t), error);
-    cloth->grain = scene_build_array(n, sizeof *cloth->grain, error);
-    unsigned char *room = scene_build_array(cloth->mesh.n_vertices, 1, error);
-    int code = cloth->grain_mask && cloth->grain && room ? CLOTH_OK : error->code;
-    for (size_t i = 0; i < n && !code; i++) {
-        code = region_check_once(tree, list, i, error);
-        if (!code)
-            code = build_panel(cloth, model, room, tree, scene_tree_item(tree, list, i), error);
-    }
+    cloth->grain_mask = cloth_alloc(cloth->mesh.n_vertices, sizeof(uint64_t), tree->error);
+    cloth->grain = cloth_alloc(n, sizeof *cloth->grain, tree->error);
+    unsigned char *room = cloth_alloc(cloth->mesh.n_vertices, 1, tree->error);
+    int code = tree->error->code;
+    for (size_t i = 0; i < n && !code; i++)
+        code = region_check_once(tree, list, i) ||
+               build_panel(cloth, room, tree, scene_tree_item(tree, list, i));
     free(room);
     return code;
 }
@@ -182,30 +173,28 @@ static uint32_t count_taken(const struct model_cloth *cloth, uint32_t group, con
     return taken;
 }
 
-static int warn_of_taken(struct model *model, const struct model_cloth *cloth,
-                         const struct scene_tree *tree, int list, struct cloth_error *error)
+static void warn_of_taken(const struct model_cloth *cloth, const struct scene_tree *tree, int list)
 {
-    unsigned char *room = scene_build_array(cloth->mesh.n_triangles, 1, error);
+    unsigned char *room = cloth_alloc(cloth->mesh.n_triangles, 1, tree->error);
     uint32_t material = 0, grain = 0;
-    int code = room ? CLOTH_OK : error->code;
-    for (size_t i = 0; i < scene_tree_length(tree, list) && !code; i++) {
+    for (size_t i = 0; room && i < scene_tree_length(tree, list); i++) {
         const int node = scene_tree_item(tree, list, i);
+        const bool has_grain = scene_tree_get(tree, node, "grain");
         const char *name = scene_tree_text(tree, node, "group");
         const uint32_t group = mesh_group_of(&cloth->mesh, name);
         uint32_t taken = 0;
         if (scene_tree_get(tree, node, "material"))
             taken = count_taken(cloth, group, cloth->mask, material++, room);
-        if (scene_tree_get(tree, node, "grain") && !taken)
+        if (has_grain && !taken)
             taken = count_taken(cloth, group, cloth->grain_mask, grain, room);
-        grain += scene_tree_get(tree, node, "grain") != 0;
+        grain += has_grain;
         if (taken)
-            code = scene_build_warn(model, tree, node, error,
-                                    "triangles of cloth '%.60s' that are not in group '%.60s', but "
-                                    "have all corners in it, count as its own: %u",
-                                    cloth->name, name, taken);
+            scene_build_warn(tree, node,
+                             "triangles of cloth '%.60s' that are not in group '%.60s', but have "
+                             "all corners in it, count as its own: %u",
+                             cloth->name, name, taken);
     }
     free(room);
-    return code;
 }
 
 /* True if warp and weft differ in any value of the cloth. */
@@ -221,22 +210,9 @@ static bool has_directions(const struct model_cloth *cloth, const struct model *
     return has;
 }
 
-static int warn_of_panels(struct model *model, const struct model_cloth *cloth,
-                          const struct scene_tree *tree, int list, struct cloth_error *error)
-{
-    const int code = warn_of_taken(model, cloth, tree, list, error);
-    if (code || !cloth->n_grains || has_directions(cloth, model))
-        return code;
-    return scene_build_warn(model, tree, list, error,
-                            "grain means nothing in cloth '%.60s': it turns model: triangles, and "
-                            "stretch or bending of two numbers",
-                            cloth->name);
-}
-
 /* ---- All ---- */
 
-int scene_build_parts(struct model_cloth *cloth, struct model *model, struct scene_tree *tree,
-                      int node, struct cloth_error *error)
+int scene_build_parts(struct model_cloth *cloth, struct scene_tree *tree, int node)
 {
     const int regions = scene_tree_get(tree, node, "regions");
     const int panels = scene_tree_get(tree, node, "panels");
@@ -245,25 +221,27 @@ int scene_build_parts(struct model_cloth *cloth, struct model *model, struct sce
     if (!n)
         return CLOTH_OK;
     if (n > MODEL_MAX_REGIONS)
-        return scene_tree_fail(tree, n_regions ? regions : panels, error,
+        return scene_tree_fail(tree, n_regions ? regions : panels,
                                "cloth '%.60s' has %zu panels and regions; at most %d are possible",
                                cloth->name, n, MODEL_MAX_REGIONS);
-    cloth->mask = scene_build_array(cloth->mesh.n_vertices, sizeof *cloth->mask, error);
-    cloth->region = scene_build_array(n, sizeof *cloth->region, error);
-    int code = cloth->mask && cloth->region ? CLOTH_OK : error->code;
-    if (!code)
-        code = build_panels(cloth, model, tree, panels, error);
+    cloth->mask = cloth_alloc(cloth->mesh.n_vertices, sizeof *cloth->mask, tree->error);
+    cloth->region = cloth_alloc(n, sizeof *cloth->region, tree->error);
+    int code = tree->error->code || build_panels(cloth, tree, panels);
     for (size_t i = 0; i < n_regions && !code; i++) {
         const int region = scene_tree_item(tree, regions, i);
-        code = add_material(cloth, model, "region", tree, region, error);
-        if (!code)
-            code = mark_region(cloth, tree, region, UINT64_C(1) << (cloth->n_regions - 1), error);
+        code = add_material(cloth, "region", tree, region) ||
+               mark_region(cloth, tree, region, UINT64_C(1) << (cloth->n_regions - 1));
     }
     if (!code)
-        code = warn_of_panels(model, cloth, tree, panels, error);
+        warn_of_taken(cloth, tree, panels);
+    if (!code && cloth->n_grains && !has_directions(cloth, tree->model))
+        scene_build_warn(tree, panels,
+                         "grain means nothing in cloth '%.60s': it turns model: triangles, and "
+                         "stretch or bending of two numbers",
+                         cloth->name);
     if (!cloth->n_regions) { /* panels with a grain alone */
         free(cloth->mask);
         cloth->mask = NULL;
     }
-    return code;
+    return tree->error->code;
 }

@@ -38,7 +38,7 @@ static int find_firsts(const struct model_seams *seams, enum model_seams_state s
                        const uint32_t *root, size_t n, unsigned char *joins,
                        struct cloth_error *error)
 {
-    struct pair *all = scene_build_array(n, sizeof *all, error);
+    struct pair *all = cloth_alloc(n, sizeof *all, error);
     size_t k = 0, of_state = 0;
     if (!all)
         return error->code;
@@ -59,53 +59,40 @@ static int find_firsts(const struct model_seams *seams, enum model_seams_state s
 
 /* ---- Joints and welds ---- */
 
-/* The pairs of a seam that join. joins: of each of its pairs. */
-static int fill_pairs(struct model_pairs *to, uint32_t cloth, const struct model_seam *seam,
-                      const unsigned char *joins, const struct scene_tree *tree, int node,
-                      struct cloth_error *error)
+/* The pairs of a new joint or weld of the model; NULL: no memory. */
+static struct model_pairs *add_sewn(struct model *model, const struct model_sewing *sewing,
+                                    struct cloth_error *error)
 {
-    to->place = scene_build_place(tree, node, error);
-    for (int k = 0; k < 2; k++) {
-        struct model_end *end = to->end + k;
-        end->cloth = cloth;
-        end->vertices = scene_build_array(seam->n_pairs, sizeof *end->vertices, error);
-        for (uint32_t i = 0; i < seam->n_pairs && end->vertices; i++)
-            if (joins[i])
-                end->vertices[end->n++] = seam->pair[i][k];
+    if (sewing->state == MODEL_SEAMS_WELDED) {
+        struct model_weld *weld =
+            scene_build_add(&model->welds, &model->n_welds, 1, sizeof *weld, error);
+        if (weld)
+            weld->tolerance = sewing->tolerance;
+        return weld ? &weld->pairs : NULL;
     }
-    return error->code;
-}
-
-static int add_joint(struct model *model, uint32_t cloth, uint32_t seam, const unsigned char *joins,
-                     const struct scene_tree *tree, int node, struct cloth_error *error)
-{
-    const struct model_seam *of = model->cloths[cloth].seams.seam + seam;
     struct model_joint *joint =
-        scene_build_grow(model->joints, model->n_joints, 1, sizeof *joint, error);
+        scene_build_add(&model->joints, &model->n_joints, 1, sizeof *joint, error);
     if (!joint)
-        return error->code;
-    model->joints = joint;
-    joint += model->n_joints++;
+        return NULL;
     model->n_pulled++;
-    joint->stiffness = of->sewing.stiffness;
-    joint->damping = of->sewing.damping;
-    joint->pairs.seam = seam + 1;
-    return fill_pairs(&joint->pairs, cloth, of, joins, tree, node, error);
+    joint->stiffness = sewing->stiffness;
+    joint->damping = sewing->damping;
+    return &joint->pairs;
 }
 
-static int add_weld(struct model *model, uint32_t cloth, uint32_t seam, const unsigned char *joins,
-                    const struct scene_tree *tree, int node, struct cloth_error *error)
+/* joins: of each pair of the seam, whether it joins. */
+static int sew_seam(uint32_t cloth, uint32_t seam, const unsigned char *joins,
+                    const struct scene_tree *tree, int node)
 {
-    const struct model_seam *of = model->cloths[cloth].seams.seam + seam;
-    struct model_weld *weld =
-        scene_build_grow(model->welds, model->n_welds, 1, sizeof *weld, error);
-    if (!weld)
-        return error->code;
-    model->welds = weld;
-    weld += model->n_welds++;
-    weld->tolerance = of->sewing.tolerance;
-    weld->pairs.seam = seam + 1;
-    return fill_pairs(&weld->pairs, cloth, of, joins, tree, node, error);
+    const struct model_seam *of = tree->model->cloths[cloth].seams.seam + seam;
+    struct model_pairs *pairs = add_sewn(tree->model, &of->sewing, tree->error);
+    if (!pairs || scene_build_room(pairs, cloth, of->n_pairs, tree, node))
+        return tree->error->code;
+    pairs->seam = seam + 1;
+    for (uint32_t i = 0; i < of->n_pairs; i++)
+        if (joins[i])
+            scene_build_pair(pairs, of->pair[i][0], of->pair[i][1]);
+    return CLOTH_OK;
 }
 
 static void join_seam_pairs(const struct model *model, const struct model_pairs *pairs,
@@ -122,7 +109,7 @@ static void join_seam_pairs(const struct model *model, const struct model_pairs 
 static uint32_t *find_roots(const struct model *model, struct cloth_error *error)
 {
     const uint32_t n = model_first(model, model->n_cloths);
-    uint32_t *root = scene_build_array(n, sizeof *root, error);
+    uint32_t *root = cloth_alloc(n, sizeof *root, error);
     if (!root)
         return NULL;
     cloth_sets_start(root, n);
@@ -133,37 +120,32 @@ static uint32_t *find_roots(const struct model *model, struct cloth_error *error
     return root;
 }
 
-/* The seams of one state. */
-static int sew_state(struct model *model, uint32_t cloth, enum model_seams_state state, size_t n,
-                     const struct scene_tree *tree, int node, struct cloth_error *error)
+size_t scene_build_count_pairs(const struct model_seams *seams)
 {
-    const struct model_seams *seams = &model->cloths[cloth].seams;
-    unsigned char *joins = scene_build_array(n, 1, error);
-    uint32_t *root = joins ? find_roots(model, error) : NULL;
-    int code = root ? find_firsts(seams, state, root + model_first(model, cloth), n, joins, error)
-                    : error->code;
-    const unsigned char *of = joins;
-    for (uint32_t s = 0; s < seams->n && !code; of += seams->seam[s++].n_pairs) {
-        if (!memchr(of, 1, seams->seam[s].n_pairs))
-            continue; /* it is of another state, or joined by others already */
-        code = state == MODEL_SEAMS_PULLED ? add_joint(model, cloth, s, of, tree, node, error)
-                                           : add_weld(model, cloth, s, of, tree, node, error);
-    }
-    free(joins);
-    free(root);
-    return code;
-}
-
-/* Welds come first: vertices that they make one are not pulled. */
-static int sew_cloth(struct model *model, uint32_t cloth, const struct scene_tree *tree, int node,
-                     struct cloth_error *error)
-{
-    const struct model_seams *seams = &model->cloths[cloth].seams;
     size_t n = 0;
     for (uint32_t s = 0; s < seams->n; s++)
         n += seams->seam[s].n_pairs;
-    const int code = sew_state(model, cloth, MODEL_SEAMS_WELDED, n, tree, node, error);
-    return code ? code : sew_state(model, cloth, MODEL_SEAMS_PULLED, n, tree, node, error);
+    return n;
+}
+
+/* The seams of one state. */
+static int sew_state(uint32_t cloth, enum model_seams_state state, const struct scene_tree *tree,
+                     int node)
+{
+    struct model *model = tree->model;
+    const struct model_seams *seams = &model->cloths[cloth].seams;
+    const size_t n = scene_build_count_pairs(seams);
+    unsigned char *joins = cloth_alloc(n, 1, tree->error), *of = joins;
+    uint32_t *root = joins ? find_roots(model, tree->error) : NULL;
+    int code =
+        root ? find_firsts(seams, state, root + model_first(model, cloth), n, joins, tree->error)
+             : tree->error->code;
+    for (uint32_t s = 0; s < seams->n && !code; of += seams->seam[s++].n_pairs)
+        if (memchr(of, 1, seams->seam[s].n_pairs)) /* else another's, or joined already */
+            code = sew_seam(cloth, s, of, tree, node);
+    free(joins);
+    free(root);
+    return code;
 }
 
 /* ---- The keys ---- */
@@ -181,27 +163,26 @@ static void reverse_seam(struct model_seam *seam)
 
 /* Checks that a list of the scene names existing seams. */
 static int check_numbers(const struct model_cloth *cloth, const uint32_t *number, uint32_t n,
-                         const struct scene_tree *tree, int list, struct cloth_error *error)
+                         const struct scene_tree *tree, int list)
 {
     for (uint32_t i = 0; i < n; i++)
         if (number[i] >= cloth->seams.n)
-            return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
+            return scene_tree_fail(tree, scene_tree_item(tree, list, i),
                                    "seam %u is none of cloth '%.60s', which has %u seams, counted "
                                    "from 0",
                                    number[i], cloth->name, cloth->seams.n);
     return CLOTH_OK;
 }
 
-static int reverse_some(struct model_cloth *cloth, const struct scene_tree *tree, int node,
-                        struct cloth_error *error)
+static int reverse_some(struct model_cloth *cloth, const struct scene_tree *tree, int node)
 {
     struct model_seams *seams = &cloth->seams;
     const int list = scene_tree_get(tree, node, "reversed");
-    int code = check_numbers(cloth, seams->reversed, seams->n_reversed, tree, list, error);
+    int code = check_numbers(cloth, seams->reversed, seams->n_reversed, tree, list);
     for (uint32_t i = 0; i < seams->n_reversed && !code; i++) {
         for (uint32_t j = 0; j < i; j++)
             if (seams->reversed[j] == seams->reversed[i])
-                return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
+                return scene_tree_fail(tree, scene_tree_item(tree, list, i),
                                        "seam %u stands twice in seams.reversed",
                                        seams->reversed[i]);
         reverse_seam(seams->seam + seams->reversed[i]);
@@ -227,7 +208,7 @@ static void lay_over(struct model_sewing *to, const struct model_sewing *from,
         to->bending = from->bending;
 }
 
-static bool build_seams_is_between(const struct model_seam *seam, const char *const panel[2])
+static bool seam_is_between(const struct model_seam *seam, const char *const panel[2])
 {
     bool is = false;
     for (int k = 0; k < 2; k++)
@@ -238,39 +219,38 @@ static bool build_seams_is_between(const struct model_seam *seam, const char *co
 
 /* The entry of `some` gets the numbers of the seams between two panels. */
 static int find_between(const struct model_cloth *cloth, struct model_some_seams *some,
-                        const struct scene_tree *tree, int of, struct cloth_error *error)
+                        const struct scene_tree *tree, int of)
 {
     const char *panel[2];
     for (size_t k = 0; k < 2; k++)
         panel[k] = scene_tree_scalar(tree, scene_tree_item(tree, of, k));
-    some->number = scene_build_array(cloth->seams.n, sizeof *some->number, error);
+    some->number = cloth_alloc(cloth->seams.n, sizeof *some->number, tree->error);
     if (!some->number)
-        return error->code;
+        return tree->error->code;
     for (uint32_t s = 0; s < cloth->seams.n; s++)
-        if (build_seams_is_between(cloth->seams.seam + s, panel))
+        if (seam_is_between(cloth->seams.seam + s, panel))
             some->number[some->n++] = s;
     if (some->n)
         return CLOTH_OK;
-    return scene_tree_fail(tree, of, error,
+    return scene_tree_fail(tree, of,
                            "no seam of cloth '%.60s' is between a panel '%.60s' and one '%.60s'; a "
                            "panel's name is expected, in which * stands for any characters",
                            cloth->name, panel[0], panel[1]);
 }
 
 static int take_some(struct model_cloth *cloth, struct model_some_seams *some,
-                     const struct scene_tree *tree, int node, struct cloth_error *error)
+                     const struct scene_tree *tree, int node)
 {
     const int of = scene_tree_get(tree, node, "of");
     const int numbers = scene_tree_get(tree, node, "numbers");
-    const int code = of ? find_between(cloth, some, tree, of, error)
-                        : check_numbers(cloth, some->number, some->n, tree, numbers, error);
+    const int code = of ? find_between(cloth, some, tree, of)
+                        : check_numbers(cloth, some->number, some->n, tree, numbers);
     for (uint32_t i = 0; i < some->n && !code; i++)
         lay_over(&cloth->seams.seam[some->number[i]].sewing, &some->sewing, tree, node);
     return code;
 }
 
-static int take_sewing(struct model_cloth *cloth, const struct scene_tree *tree, int node,
-                       struct cloth_error *error)
+static int take_sewing(struct model_cloth *cloth, const struct scene_tree *tree, int node)
 {
     struct model_seams *seams = &cloth->seams;
     const int list = scene_tree_get(tree, node, "some");
@@ -280,7 +260,7 @@ static int take_sewing(struct model_cloth *cloth, const struct scene_tree *tree,
         lay_over(&seams->seam[s].sewing, &seams->sewing, tree, node);
     }
     for (uint32_t i = 0; i < seams->n_some && !code; i++)
-        code = take_some(cloth, seams->some + i, tree, scene_tree_item(tree, list, i), error);
+        code = take_some(cloth, seams->some + i, tree, scene_tree_item(tree, list, i));
     for (uint32_t s = 0; s < seams->n; s++) {
         struct model_sewing *sewing = &seams->seam[s].sewing;
         if (sewing->damping < 0) /* it is not given */
@@ -289,8 +269,7 @@ static int take_sewing(struct model_cloth *cloth, const struct scene_tree *tree,
     return code;
 }
 
-static int warn_of_unsure(struct model *model, const struct model_cloth *cloth,
-                          const struct scene_tree *tree, int node, struct cloth_error *error)
+static void warn_of_unsure(const struct model_cloth *cloth, const struct scene_tree *tree, int node)
 {
     char numbers[160] = "";
     size_t size = 0;
@@ -299,90 +278,73 @@ static int warn_of_unsure(struct model *model, const struct model_cloth *cloth,
         if (cloth->seams.seam[s].unsure && cloth->seams.seam[s].sewing.state != MODEL_SEAMS_OPEN &&
             n++ < MOST_NAMED)
             size += (size_t)snprintf(numbers + size, sizeof numbers - size, " %u", s);
-    if (!n)
-        return CLOTH_OK;
-    return scene_build_warn(
-        model, tree, node, error,
-        "%u of the seams of cloth '%.60s' may be sewn the wrong way round, the first "
-        "are%s: how far partners are from each other does not tell, or "
-        "contradicts other seams, so the fronts of the panels decide; the "
-        "summary has the distances, and seams.reversed turns a seam",
-        n, cloth->name, numbers);
+    if (n)
+        scene_build_warn(tree, node,
+                         "%u of the seams of cloth '%.60s' may be sewn the wrong way round, the "
+                         "first are%s: how far partners are from each other does not tell, or "
+                         "contradicts other seams, so the fronts of the panels decide; the summary "
+                         "has the distances, and seams.reversed turns a seam",
+                         n, cloth->name, numbers);
 }
 
-static int read_seams_file(struct model *model, struct model_cloth *cloth,
-                           const struct scene_tree *tree, int node, struct cloth_error *error)
+static int read_seams_file(struct model_cloth *cloth, struct scene_tree *tree, int node)
 {
-    struct cloth_error inner = {0};
-    char *path = scene_build_path(model, tree, node, error);
-    const int code =
-        path ? scene_read_seams(&cloth->seams, &cloth->mesh, path, &inner) : error->code;
+    char *path = scene_build_path(tree, node);
+    const int code = path ? scene_read_seams(&cloth->seams, &cloth->mesh, path, &tree->inner)
+                          : tree->error->code;
     free(path);
-    return scene_build_blame(code, &inner, "seams", tree, node, error);
+    return scene_build_blame(code, "seams", tree, node);
 }
 
-static int find_seams(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,
-                      int of, int node, struct cloth_error *error)
+static int find_seams(struct model_cloth *cloth, struct scene_tree *tree, int of, int node)
 {
     const int file = scene_tree_get(tree, node, "file");
-    const int mesh = scene_build_mesh_kind(tree, of).key;
-    const bool pattern = !strcmp(scene_tree_scalar(tree, mesh), "pattern");
+    const bool pattern = scene_tree_at(tree, of, "mesh.pattern");
     if (file && pattern)
-        return scene_tree_fail(tree, file, error,
+        return scene_tree_fail(tree, file,
                                "seams.file is of OBJ meshes; the seams of a pattern are its "
                                "stitches");
     if (file)
-        return read_seams_file(model, cloth, tree, file, error);
+        return read_seams_file(cloth, tree, file);
     if (pattern)
         return CLOTH_OK;
-    return scene_tree_fail(tree, node, error,
+    return scene_tree_fail(tree, node,
                            "the mesh of cloth '%.60s' has no seams; a mesh.pattern, or seams.file "
                            "is expected",
                            cloth->name);
 }
 
-/* ---- Vertices that meet as one ---- */
-
-static int build_seams_find_joined(struct model *model, struct cloth_error *error)
+/* Welds come first: vertices that they make one are not pulled. */
+int scene_build_seams(struct scene_tree *tree, uint32_t c, int of)
 {
-    uint32_t *joined = model->n_pulled ? find_roots(model, error) : NULL;
-    model->contact.apart.joined = joined;
-    if (!joined)
-        return error->code;
-    for (uint32_t j = 0; j < model->n_joints; j++)
-        if (model->joints[j].pairs.seam)
-            join_seam_pairs(model, &model->joints[j].pairs, joined);
-    const uint32_t n = model_first(model, model->n_cloths);
-    for (uint32_t v = 0; v < n; v++)
-        joined[v] = cloth_sets_root(joined, v);
-    return CLOTH_OK;
-}
-
-static int build_seams(struct model *model, uint32_t i, const struct scene_tree *tree, int of,
-                       struct cloth_error *error)
-{
-    struct model_cloth *cloth = model->cloths + i;
+    struct model_cloth *cloth = tree->model->cloths + c;
     const int node = scene_tree_get(tree, of, "seams");
     if (!node)
         return CLOTH_OK;
-    int code = find_seams(model, cloth, tree, of, node, error);
-    code = code ? code : reverse_some(cloth, tree, node, error);
-    code = code ? code : take_sewing(cloth, tree, node, error);
-    code = code ? code : warn_of_unsure(model, cloth, tree, node, error);
-    return code ? code : sew_cloth(model, i, tree, node, error);
+    if (find_seams(cloth, tree, of, node) || reverse_some(cloth, tree, node) ||
+        take_sewing(cloth, tree, node))
+        return tree->error->code;
+    warn_of_unsure(cloth, tree, node);
+    return sew_state(c, MODEL_SEAMS_WELDED, tree, node) ||
+           sew_state(c, MODEL_SEAMS_PULLED, tree, node);
 }
 
-int scene_build_seams(struct model *model, struct scene_tree *tree, struct cloth_error *error)
+/* ---- Vertices that meet as one ---- */
+
+int scene_build_sewn(struct scene_tree *tree)
 {
-    const int list = scene_tree_get(tree, 1, "cloths");
-    int code = CLOTH_OK;
-    for (uint32_t i = 0; !code && i < model->n_cloths; i++)
-        code = build_seams(model, i, tree, scene_tree_item(tree, list, i), error);
-    if (!code && model->sewn > 0 && !model->n_pulled)
-        return scene_tree_fail(tree, scene_tree_get(tree, scene_tree_get(tree, 1, "time"), "sewn"),
-                               error,
+    struct model *model = tree->model;
+    if (model->sewn > 0 && !model->n_pulled)
+        return scene_tree_fail(tree, scene_tree_at(tree, 1, "time.sewn"),
                                "time.sewn waits for pulled seams, and the scene has none: a cloth "
                                "with seams: {state: pulled} is expected, or time.sewn: null in a "
                                "phase that has welded them");
-    return code ? code : build_seams_find_joined(model, error);
+    uint32_t *joined = model->n_pulled ? find_roots(model, tree->error) : NULL;
+    model->contact.apart.joined = joined;
+    for (uint32_t j = 0; joined && j < model->n_joints; j++)
+        if (model->joints[j].pairs.seam)
+            join_seam_pairs(model, &model->joints[j].pairs, joined);
+    for (uint32_t v = 0; joined && v < model_first(model, model->n_cloths); v++)
+        joined[v] = cloth_sets_root(joined, v);
+    return tree->error->code;
 }

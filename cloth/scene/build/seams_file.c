@@ -6,7 +6,7 @@
 #include <string.h>
 
 static const struct scene_words WORDS = {
-    .noun = "file of seams", .form = "JSON", .start = "it is a map of \"seams\"", .large = ""};
+    .noun = "file of seams", .form = "JSON", .start = "it is a map of \"seams\""};
 
 enum { SCHEMA, VERTICES, TRIANGLES, PANELS, SEAMS };
 static const char *const FILE_KEYS[PATTERN_KEYS] = {"schema", "vertices", "triangles", "panels",
@@ -30,14 +30,11 @@ static int read_seam_side(const struct pattern_reader *reader, struct model_seam
                           int node)
 {
     int value[PATTERN_KEYS];
-    const int code = pattern_map(reader, node, "a side", SIDE_KEYS, value);
-    if (code)
-        return code;
-    if (!value[0] || !value[1])
-        return pattern_wrong(reader, node, "a side has to have both panel and edge");
+    if (pattern_both(reader, node, "a side", SIDE_KEYS, value))
+        return reader->tree->error->code;
     seam->side[k].panel = pattern_name(reader, value[0]);
     if (!seam->side[k].panel)
-        return reader->error->code;
+        return reader->tree->error->code;
     return pattern_index(reader, value[1], "an edge", UINT32_MAX, "edges", &seam->side[k].edge);
 }
 
@@ -46,7 +43,7 @@ static int read_pairs(const struct pattern_reader *reader, struct model_seam *se
 {
     const size_t most = UINT32_MAX, n = scene_tree_length(reader->tree, node);
     int code = pattern_list(reader, node, "pairs", 1, most);
-    seam->pair = code ? NULL : scene_build_array(n, sizeof *seam->pair, reader->error);
+    seam->pair = code ? NULL : cloth_alloc(n, sizeof *seam->pair, reader->tree->error);
     for (size_t i = 0; i < n && !code && seam->pair; i++) {
         const int pair = scene_tree_item(reader->tree, node, i);
         code = pattern_list(reader, pair, "a pair", 2, 2);
@@ -55,25 +52,24 @@ static int read_pairs(const struct pattern_reader *reader, struct model_seam *se
                                  mesh->n_vertices, "vertices", &seam->pair[i][k]);
     }
     seam->n_pairs = (uint32_t)n;
-    return code ? code : reader->error->code;
+    return code ? code : reader->tree->error->code;
 }
 
 static int read_seam(const struct pattern_reader *reader, struct model_seam *seam,
                      const struct mesh *mesh, int node)
 {
     int value[PATTERN_KEYS];
-    int code = pattern_map(reader, node, "a seam", SEAM_KEYS, value);
-    if (!code && (!value[SIDES] || !value[PAIRS]))
-        return pattern_wrong(reader, node, "a seam has to have both sides and pairs");
-    code = code ? code : pattern_list(reader, value[SIDES], "sides", 2, 2);
+    int code = pattern_both(reader, node, "a seam", SEAM_KEYS, value) ||
+               pattern_list(reader, value[SIDES], "sides", 2, 2);
     for (int k = 0; k < 2 && !code; k++)
         code =
             read_seam_side(reader, seam, k, scene_tree_item(reader->tree, value[SIDES], (size_t)k));
-    if (!code && value[REVERSED])
-        code = pattern_flag(reader, value[REVERSED], "reversed", &seam->reversed);
-    if (!code && value[DISTANCES])
-        code = pattern_vector(reader, value[DISTANCES], "distances", 2, seam->distance);
-    return code ? code : read_pairs(reader, seam, mesh, value[PAIRS]);
+    return code ||
+           (value[REVERSED] &&
+            pattern_flag(reader, value[REVERSED], "reversed", &seam->reversed)) ||
+           (value[DISTANCES] &&
+            pattern_vector(reader, value[DISTANCES], "distances", 2, seam->distance)) ||
+           read_pairs(reader, seam, mesh, value[PAIRS]);
 }
 
 static int read_seams_tree(const struct pattern_reader *reader, struct model_seams *seams,
@@ -85,33 +81,29 @@ static int read_seams_tree(const struct pattern_reader *reader, struct model_sea
     for (int k = 0; k <= SEAMS && !code; k++)
         if (!value[k] && k != PANELS)
             return pattern_wrong(reader, 1, "the file has no \"%s\"", FILE_KEYS[k]);
-    code = code ? code : pattern_index(reader, value[SCHEMA], "schema", 2, "schemas", &schema);
+    code = code || pattern_index(reader, value[SCHEMA], "schema", 2, "schemas", &schema);
     if (!code && schema != 1)
         return pattern_wrong(reader, value[SCHEMA], "schema is %u; it has to be 1", schema);
-    code =
-        code ? code : seams_file_read_count(reader, value[VERTICES], "vertices", mesh->n_vertices);
-    code = code ? code
-                : seams_file_read_count(reader, value[TRIANGLES], "triangles", mesh->n_triangles);
-    code = code ? code : pattern_list(reader, value[SEAMS], "seams", 0, UINT32_MAX);
-    if (code)
-        return code;
+    if (code || seams_file_read_count(reader, value[VERTICES], "vertices", mesh->n_vertices) ||
+        seams_file_read_count(reader, value[TRIANGLES], "triangles", mesh->n_triangles) ||
+        pattern_list(reader, value[SEAMS], "seams", 0, UINT32_MAX))
+        return reader->tree->error->code;
     const size_t n = scene_tree_length(reader->tree, value[SEAMS]);
-    seams->seam = scene_build_array(n, sizeof *seams->seam, reader->error);
+    seams->seam = cloth_alloc(n, sizeof *seams->seam, reader->tree->error);
     for (size_t s = 0; s < n && seams->seam && !code; s++) {
         seams->n++;
         code = read_seam(reader, seams->seam + s, mesh,
                          scene_tree_item(reader->tree, value[SEAMS], s));
     }
-    return code ? code : reader->error->code;
+    return reader->tree->error->code;
 }
 
 int scene_read_seams(struct model_seams *seams, const struct mesh *mesh, const char *path,
-                     struct cloth_error *inner)
+                     struct cloth_error *error)
 {
     struct scene_tree tree;
-    const struct pattern_reader reader = {.tree = &tree, .error = inner, .edge = -1, .stitch = -1};
-    int code = scene_tree_load(&tree, path, &WORDS, inner);
-    code = code ? code : read_seams_tree(&reader, seams, mesh);
+    const struct pattern_reader reader = {.tree = &tree, .edge = -1, .stitch = -1};
+    int code = scene_tree_load(&tree, path, &WORDS, error) || read_seams_tree(&reader, seams, mesh);
     scene_tree_free(&tree);
     return code;
 }

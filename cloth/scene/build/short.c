@@ -23,24 +23,16 @@ struct shorts {
     double (*box)[2][3]; /* by the lowest vertex of a set, m */
 };
 
-static double short_length_of(const struct shorts *shorts, const struct mesh_edge *edge)
-{
-    return mesh_length(shorts->rest, edge->triangle, edge->a, edge->b);
-}
-
-static bool short_is(const struct shorts *shorts, const struct mesh_edge *edge)
-{
-    return edge->opposite[0] != UINT32_MAX && short_length_of(shorts, edge) < shorts->thickness;
-}
-
 static void short_find(struct shorts *shorts, const struct mesh_edges *edges)
 {
     cloth_sets_start(shorts->set, shorts->rest->n_vertices);
     for (uint32_t e = 0; e < edges->n; e++) {
         const struct mesh_edge *edge = edges->edge + e;
-        if (!short_is(shorts, edge))
+        if (edge->opposite[0] == UINT32_MAX)
             continue;
-        const double length = short_length_of(shorts, edge);
+        const double length = mesh_length(shorts->rest, edge->triangle, edge->a, edge->b);
+        if (length >= shorts->thickness)
+            continue;
         shorts->shortest = length < shorts->least ? edge : shorts->shortest;
         shorts->least = fmin(shorts->least, length);
         shorts->n++;
@@ -70,7 +62,7 @@ static int join_shorts(struct model *model, const struct shorts *shorts, uint32_
     struct contact_apart *apart = &model->contact.apart;
     const uint32_t n = model_first(model, model->n_cloths);
     if (!apart->joined) {
-        apart->joined = scene_build_array(n, sizeof *apart->joined, error);
+        apart->joined = cloth_alloc(n, sizeof *apart->joined, error);
         if (!apart->joined)
             return error->code;
         cloth_sets_start(apart->joined, n);
@@ -82,27 +74,26 @@ static int join_shorts(struct model *model, const struct shorts *shorts, uint32_
     return CLOTH_OK;
 }
 
-static int short_take_cloth(struct model *model, uint32_t c, struct shorts *shorts,
-                            const struct mesh_edges *edges, const struct scene_tree *tree,
-                            struct cloth_error *error)
+static int short_take_cloth(uint32_t c, struct shorts *shorts, const struct mesh_edges *edges,
+                            const struct scene_tree *tree, int node)
 {
-    const int list = scene_tree_get(tree, 1, "cloths");
+    struct model *model = tree->model;
     short_find(shorts, edges);
     if (!shorts->n || shorts->n > MOST_SHARE * edges->n)
         return CLOTH_OK;
     find_extent(shorts);
     if (shorts->most > MOST_EXTENT * shorts->thickness)
         return CLOTH_OK; /* flow_thickness_check refuses */
-    const int code = join_shorts(model, shorts, model_first(model, c), error);
     const struct mesh_edge *edge = shorts->shortest;
-    return code ? code
-                : scene_build_warn(
-                      model, tree, scene_tree_item(tree, list, c), error,
-                      "%u of %u edges of cloth '%.60s' %s shorter at rest than contact.thickness, "
-                      "%g m; the shortest, between vertices %u and %u (counted from 0), has %.3g "
-                      "m: for contact the ends of each count as one",
-                      shorts->n, edges->n, model->cloths[c].name, shorts->n == 1 ? "is" : "are",
-                      shorts->thickness, edge->a, edge->b, shorts->least);
+    return join_shorts(model, shorts, model_first(model, c), tree->error) ||
+           scene_build_warn(tree, node,
+                            "%u of %u edges of cloth '%.60s' %s shorter at rest than "
+                            "contact.thickness, %g m; the shortest, between vertices %u and %u "
+                            "(counted from 0), has %.3g m: for contact the ends of each count as "
+                            "one",
+                            shorts->n, edges->n, model->cloths[c].name,
+                            shorts->n == 1 ? "is" : "are", shorts->thickness, edge->a, edge->b,
+                            shorts->least);
 }
 
 static bool has_short(const struct shorts *shorts)
@@ -118,26 +109,24 @@ static bool has_short(const struct shorts *shorts)
     return false;
 }
 
-int scene_build_short_edges(struct model *model, struct scene_tree *tree, struct cloth_error *error)
+int scene_build_short_edges(struct scene_tree *tree, uint32_t c, int node)
 {
-    int code = CLOTH_OK;
-    for (uint32_t c = 0; c < model->n_cloths && model_seeks(model) && !code; c++) {
-        const struct mesh *rest = model_rest(model->cloths + c);
-        struct mesh_edges edges = {0};
-        struct shorts shorts = {.mesh = &model->cloths[c].mesh,
-                                .rest = rest,
-                                .thickness = model->contact.thickness,
-                                .least = INFINITY};
-        if (!has_short(&shorts))
-            continue;
-        shorts.set = scene_build_array(rest->n_vertices, sizeof *shorts.set, error);
-        shorts.box = scene_build_array(rest->n_vertices, sizeof *shorts.box, error);
-        code = shorts.set && shorts.box ? mesh_edges_find(&edges, rest, error) : error->code;
-        if (!code)
-            code = short_take_cloth(model, c, &shorts, &edges, tree, error);
-        mesh_edges_free(&edges);
-        free(shorts.set);
-        free(shorts.box);
-    }
+    const struct model *model = tree->model;
+    const struct model_cloth *cloth = model->cloths + c;
+    const struct mesh *rest = model_rest(cloth);
+    struct mesh_edges edges = {0};
+    struct shorts shorts = {.mesh = &cloth->mesh,
+                            .rest = rest,
+                            .thickness = model->contact.thickness,
+                            .least = INFINITY};
+    if (!model_seeks(model) || !has_short(&shorts))
+        return CLOTH_OK;
+    shorts.set = cloth_alloc(rest->n_vertices, sizeof *shorts.set, tree->error);
+    shorts.box = cloth_alloc(rest->n_vertices, sizeof *shorts.box, tree->error);
+    const int code = tree->error->code || mesh_edges_find(&edges, rest, tree->error) ||
+                     short_take_cloth(c, &shorts, &edges, tree, node);
+    mesh_edges_free(&edges);
+    free(shorts.set);
+    free(shorts.box);
     return code;
 }

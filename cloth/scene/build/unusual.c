@@ -1,190 +1,150 @@
 /* Values that are allowed, but hardly ever meant, draw a warning each: often the unit is another.
  */
 #include "cloth/scene/build/build.h"
-#include "cloth/scene/yaml/scalar.h"
 
+#include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static const double LEAST_DENSITY = 0.005, MOST_DENSITY = 5; /* kg/m^2: of a veil, of a carpet */
 static const double MOST_RIGIDITY = 1e-2;                    /* N m: of thick leather */
 static const double FAR = 2; /* a quaternion's length, or 1 by it: [1, 1, 1, 1] is often written */
 
-struct unusual {
-    struct model *model;
-    const struct scene_tree *tree;
-    struct cloth_error *error;
-};
+/* ---- Materials ---- */
 
-#define WARN(of, node, ...)                                                                        \
-    scene_build_warn((of)->model, (of)->tree, node, (of)->error, __VA_ARGS__)
-
-/* Number i of a node, a number or a list of n of them; 0: it has no node. */
-static double unusual_number_of(const struct unusual *of, int node, size_t i, int *at, size_t *n)
+/* The number of the first value of a node, one or a list of them, that is not from low to high;
+ * -1: all are. */
+static int find_beyond(const struct scene_tree *tree, int node, double low, double high,
+                       double *value)
 {
-    const bool list = scene_tree_is(of->tree, node, YAML_SEQUENCE_NODE);
-    double value = 0;
-    *n = !node ? 0 : list ? scene_tree_length(of->tree, node) : 1;
-    *at = list ? scene_tree_item(of->tree, node, i) : node;
-    if (node)
-        scene_scalar_number(scene_tree_scalar(of->tree, *at), &value);
-    return value;
-}
-
-static int warn_of_density(const struct unusual *of, const char *name, int material)
-{
-    const int node = scene_tree_get(of->tree, material, "density");
-    int at;
-    size_t n;
-    const double value = unusual_number_of(of, node, 0, &at, &n);
-    if (!n || (value >= LEAST_DENSITY && value <= MOST_DENSITY))
-        return CLOTH_OK;
-    return WARN(of, at,
-                "materials.%.60s.density is %g kg/m^2; fabrics have %g to %g: is its unit right?",
-                name, value, LEAST_DENSITY, MOST_DENSITY);
-}
-
-static int warn_of_rigidity(const struct unusual *of, const char *name, int material)
-{
-    const int bending = scene_tree_get(of->tree, material, "bending");
-    const int node = scene_tree_get(of->tree, bending, "rigidity");
-    size_t n = 1;
-    for (size_t i = 0; i < n; i++) {
-        int at;
-        const double value = unusual_number_of(of, node, i, &at, &n);
-        if (n && value > MOST_RIGIDITY)
-            return WARN(of, at,
-                        "materials.%.60s.bending.rigidity is %g N m; fabrics have up to %g: is "
-                        "its unit right?",
-                        name, value, MOST_RIGIDITY);
+    const int n = !node                           ? 0
+                  : scene_tree_scalar(tree, node) ? 1
+                                                  : (int)scene_tree_length(tree, node);
+    for (int i = 0; i < n; i++) {
+        scene_tree_vector(tree, scene_tree_part(tree, node, (size_t)i), 1, value);
+        if (!(*value >= low && *value <= high))
+            return i;
     }
-    return CLOTH_OK;
+    return -1;
 }
 
-/* Warns of the stretch of a material of triangles. */
-static int warn_of_stretch(const struct unusual *of, const char *name, int material)
+static void warn_of_values(const struct scene_tree *tree, const char *name, int material)
 {
-    static const char *const along[] = {" along the warp", " along the weft"};
-    const int node = scene_tree_get(of->tree, material, "stretch");
-    size_t n = 1;
-    for (size_t i = 0; i < n; i++) {
-        int at;
-        const double value = unusual_number_of(of, node, i, &at, &n);
-        if (n && !(value > 0))
-            return WARN(of, at, "materials.%.60s.stretch is 0%s: nothing resists being stretched%s",
-                        name, n > 1 ? along[i] : "", n > 1 ? " there" : "");
-    }
-    return CLOTH_OK;
+    const int density = scene_tree_get(tree, material, "density");
+    const int rigidity = scene_tree_at(tree, material, "bending.rigidity");
+    double value;
+    if (find_beyond(tree, density, LEAST_DENSITY, MOST_DENSITY, &value) >= 0)
+        scene_build_warn(tree, density,
+                         "materials.%.60s.density is %g kg/m^2; fabrics have %g to %g: is its unit "
+                         "right?",
+                         name, value, LEAST_DENSITY, MOST_DENSITY);
+    const int i = find_beyond(tree, rigidity, 0, MOST_RIGIDITY, &value);
+    if (i >= 0)
+        scene_build_warn(tree, scene_tree_part(tree, rigidity, (size_t)i),
+                         "materials.%.60s.bending.rigidity is %g N m; fabrics have up to %g: is "
+                         "its unit right?",
+                         name, value, MOST_RIGIDITY);
 }
 
 /* Diagonals that only triangles without shear hold fold without a force. */
-static int warn_of_shear(const struct unusual *of, uint32_t i, int material)
+static void warn_of_triangles(const struct scene_tree *tree, const struct model_material *material,
+                              int node)
 {
-    if (of->model->materials[i].model != MODEL_TRIANGLES || of->model->materials[i].shear > 0)
-        return CLOTH_OK;
-    return WARN(of, material,
-                "materials.%.60s.shear is 0: nothing resists its triangles' being sheared",
-                of->model->materials[i].name);
+    static const char *const along[] = {" along the warp", " along the weft"};
+    const int stretch = scene_tree_get(tree, node, "stretch");
+    const bool one = scene_tree_scalar(tree, stretch);
+    double value;
+    const int i = find_beyond(tree, stretch, DBL_TRUE_MIN, INFINITY, &value);
+    if (i >= 0)
+        scene_build_warn(tree, scene_tree_part(tree, stretch, (size_t)i),
+                         "materials.%.60s.stretch is 0%s: nothing resists being stretched%s",
+                         material->name, one ? "" : along[i], one ? "" : " there");
+    if (material->model == MODEL_TRIANGLES && !(material->shear > 0))
+        scene_build_warn(tree, node,
+                         "materials.%.60s.shear is 0: nothing resists its triangles' being sheared",
+                         material->name);
 }
 
-static int warn_of_material(const struct unusual *of, uint32_t i)
-{
-    const int map = scene_tree_get(of->tree, 1, "materials");
-    const int material = scene_tree_pair(of->tree, map, i).value;
-    const char *name = of->model->materials[i].name;
-    bool triangles, edges;
-    model_parts(of->model, i, &triangles, &edges);
-    int code = warn_of_density(of, name, material);
-    if (!code)
-        code = warn_of_rigidity(of, name, material);
-    if (!code && triangles)
-        code = warn_of_stretch(of, name, material);
-    return code || !triangles ? code : warn_of_shear(of, i, material);
-}
+/* ---- Turns ---- */
 
-static int warn_of_turn(const struct unusual *of, int rotate)
+static void warn_of_turn(const struct scene_tree *tree, int rotate)
 {
     double turn[4], square = 0;
-    if (!rotate)
-        return CLOTH_OK;
-    scene_tree_vector(of->tree, rotate, 4, turn);
+    scene_tree_vector(tree, rotate, 4, turn);
     for (int i = 0; i < 4; i++)
         square += turn[i] * turn[i];
     const double length = sqrt(square);
-    if (length <= FAR && length * FAR >= 1)
-        return CLOTH_OK;
-    return WARN(of, rotate,
-                "rotate is a quaternion of length %g, which is taken as if it were 1; [w, x, y, z] "
-                "is cos(a/2) and sin(a/2) times the axis of a turn by a",
-                length);
+    if (!(length <= FAR && length * FAR >= 1))
+        scene_build_warn(tree, rotate,
+                         "rotate is a quaternion of length %g, which is taken as if it were 1; [w, "
+                         "x, y, z] is cos(a/2) and sin(a/2) times the axis of a turn by a",
+                         length);
 }
 
 /* Warns of the key rotate of a map and of its motion. */
-static int warn_of_turns(const struct unusual *of, int map)
+static void warn_of_turns(const struct scene_tree *tree, int map)
 {
-    const int motion = scene_tree_get(of->tree, map, "motion");
-    const int list = scene_tree_get(of->tree, motion, "rotate");
-    int code = warn_of_turn(of, scene_tree_get(of->tree, map, "rotate"));
-    for (size_t i = 0; i < scene_tree_length(of->tree, list) && !code; i++)
-        code = warn_of_turn(of, scene_tree_item(of->tree, list, i));
-    return code;
+    const int rotate = scene_tree_get(tree, map, "rotate");
+    const int list = scene_tree_at(tree, map, "motion.rotate");
+    if (rotate)
+        warn_of_turn(tree, rotate);
+    for (size_t i = 0; i < scene_tree_length(tree, list); i++)
+        warn_of_turn(tree, scene_tree_item(tree, list, i));
 }
 
 /* Warns of the turns of a list of maps. */
-static int warn_of_list(const struct unusual *of, int list)
+static void warn_of_list(const struct scene_tree *tree, int list)
 {
-    int code = CLOTH_OK;
-    for (size_t i = 0; i < scene_tree_length(of->tree, list) && !code; i++)
-        code = warn_of_turns(of, scene_tree_item(of->tree, list, i));
-    return code;
+    for (size_t i = 0; i < scene_tree_length(tree, list); i++)
+        warn_of_turns(tree, scene_tree_item(tree, list, i));
 }
 
-static int warn_of_cloth(const struct unusual *of, int cloth)
-{
-    int code = warn_of_turns(of, scene_tree_get(of->tree, cloth, "transform"));
-    if (!code)
-        code = warn_of_list(of, scene_tree_get(of->tree, cloth, "start"));
-    return code ? code : warn_of_list(of, scene_tree_get(of->tree, cloth, "pins"));
-}
+/* ---- Joints ---- */
 
 /* A joint acts in the steps that begin within its time, to a tick of h / 1024. */
-static int warn_of_joint(const struct unusual *of, int joint)
+static void warn_of_joint(const struct scene_tree *tree, const struct model_joint *joint, int map)
 {
-    const double h = of->model->h, begin = scene_tree_number(of->tree, joint, "begin");
-    const int end_node = scene_tree_get(of->tree, joint, "end");
-    const bool ends = strcmp(scene_tree_scalar(of->tree, end_node), "never") != 0;
-    const double end = ends ? scene_tree_number(of->tree, joint, "end") : INFINITY;
+    const struct model *model = tree->model;
+    const double h = model->h, begin = joint->begin;
+    const double end = joint->end > 0 ? joint->end : INFINITY;
     const double tick = h / 1024, first = ceil((begin - tick / 2) / h) * h;
-    const int node = scene_tree_get(of->tree, joint, "begin");
-    if (begin >= of->model->end)
-        return WARN(of, node, "the joint begins at %g s, when the run is over", begin);
-    if (first > of->model->end - tick / 2)
-        return WARN(of, node, "the joint begins at %g s, after the last step has begun", begin);
-    if (first > end - tick / 2)
-        return WARN(of, node,
-                    "the joint acts from %g s to %g s, when no step of %g s begins; only shorter "
-                    "ones can have it",
-                    begin, end, h);
-    return CLOTH_OK;
+    const int node = scene_tree_get(tree, map, "begin");
+    if (begin >= model->end)
+        scene_build_warn(tree, node, "the joint begins at %g s, when the run is over", begin);
+    else if (first > model->end - tick / 2)
+        scene_build_warn(tree, node, "the joint begins at %g s, after the last step has begun",
+                         begin);
+    else if (first > end - tick / 2)
+        scene_build_warn(tree, node,
+                         "the joint acts from %g s to %g s, when no step of %g s begins; only "
+                         "shorter ones can have it",
+                         begin, end, h);
 }
 
-int scene_build_unusual(struct model *model, struct scene_tree *tree, struct cloth_error *error)
+int scene_build_unusual(struct scene_tree *tree)
 {
-    const struct unusual of = {model, tree, error};
+    const struct model *model = tree->model;
+    const int materials = scene_tree_get(tree, 1, "materials");
     const int cloths = scene_tree_get(tree, 1, "cloths");
     const int obstacles = scene_tree_get(tree, 1, "obstacles");
     const int joints = scene_tree_get(tree, 1, "joints");
-    int code = CLOTH_OK;
-    for (uint32_t i = 0; i < model->n_materials && !code; i++)
-        code = warn_of_material(&of, i);
-    for (size_t i = 0; i < scene_tree_length(tree, cloths) && !code; i++)
-        code = warn_of_cloth(&of, scene_tree_item(tree, cloths, i));
-    for (size_t i = 0; i < scene_tree_length(tree, obstacles) && !code; i++) {
-        const int shape = scene_tree_item(tree, obstacles, i);
-        code = warn_of_turns(&of, scene_tree_pair(tree, shape, 0).value);
+    for (uint32_t i = 0; i < model->n_materials; i++) {
+        const int node = scene_tree_pair(tree, materials, i).value;
+        bool triangles, edges;
+        model_parts(model, i, &triangles, &edges);
+        warn_of_values(tree, model->materials[i].name, node);
+        if (triangles)
+            warn_of_triangles(tree, model->materials + i, node);
     }
-    for (size_t i = 0; i < scene_tree_length(tree, joints) && !code; i++)
-        code = warn_of_joint(&of, scene_tree_item(tree, joints, i));
-    return code;
+    for (size_t i = 0; i < scene_tree_length(tree, cloths); i++) {
+        const int cloth = scene_tree_item(tree, cloths, i);
+        warn_of_turns(tree, scene_tree_get(tree, cloth, "transform"));
+        warn_of_list(tree, scene_tree_get(tree, cloth, "start"));
+        warn_of_list(tree, scene_tree_get(tree, cloth, "pins"));
+    }
+    for (size_t i = 0; i < scene_tree_length(tree, obstacles); i++)
+        warn_of_turns(tree, scene_tree_pair(tree, scene_tree_item(tree, obstacles, i), 0).value);
+    for (size_t i = 0; i < scene_tree_length(tree, joints); i++)
+        warn_of_joint(tree, model->joints + i, scene_tree_item(tree, joints, i));
+    return tree->error->code;
 }

@@ -16,9 +16,8 @@ static int read_control(const struct pattern_reader *reader, const struct garmen
                         const struct garment_edge *edge, int node, double control[2])
 {
     double v[2];
-    int code = pattern_vector(reader, node, "a control point", 2, v);
-    if (code)
-        return code;
+    if (pattern_vector(reader, node, "a control point", 2, v))
+        return reader->tree->error->code;
     const double *a = panel->corner[edge->end[0]], *b = panel->corner[edge->end[1]];
     const double along[2] = {b[0] - a[0], b[1] - a[1]};
     control[0] = reader->absolute ? v[0] * reader->unit : a[0] + v[0] * along[0] - v[1] * along[1];
@@ -28,22 +27,19 @@ static int read_control(const struct pattern_reader *reader, const struct garmen
 
 static int read_circle(const struct pattern_reader *reader, struct garment_edge *edge, int params)
 {
-    int code = pattern_list(reader, params, "curvature.params of a circle", 3, 3);
-    if (code)
-        return code;
+    if (pattern_list(reader, params, "curvature.params of a circle", 3, 3))
+        return reader->tree->error->code;
     const int radius = scene_tree_item(reader->tree, params, 0);
-    code = pattern_number(reader, radius, "the radius", &edge->radius);
+    int code = pattern_number(reader, radius, "the radius", &edge->radius);
     edge->radius *= reader->unit;
     if (!code && !(edge->radius > 0))
         return pattern_wrong(reader, radius, "the radius is not above 0");
-    if (!code)
-        code = pattern_flag(reader, scene_tree_item(reader->tree, params, 1),
-                            "curvature.params[1], whether the arc is the large one,", &edge->large);
-    if (!code)
-        code = pattern_flag(reader, scene_tree_item(reader->tree, params, 2),
-                            "curvature.params[2], whether the arc is on the right,", &edge->right);
     edge->curve = GARMENT_CIRCLE;
-    return code;
+    return code ||
+           pattern_flag(reader, scene_tree_item(reader->tree, params, 1),
+                        "curvature.params[1], whether the arc is the large one,", &edge->large) ||
+           pattern_flag(reader, scene_tree_item(reader->tree, params, 2),
+                        "curvature.params[2], whether the arc is on the right,", &edge->right);
 }
 
 static int read_curve(const struct pattern_reader *reader, const struct garment_panel *panel,
@@ -54,11 +50,8 @@ static int read_curve(const struct pattern_reader *reader, const struct garment_
         edge->curve = GARMENT_QUADRATIC;
         return read_control(reader, panel, edge, node, edge->control[0]);
     }
-    int code = pattern_map(reader, node, "curvature", CURVE_KEYS, value);
-    if (code)
-        return code;
-    if (!value[0] || !value[1])
-        return pattern_wrong(reader, node, "curvature has to have both type and params");
+    if (pattern_both(reader, node, "curvature", CURVE_KEYS, value))
+        return reader->tree->error->code;
     const char *type = scene_tree_scalar(reader->tree, value[0]);
     const bool quadratic = type && !strcmp(type, "quadratic"),
                cubic = type && !strcmp(type, "cubic");
@@ -69,10 +62,10 @@ static int read_curve(const struct pattern_reader *reader, const struct garment_
                              "curvature.type is none of quadratic, cubic and circle");
     edge->curve = quadratic ? GARMENT_QUADRATIC : GARMENT_CUBIC;
     const size_t n = quadratic ? 1 : 2;
-    code = pattern_list(reader, value[1],
-                        quadratic ? "curvature.params of a quadratic curve"
-                                  : "curvature.params of a cubic curve",
-                        n, n);
+    int code = pattern_list(reader, value[1],
+                            quadratic ? "curvature.params of a quadratic curve"
+                                      : "curvature.params of a cubic curve",
+                            n, n);
     for (size_t i = 0; i < n && !code; i++)
         code = read_control(reader, panel, edge, scene_tree_item(reader->tree, value[1], i),
                             edge->control[i]);
@@ -83,12 +76,11 @@ static int read_edge(const struct pattern_reader *reader, struct garment_panel *
                      struct garment_edge *edge, int node)
 {
     int value[PATTERN_KEYS];
-    int code = pattern_map(reader, node, "the edge", EDGE_KEYS, value);
-    if (code)
-        return code;
+    if (pattern_map(reader, node, "the edge", EDGE_KEYS, value))
+        return reader->tree->error->code;
     if (!value[EDGE_ENDPOINTS])
         return pattern_wrong(reader, node, "endpoints are missing");
-    code = pattern_list(reader, value[EDGE_ENDPOINTS], "endpoints", 2, 2);
+    int code = pattern_list(reader, value[EDGE_ENDPOINTS], "endpoints", 2, 2);
     for (size_t i = 0; i < 2 && !code; i++)
         code = pattern_index(reader, scene_tree_item(reader->tree, value[EDGE_ENDPOINTS], i),
                              "an endpoint", panel->n_corners, "vertices", &edge->end[i]);
@@ -107,7 +99,7 @@ int pattern_read_edges(struct pattern_reader *reader, struct garment_panel *pane
     if (reader->n_edges > ALL_EDGES)
         return pattern_wrong(reader, node, "the panels up to here have more than %d edges",
                              ALL_EDGES);
-    panel->edge = cloth_alloc(n, sizeof *panel->edge, reader->error);
+    panel->edge = cloth_alloc(n, sizeof *panel->edge, reader->tree->error);
     if (!panel->edge)
         return CLOTH_E_MEMORY;
     panel->n_edges = (uint32_t)n;
@@ -125,7 +117,7 @@ static int read_corners(const struct pattern_reader *reader, struct garment_pane
     if (code)
         return code;
     const size_t n = scene_tree_length(reader->tree, node);
-    panel->corner = cloth_alloc(n, sizeof *panel->corner, reader->error);
+    panel->corner = cloth_alloc(n, sizeof *panel->corner, reader->tree->error);
     if (!panel->corner)
         return CLOTH_E_MEMORY;
     panel->n_corners = (uint32_t)n;
@@ -163,20 +155,18 @@ static const char *const PANEL_KEYS[PATTERN_KEYS] = {"vertices", "edges", "trans
 static int read_panel(struct pattern_reader *reader, struct garment_panel *panel, int node)
 {
     int value[PATTERN_KEYS];
-    int code = pattern_map(reader, node, "the panel", PANEL_KEYS, value);
-    if (code)
-        return code;
+    if (pattern_map(reader, node, "the panel", PANEL_KEYS, value))
+        return reader->tree->error->code;
     for (int k = 0; k < 4; k++)
         if (!value[k])
             return pattern_wrong(reader, node, "%s: missing", PANEL_KEYS[k]);
-    code = read_corners(reader, panel, value[PANEL_VERTICES]);
-    if (!code)
-        code = pattern_vector(reader, value[PANEL_TRANSLATION], "translation", 3, panel->translate);
-    if (!code)
-        code = pattern_vector(reader, value[PANEL_ROTATION], "rotation", 3, panel->rotate);
+    int code =
+        read_corners(reader, panel, value[PANEL_VERTICES]) ||
+        pattern_vector(reader, value[PANEL_TRANSLATION], "translation", 3, panel->translate) ||
+        pattern_vector(reader, value[PANEL_ROTATION], "rotation", 3, panel->rotate);
     for (int k = 0; k < 3; k++)
         panel->translate[k] *= reader->unit;
-    code = code ? code : pattern_read_edges(reader, panel, value[PANEL_EDGES]);
+    code = code || pattern_read_edges(reader, panel, value[PANEL_EDGES]);
     if (!code && reader->centre)
         move_to_centre(panel);
     return code;
@@ -188,7 +178,7 @@ int pattern_read_panels(struct pattern_reader *reader, int node)
     const size_t n = scene_tree_length(reader->tree, node);
     if (!scene_tree_is(reader->tree, node, YAML_MAPPING_NODE) || n > PANELS)
         return pattern_wrong(reader, node, "panels has to be a map of at most %d panels", PANELS);
-    pattern->panel = cloth_alloc(n, sizeof *pattern->panel, reader->error);
+    pattern->panel = cloth_alloc(n, sizeof *pattern->panel, reader->tree->error);
     if (!pattern->panel)
         return CLOTH_E_MEMORY;
     pattern->n_panels = (uint32_t)n;
@@ -197,7 +187,7 @@ int pattern_read_panels(struct pattern_reader *reader, int node)
         struct garment_panel *panel = &pattern->panel[i];
         panel->name = pattern_name(reader, pair.key);
         if (!panel->name)
-            return reader->error->code;
+            return reader->tree->error->code;
         reader->panel = panel->name;
         int code = read_panel(reader, panel, pair.value);
         if (code)

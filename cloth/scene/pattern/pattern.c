@@ -41,22 +41,17 @@ static int read_stitch_side(const struct pattern_reader *reader, const struct na
     static const char *const keys[PATTERN_KEYS] = {"panel", "edge"};
     const struct garment_pattern *pattern = reader->pattern;
     int value[PATTERN_KEYS];
-    int code = pattern_map(reader, node, "a side", keys, value);
-    if (code)
-        return code;
-    if (!value[0] || !value[1])
-        return pattern_wrong(reader, node, "a side has to have both panel and edge");
+    if (pattern_both(reader, node, "a side", keys, value))
+        return reader->tree->error->code;
     char *text = pattern_name(reader, value[0]);
-    if (!text)
-        return reader->error->code;
-    const struct name key = {text, 0};
-    const struct name *found =
-        bsearch(&key, names, pattern->n_panels, sizeof *names, pattern_compare_names);
-    if (!found)
-        code = pattern_wrong(reader, value[0], "there is no panel '%s'", text);
+    const struct name key = {text, 0}, *found = NULL;
+    if (text)
+        found = bsearch(&key, names, pattern->n_panels, sizeof *names, pattern_compare_names);
+    if (text && !found)
+        pattern_wrong(reader, value[0], "there is no panel '%s'", text);
     free(text);
-    if (code)
-        return code;
+    if (!found)
+        return reader->tree->error->code;
     side->panel = found->panel;
     char what[260];
     snprintf(what, sizeof what, "the edge of panel '%s'", found->text);
@@ -72,9 +67,7 @@ static int read_stitch(const struct pattern_reader *reader, const struct name *n
     int side[PATTERN_KEYS];
     int code = CLOTH_OK;
     if (scene_tree_is(reader->tree, node, YAML_MAPPING_NODE)) {
-        code = pattern_map(reader, node, "a stitch", keys, side);
-        if (!code && !(side[0] && side[1]))
-            return pattern_wrong(reader, node, "a stitch has to have both from and to");
+        code = pattern_both(reader, node, "a stitch", keys, side);
     } else {
         code = pattern_list(reader, node, "a stitch", 2, 3);
         for (size_t k = 0; k < 2 && !code; k++)
@@ -97,16 +90,12 @@ static int read_stitch(const struct pattern_reader *reader, const struct name *n
 static int read_stitches(struct pattern_reader *reader, int node, int panels)
 {
     struct garment_pattern *pattern = reader->pattern;
-    int code = node ? pattern_list(reader, node, "stitches", 0, STITCHES) : CLOTH_OK;
-    if (code)
-        return code;
+    if (node ? pattern_list(reader, node, "stitches", 0, STITCHES) : CLOTH_OK)
+        return reader->tree->error->code;
     const size_t n = scene_tree_length(reader->tree, node);
-    struct name *names = cloth_alloc(pattern->n_panels, sizeof *names, reader->error);
-    pattern->stitch = cloth_alloc(n, sizeof *pattern->stitch, reader->error);
-    if (!names || !pattern->stitch)
-        code = CLOTH_E_MEMORY;
-    else
-        code = sort_names(reader, panels, names);
+    struct name *names = cloth_alloc(pattern->n_panels, sizeof *names, reader->tree->error);
+    pattern->stitch = cloth_alloc(n, sizeof *pattern->stitch, reader->tree->error);
+    int code = reader->tree->error->code || sort_names(reader, panels, names);
     for (size_t s = 0; s < n && !code; s++) {
         reader->stitch = (int64_t)s;
         code =
@@ -120,11 +109,10 @@ static int read_stitches(struct pattern_reader *reader, int node, int panels)
 
 /* ---- The file ---- */
 
-static const struct scene_words WORDS = {.noun = "pattern",
-                                         .form = "JSON",
-                                         .start =
-                                             "a pattern is a map of \"pattern\" and \"properties\"",
-                                         .large = ""};
+static const struct scene_words WORDS = {
+    .noun = "pattern",
+    .form = "JSON",
+    .start = "a pattern is a map of \"pattern\" and \"properties\""};
 
 static const char *const FILE_KEYS[PATTERN_KEYS] = {
     "pattern", "properties", "parameters", "parameter_order", "constraints", "constraint_order"};
@@ -143,48 +131,43 @@ static int read_properties(struct pattern_reader *reader, int node)
     int code = pattern_map(reader, node, "properties", PROPERTIES, value);
     if (!code && !value[UNITS])
         return pattern_wrong(reader, node, "properties has no units_in_meter");
-    code = code ? code : pattern_number(reader, value[UNITS], "units_in_meter", &units);
+    code = code || pattern_number(reader, value[UNITS], "units_in_meter", &units);
     if (!code && !(units >= 1e-3 && units <= 1e6))
         return pattern_wrong(reader, value[UNITS],
                              "units_in_meter is %g; it has to be 0.001 to 1e6", units);
-    if (!code && value[COORDS])
-        code = pattern_word(reader, value[COORDS], "curvature_coords", coords, &reader->absolute);
-    if (!code && value[TRANSLATION])
-        code = pattern_flag(reader, value[TRANSLATION], PROPERTIES[TRANSLATION], &reader->centre);
-    if (!code && value[LOOPS])
-        code = pattern_flag(reader, value[LOOPS], PROPERTIES[LOOPS], &loops);
     reader->unit = 1 / units;
-    return code;
+    return code ||
+           (value[COORDS] &&
+            pattern_word(reader, value[COORDS], "curvature_coords", coords, &reader->absolute)) ||
+           (value[TRANSLATION] &&
+            pattern_flag(reader, value[TRANSLATION], PROPERTIES[TRANSLATION], &reader->centre)) ||
+           (value[LOOPS] && pattern_flag(reader, value[LOOPS], PROPERTIES[LOOPS], &loops));
 }
 
 static int read_pattern_tree(struct pattern_reader *reader)
 {
     int file[PATTERN_KEYS], pattern[PATTERN_KEYS];
     int code = pattern_map(reader, 1, "the file", FILE_KEYS, file);
-    if (code)
-        return code;
-    if (!file[0] || !file[1])
+    if (!code && (!file[0] || !file[1]))
         return pattern_wrong(reader, 1, "the file has no \"%s\"", FILE_KEYS[file[0] ? 1 : 0]);
-    code = read_properties(reader, file[1]);
-    code = code ? code : pattern_map(reader, file[0], "pattern", PATTERN_MAP, pattern);
+    code = code || read_properties(reader, file[1]) ||
+           pattern_map(reader, file[0], "pattern", PATTERN_MAP, pattern);
     if (!code && !pattern[0])
         return pattern_wrong(reader, file[0], "pattern has no panels");
-    code = code ? code : pattern_read_panels(reader, pattern[0]);
-    return code ? code : read_stitches(reader, pattern[1], pattern[0]);
+    return code || pattern_read_panels(reader, pattern[0]) ||
+           read_stitches(reader, pattern[1], pattern[0]);
 }
 
 int scene_read_pattern(struct garment_pattern *pattern, const char *path, struct cloth_error *error)
 {
     struct cloth_error own = {0}; /* the caller may want none, the steps below rely on one */
     struct scene_tree tree;
-    struct pattern_reader reader = {
-        .tree = &tree, .pattern = pattern, .error = &own, .edge = -1, .stitch = -1};
+    struct pattern_reader reader = {.tree = &tree, .pattern = pattern, .edge = -1, .stitch = -1};
     *pattern = (struct garment_pattern){0};
-    int code = scene_tree_load(&tree, path, &WORDS, &own);
-    code = code ? code : read_pattern_tree(&reader);
+    int code = scene_tree_load(&tree, path, &WORDS, &own) || read_pattern_tree(&reader);
     scene_tree_free(&tree);
     if (code)
-        return cloth_fail(error, code, "%s", own.text);
+        return cloth_fail(error, own.code, "%s", own.text);
     code = garment_pattern_check(pattern, &own);
     return code ? cloth_fail(error, code, "%s: %s", path, own.text) : CLOTH_OK;
 }

@@ -5,11 +5,10 @@
 #include "cloth/scene/yaml/tree.h"
 
 /* A pattern file while it is read. JSON is YAML to its parser, so that each node knows its line.
- * Functions return a cloth_code. Local. */
+ * Functions return 0, or another number after a failure, which the tree's error tells. Local. */
 struct pattern_reader {
     const struct scene_tree *tree;
     struct garment_pattern *pattern;
-    struct cloth_error *error;
     double unit;          /* m: the file's unit of length */
     bool absolute;        /* control points are places, not parts of their edge */
     bool centre;          /* the middle of a panel's vertices becomes its origin */
@@ -28,6 +27,10 @@ int pattern_wrong(const struct pattern_reader *reader, int node, const char *for
  * once, and no other. `what` names the map. value[k]: the value of key k; 0: not there. */
 int pattern_map(const struct pattern_reader *reader, int node, const char *what,
                 const char *const keys[PATTERN_KEYS], int value[PATTERN_KEYS]);
+
+/* The same, and the first two keys are there. */
+int pattern_both(const struct pattern_reader *reader, int node, const char *what,
+                 const char *const keys[PATTERN_KEYS], int value[PATTERN_KEYS]);
 
 /* Checks that a node is a list of at least `least` and at most `most` entries. */
 int pattern_list(const struct pattern_reader *reader, int node, const char *what, size_t least,

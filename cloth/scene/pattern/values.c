@@ -2,7 +2,6 @@
  * it is in the pattern's own terms. */
 #include "cloth/base/memory.h"
 #include "cloth/scene/pattern/reader.h"
-#include "cloth/scene/yaml/scalar.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -27,7 +26,7 @@ int pattern_wrong(const struct pattern_reader *reader, int node, const char *for
         n = snprintf(where, sizeof where, "stitch %jd", (intmax_t)reader->stitch);
     if (reader->panel && reader->edge >= 0)
         n += snprintf(where + n, sizeof where - (size_t)n, ", edge %jd", (intmax_t)reader->edge);
-    return scene_tree_fail(reader->tree, node, reader->error, "%s%s%s", where, n ? ": " : "", text);
+    return scene_tree_fail(reader->tree, node, "%s%s%s", where, n ? ": " : "", text);
 }
 
 static int fail_expected(const struct pattern_reader *reader, int node, const char *what,
@@ -74,6 +73,15 @@ int pattern_map(const struct pattern_reader *reader, int node, const char *what,
         value[k] = pair.value;
     }
     return CLOTH_OK;
+}
+
+int pattern_both(const struct pattern_reader *reader, int node, const char *what,
+                 const char *const keys[PATTERN_KEYS], int value[PATTERN_KEYS])
+{
+    const int code = pattern_map(reader, node, what, keys, value);
+    if (code || (value[0] && value[1]))
+        return code;
+    return pattern_wrong(reader, node, "%s has to have both %s and %s", what, keys[0], keys[1]);
 }
 
 int pattern_list(const struct pattern_reader *reader, int node, const char *what, size_t least,
@@ -152,7 +160,7 @@ char *pattern_name(const struct pattern_reader *reader, int node)
         fail_expected(reader, node, "the name of a panel", "a text of 1 to 200 bytes");
         return NULL;
     }
-    char *name = cloth_alloc(strlen(text) + 1, 1, reader->error);
+    char *name = cloth_alloc(strlen(text) + 1, 1, reader->tree->error);
     for (size_t i = 0; name && text[i]; i++) {
         const unsigned char c = (unsigned char)text[i];
         name[i] = c <= 32 || c == 127 ? '_' : text[i];

@@ -1,9 +1,6 @@
 /* Values of a fabric are filled in as defaults are, and checked as if the scene had them. A tree of
  * another shape does no harm here: the check finds its faults. */
-#include "cloth/scene/schema/fabrics.h"
-
-#include "cloth/scene/schema/rules.h"
-#include "cloth/scene/yaml/edit.h"
+#include "cloth/scene/schema/check.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -61,84 +58,69 @@ static const struct value fabrics[][KEYS] = {
                     {"poisson", "0.00455"},
                     {"bending", "{rigidity: 2.99e-5}"}}};
 
-/* The number of a name, -1: it is none of them. */
-static int find_fabric(const char *name)
+/* The number of the fabric that a key of a map names; -1: none. */
+static int named_by(const struct scene_tree *tree, int map, const char *key)
 {
+    const bool is_map = scene_tree_is(tree, map, YAML_MAPPING_NODE);
+    const int node = is_map ? scene_tree_get(tree, map, key) : 0;
+    const char *name = node ? scene_tree_scalar(tree, node) : NULL;
     bool known = false;
     const int fabric = name ? scene_word_value(scene_fabrics, name, &known) : -1;
     return known ? fabric : -1;
 }
 
-/* The fabric that a key of a map names. */
-static int named_by(const struct scene_tree *tree, int map, const char *key)
-{
-    const bool is_map = scene_tree_is(tree, map, YAML_MAPPING_NODE);
-    const int node = is_map ? scene_tree_get(tree, map, key) : 0;
-    return node ? find_fabric(scene_tree_scalar(tree, node)) : -1;
-}
-
 /* Adds a material with only `like`, if the scene has none of this name. */
-static int add_fabric(struct scene_tree *tree, const char *name, struct cloth_error *error)
+static int add_fabric(struct scene_tree *tree, const char *name)
 {
     char like[40];
     int code = CLOTH_OK;
     snprintf(like, sizeof like, "{like: %s}", name);
     if (!scene_tree_get(tree, 1, "materials"))
-        code = scene_edit_default(tree, 1, "materials", "{}", error);
+        code = scene_edit_default(tree, 1, "materials", "{}");
     const int materials = scene_tree_get(tree, 1, "materials");
     if (code || !scene_tree_is(tree, materials, YAML_MAPPING_NODE) ||
         scene_tree_get(tree, materials, name))
         return code;
-    return scene_edit_default(tree, materials, name, like, error);
+    return scene_edit_default(tree, materials, name, like);
 }
 
-/* Adds the material that the key material of a map names. */
-static int add_named_fabric(struct scene_tree *tree, int map, struct cloth_error *error)
+/* Adds the materials that the maps of a list name, and those in their lists panels and regions. */
+static int add_all_named(struct scene_tree *tree, int list)
 {
-    const int fabric = named_by(tree, map, "material");
-    return fabric < 0 ? CLOTH_OK : add_fabric(tree, scene_fabrics[fabric].word, error);
-}
-
-/* The same of each map of a list, and of those in the lists of its keys `inner`, up to NULL. */
-static int add_all_named(struct scene_tree *tree, int list, const char *const *inner,
-                         struct cloth_error *error)
-{
-    static const char *const none[] = {NULL};
     const size_t n =
         scene_tree_is(tree, list, YAML_SEQUENCE_NODE) ? scene_tree_length(tree, list) : 0;
-    int code = CLOTH_OK;
-    for (size_t i = 0; i < n && !code; i++) {
-        const int item = scene_tree_item(tree, list, i);
-        code = add_named_fabric(tree, item, error);
-        for (const char *const *key = inner; *key && !code; key++)
-            if (scene_tree_is(tree, item, YAML_MAPPING_NODE))
-                code = add_all_named(tree, scene_tree_get(tree, item, *key), none, error);
+    for (size_t i = 0; i < n; i++) {
+        const int map = scene_tree_item(tree, list, i), fabric = named_by(tree, map, "material");
+        if (fabric >= 0 && add_fabric(tree, scene_fabrics[fabric].word))
+            return tree->error->code;
+        if (scene_tree_is(tree, map, YAML_MAPPING_NODE) &&
+            (add_all_named(tree, scene_tree_get(tree, map, "panels")) ||
+             add_all_named(tree, scene_tree_get(tree, map, "regions"))))
+            return tree->error->code;
     }
-    return code;
+    return CLOTH_OK;
 }
 
-static int fill_fabric(struct scene_tree *tree, int material, const struct value *value,
-                       struct cloth_error *error)
+static int fill_fabric(struct scene_tree *tree, int material, const struct value *value)
 {
     int code = CLOTH_OK;
     for (; value->key && !code; value++)
         if (!scene_tree_get(tree, material, value->key))
-            code = scene_edit_default(tree, material, value->key, value->yaml, error);
+            code = scene_edit_default(tree, material, value->key, value->yaml);
     return code;
 }
 
-int scene_fabrics_fill(struct scene_tree *tree, struct cloth_error *error)
+int scene_fabrics_fill(struct scene_tree *tree)
 {
-    static const char *const parts[] = {"panels", "regions", NULL};
     if (!scene_tree_is(tree, 1, YAML_MAPPING_NODE)) /* the check of keys says so */
         return CLOTH_OK;
-    int code = add_all_named(tree, scene_tree_get(tree, 1, "cloths"), parts, error);
+    int code = add_all_named(tree, scene_tree_get(tree, 1, "cloths"));
     const int materials = scene_tree_get(tree, 1, "materials");
     const bool is_map = scene_tree_is(tree, materials, YAML_MAPPING_NODE);
     for (size_t i = 0; !code && is_map && i < scene_tree_length(tree, materials); i++) {
         const int material = scene_tree_pair(tree, materials, i).value;
         const int fabric = named_by(tree, material, "like");
-        code = fabric < 0 ? CLOTH_OK : fill_fabric(tree, material, fabrics[fabric], error);
+        code = fabric >= 0 && fill_fabric(tree, material, fabrics[fabric]);
     }
     return code;
 }

@@ -1,20 +1,12 @@
-/* The list of all keys, and their page in Markdown, behind its opening (opening.md): a table for
- * each map that has a section. Maps without one are rows of the table around them. A section that
- * several keys have is printed at the first of them; the others link to it. */
+/* The list of all keys, and their page in Markdown, behind its opening (opening.md): the sections
+ * of prose.md, each with the table of its keys. Maps without a section are rows of the table around
+ * them. A section that several keys have is of the first of them; the others link to it. */
 #include "cloth/scene/scene.h"
 #include "cloth/scene/schema/rules.h"
 
 #include <ctype.h>
 #include <stdbool.h>
 #include <string.h>
-
-enum { MOST_SECTIONS = 64 };
-
-struct page {
-    FILE *file;
-    const struct scene_section *printed[MOST_SECTIONS];
-    size_t n_printed;
-};
 
 /* The map whose keys stand behind a rule: itself, or what its list or names are of; NULL: none. */
 static const struct scene_rule *map_of(const struct scene_rule *rule)
@@ -27,10 +19,10 @@ static const struct scene_rule *map_of(const struct scene_rule *rule)
 /* ---- Words ---- */
 
 /* A link to a section, by the target that Markdown gives its head. */
-static void print_link(FILE *file, const char *text, const struct scene_section *section)
+static void print_link(FILE *file, const char *text, const char *section)
 {
     fprintf(file, "[%s](#", text);
-    for (const char *c = section->head; *c; c++)
+    for (const char *c = section; *c; c++)
         if (isalnum((unsigned char)*c) || *c == '-' || *c == '_' || *c == ' ')
             fputc(*c == ' ' ? '-' : tolower((unsigned char)*c), file);
     fputc(')', file);
@@ -51,14 +43,13 @@ static void print_map(FILE *file, const struct scene_rule *key)
 /* The same as an error would expect, without articles. */
 static void print_expected(FILE *file, const struct scene_rule *key)
 {
-    static const char *const dropped[] = {"a finite ", "a "};
+    static const char finite[] = "a finite ", article[] = "a ";
     char expected[300];
     const char *text = scene_rule_expected(key, expected, sizeof expected);
-    for (size_t i = 0; i < sizeof dropped / sizeof *dropped; i++)
-        if (!strncmp(text, dropped[i], strlen(dropped[i]))) {
-            text += strlen(dropped[i]);
-            break;
-        }
+    if (!strncmp(text, finite, strlen(finite)))
+        text += strlen(finite);
+    else if (!strncmp(text, article, strlen(article)))
+        text += strlen(article);
     fputs(text, file);
 }
 
@@ -76,42 +67,43 @@ static void print_value(FILE *file, const struct scene_rule *key)
         print_expected(file, key);
 }
 
-static void print_default(FILE *file, const struct scene_rule *of, const struct scene_rule *key)
+static void print_default(FILE *file, const struct scene_rule *key)
 {
     if (key->fallback)
         fprintf(file, "`%s`", key->fallback);
     else
-        fputs(of->type == SCENE_ONE_OF || key->choice ? "one of these"
-              : key->required                         ? "required"
-                                                      : "",
-              file);
+        fputs(key->choice ? "one of these" : key->required ? "required" : "", file);
 }
 
 static void print_needs(FILE *file, const struct scene_rule *key)
 {
     const char *end = strstr(key->needs, ": ");
-    fputs(key->more ? " " : ". ", file);
     if (end)
         fprintf(file, "*%.*s needs %s.*", (int)(end - key->needs), key->needs, end + 2);
     else
         fprintf(file, "*Needs %s.*", key->needs);
 }
 
-static void print_row(FILE *file, const struct scene_rule *of, const struct scene_rule *key,
-                      const char *path)
+/* ---- Notes ---- */
+
+/* A line of prose.md that is no text of its section: more of a row of the table, "- `KEY`: note".
+ */
+static bool is_note(const char *line)
 {
-    fprintf(file, "| `%s` | ", path);
-    print_value(file, key);
-    fputs(" | ", file);
-    print_default(file, of, key);
-    fprintf(file, " | %s%s%s", key->about, key->more ? ". " : "", key->more ? key->more : "");
-    if (key->needs)
-        print_needs(file, key);
-    if (key->section && !map_of(key)) {
-        fputs(key->more || key->needs ? " " : ". ", file);
-        print_link(file, "More", key->section);
-    }
-    fputs(" |\n", file);
+    return !strncmp(line, "- `", 3) && strstr(line, "`: ");
+}
+
+/* The note below a head on the key at a path; NULL: there is none. */
+static const char *note_of(const char *head, const char *path)
+{
+    const size_t n = strlen(path);
+    const char *const *line = scene_prose;
+    while (*line && (**line != '#' || strcmp(strchr(*line, ' ') + 1, head) != 0))
+        line++;
+    for (line += *line != NULL; *line && **line != '#'; line++)
+        if (is_note(*line) && !strncmp(*line + 3, path, n) && !strncmp(*line + 3 + n, "`: ", 3))
+            return *line + 3 + n + 3;
+    return NULL;
 }
 
 /* ---- Tables ---- */
@@ -136,118 +128,122 @@ static struct path path_inside(const char *map, const struct scene_rule *key)
     return path;
 }
 
+static bool is_of(const struct scene_rule *key, const char *shared)
+{
+    return key->shared && !strcmp(key->shared, shared);
+}
+
 /* One row for all keys of a map that share a section. */
 static void print_shared(FILE *file, const struct scene_rule *keys, const char *path,
-                         const struct scene_section *shared)
+                         const char *shared)
 {
     const char *before = "| ";
     for (const struct scene_rule *key = keys; key->key; key++)
-        if (key->shared == shared) {
+        if (is_of(key, shared)) {
             fprintf(file, "%s`%s%s%s`", before, path, *path ? "." : "", key->key);
             before = ", ";
         }
     fputs(" | | | ", file);
-    print_link(file, shared->head, shared);
+    print_link(file, shared, shared);
     fputs(" |\n", file);
 }
 
-/* The rows of a map; shared: the section whose keys are rows themselves. */
-static void print_rows(FILE *file, const struct scene_rule *of, const char *path,
-                       const struct scene_section *rows)
+static void print_row(FILE *file, const char *head, const struct scene_rule *key, const char *path)
 {
-    const struct scene_section *shared = NULL;
-    for (const struct scene_rule *key = of->inside; key->key; key++) {
-        if (rows ? key->shared != rows : key->shared != NULL) {
-            if (!rows && key->shared != shared)
-                print_shared(file, of->inside, path, key->shared);
-            shared = key->shared;
-            continue;
-        }
-        print_row(file, of, key, page_path_of(path, key).text);
-        if (map_of(key) && !key->section)
-            print_rows(file, map_of(key), path_inside(path, key).text, NULL);
+    const char *note = note_of(head, path), *gap = ". ";
+    fprintf(file, "| `%s` | ", path);
+    print_value(file, key);
+    fputs(" | ", file);
+    print_default(file, key);
+    fprintf(file, " | %s", key->about);
+    if (note) {
+        fprintf(file, "%s%s", gap, note);
+        gap = " ";
     }
+    if (key->needs) {
+        fputs(gap, file);
+        print_needs(file, key);
+        gap = " ";
+    }
+    if (key->section && !map_of(key)) {
+        fputs(gap, file);
+        print_link(file, "More", key->section);
+    }
+    fputs(" |\n", file);
 }
 
-static void print_table(FILE *file, const struct scene_rule *of, const struct scene_section *rows)
+/* The rows of a map in the section of a head. shared: of its keys that share this section. */
+static void print_rows(FILE *file, const char *head, const struct scene_rule *of, const char *path,
+                       bool shared)
 {
-    fputs("\n| key | value | default | meaning |\n|---|---|---|---|\n", file);
-    print_rows(file, of, "", rows);
+    const char *last = NULL;
+    for (const struct scene_rule *key = of->inside; key->key; key++) {
+        if (shared ? !is_of(key, head) : key->shared != NULL) {
+            if (!shared && !(last && is_of(key, last)))
+                print_shared(file, of->inside, path, key->shared);
+            last = key->shared;
+            continue;
+        }
+        print_row(file, head, key, page_path_of(path, key).text);
+        if (map_of(key) && !key->section)
+            print_rows(file, head, map_of(key), path_inside(path, key).text, false);
+    }
 }
 
 /* ---- Sections ---- */
 
-static void print_sections(struct page *page, const struct scene_rule *of, const char *path,
-                           int level);
+/* The first key that has a section, or shares it; the map that it stands in; its path. */
+struct sectioned {
+    const struct scene_rule *key, *of;
+    struct path path;
+};
 
-static bool is_printed(struct page *page, const struct scene_section *section)
+static bool find_section(const struct scene_rule *of, const char *path, const char *head,
+                         struct sectioned *found)
 {
-    for (size_t i = 0; i < page->n_printed; i++)
-        if (page->printed[i] == section)
+    for (const struct scene_rule *key = of->inside; key->key; key++) {
+        *found = (struct sectioned){key, of, page_path_of(path, key)};
+        if (is_of(key, head) || (key->section && !strcmp(key->section, head)) ||
+            (map_of(key) && find_section(map_of(key), path_inside(path, key).text, head, found)))
             return true;
-    if (page->n_printed < MOST_SECTIONS)
-        page->printed[page->n_printed++] = section;
+    }
     return false;
 }
 
-static void print_head(FILE *file, const struct scene_section *section, int level)
+/* The table at the end of a section: of the keys that share it, or of those in its key. */
+static void print_table(FILE *file, const struct sectioned *found, const char *head)
 {
-    fprintf(file, "\n%.*s %s\n", level, "######", section->head);
-}
-
-static void print_text(FILE *file, const struct scene_section *section)
-{
-    if (section->text)
-        fprintf(file, "\n%s\n", section->text);
-    if (section->example)
-        fprintf(file, "\n```yaml\n%s```\n", section->example);
-}
-
-/* The section of a key of the map at a path, with the table of its keys. */
-static void print_section(struct page *page, const struct scene_rule *key, const char *path,
-                          int level)
-{
-    if (is_printed(page, key->section))
+    const bool shared = is_of(found->key, head);
+    if (!shared && !map_of(found->key))
         return;
-    print_head(page->file, key->section, level);
-    fprintf(page->file, "\n`%s`: %s.\n", page_path_of(path, key).text, key->about);
-    print_text(page->file, key->section);
-    if (!map_of(key))
-        return;
-    print_table(page->file, map_of(key), NULL);
-    print_sections(page, map_of(key), path_inside(path, key).text, level + 1);
+    fputs("\n| key | value | default | meaning |\n|---|---|---|---|\n", file);
+    print_rows(file, head, shared ? found->of : map_of(found->key), "", shared);
 }
 
-/* A section that keys of several maps share: these keys of one of them. */
-static void print_shared_section(struct page *page, const struct scene_rule *of,
-                                 const struct scene_section *shared, int level)
-{
-    if (is_printed(page, shared))
-        return;
-    print_head(page->file, shared, level);
-    print_text(page->file, shared);
-    print_table(page->file, of, shared);
-}
-
-static void print_sections(struct page *page, const struct scene_rule *of, const char *path,
-                           int level)
-{
-    for (const struct scene_rule *key = of->inside; key->key; key++) {
-        if (key->shared)
-            print_shared_section(page, of, key->shared, level);
-        if (key->section)
-            print_section(page, key, path, level);
-        else if (map_of(key))
-            print_sections(page, map_of(key), path_inside(path, key).text, level);
-    }
-}
-
+/* The lines of prose.md, with what a section's key is below each head, and its keys at the end. The
+ * first section is of the whole scene, which no key names. */
 void scene_print_page(FILE *file)
 {
-    struct page page = {.file = file};
-    fputs("\n## Keys\n", file);
-    print_table(file, &scene_root, NULL);
-    print_sections(&page, &scene_root, "", 2);
+    const struct sectioned scene = {.key = &scene_root};
+    struct sectioned found = scene;
+    const char *head = NULL;
+    bool apart = true;
+    for (const char *const *line = scene_prose; *line; line++) {
+        const bool is_head = **line == '#';
+        if (is_head && head)
+            print_table(file, &found, head);
+        if (**line && !is_note(*line))
+            fprintf(file, "%s%s\n", apart ? "\n" : "", *line);
+        apart = !**line;
+        if (!is_head)
+            continue;
+        head = strchr(*line, ' ') + 1;
+        if (!find_section(&scene_root, "", head, &found))
+            found = scene;
+        else if (!is_of(found.key, head))
+            fprintf(file, "\n`%s`: %s.\n", found.path.text, found.key->about);
+    }
+    print_table(file, &found, head);
 }
 
 /* ---- The list ---- */
@@ -262,9 +258,9 @@ static void list_keys(FILE *file, const struct scene_rule *of, const char *path)
             fprintf(file, "default %s\n", key->fallback);
         else
             fprintf(file, "%s\n",
-                    of->type == SCENE_ONE_OF || key->choice ? "a choice"
-                    : key->required                         ? "required"
-                                                            : "optional");
+                    key->choice     ? "a choice"
+                    : key->required ? "required"
+                                    : "optional");
         fprintf(file, "    %s\n", key->about);
         if (map_of(key))
             list_keys(file, map_of(key), path_inside(path, key).text);

@@ -15,7 +15,7 @@ enum scene_type {
     SCENE_MAP,            /* inside: its keys */
     SCENE_ONE_OF,         /* a map with exactly one of the keys `inside` */
     SCENE_NAMED,          /* a map with keys of the user's choice; inside: their one rule */
-    SCENE_EDITS,          /* a map KEY: VALUE of changes to the scene (yaml/edit.h) */
+    SCENE_EDITS,          /* a map KEY: VALUE of changes to the scene (yaml/edit.c) */
     SCENE_LIST,           /* inside: the rule of its items */
     SCENE_NUMBER,         /* finite, in `range` */
     SCENE_INTEGER,        /* min <= value <= max */
@@ -41,14 +41,9 @@ struct scene_field {
     size_t size;
 };
 
-/* A section of the page of all keys (page.c), in Markdown. Its head is a link's target, so no two
- * sections have the same. */
-struct scene_section {
-    const char *head;
-    const char *text;    /* paragraphs; NULL: none */
-    const char *example; /* YAML: keys of the map that the rule stands in, or of a map around that;
-                            or a whole scene; NULL: none */
-};
+/* The lines of prose.md, ended by NULL: sections of the page of all keys (page.c), each below a
+ * head that rules name. */
+extern const char *const scene_prose[];
 
 struct scene_rule {
     const char *key; /* NULL ends the keys of a map */
@@ -64,12 +59,10 @@ struct scene_rule {
     const struct model_word *words; /* choices, ended by one without a word */
     const struct scene_rule *inside;
     const char *about; /* for the list of keys and the page: no capital, no full stop */
-    const char *more;  /* for the page alone: whole sentences; NULL: none */
     const char
         *needs; /* what the key does nothing without, in the words of needs.h; NULL: nothing */
-    const struct scene_section *section; /* of this key; NULL: it is a row of its map's table */
-    const struct scene_section
-        *shared; /* of this key and its neighbours, which other maps have, too */
+    const char *section; /* of this key, by its head; NULL: it is a row of its map's table */
+    const char *shared;  /* of this key and its neighbours, which other maps have, too */
 
     /* The fields, all of the structure that the map of this key fills. A number takes a double, a
      * whole one a uint32_t, a text a char * that the structure owns. A choice takes a bool, int or
@@ -77,7 +70,7 @@ struct scene_rule {
      * that they stand in. */
     struct scene_field field;
     struct scene_field count; /* lists of any length and named maps: a uint32_t; `field` is then a
-                                 pointer, to calloc'ed entries */
+                                 pointer, to calloc'ed entries; one value is an entry */
     size_t item;              /* of their `item` bytes each */
     struct scene_field name;  /* named maps: of each entry */
     struct scene_field place, kind;
@@ -141,17 +134,16 @@ extern const struct model_word scene_views[];        /* an axis, or CONTACT_THIN
 extern const struct model_word scene_hdf5_fields[];  /* offsets of flags in a struct model_hdf5 */
 extern const struct model_word scene_probe_values[]; /* offsets of flags in a struct model_probe */
 
+/* Materials that every scene knows by name (fabrics.c). */
+extern const struct model_word scene_fabrics[];
+
 /* The value of a word among `words`; *known: true if it is among them. */
 int scene_word_value(const struct model_word *words, const char *word, bool *known);
 
 /* The allowed values in words: "a finite number > 0 (s)". Returns text. */
 char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size);
 
-/* The candidate nearest to a word, if it is near enough to be meant; else NULL. Candidates: n
- * strings. */
-const char *scene_nearest_word(const char *word, const char *const *candidates, size_t n);
-
-/* "; did you mean 'x'? Allowed: x, y, z", cut to size. Returns text. */
+/* "; did you mean 'x'? Allowed: x, y, z", of n candidates, cut to size. Returns text. */
 char *scene_allowed_words(const char *word, const char *const *candidates, size_t n, char *text,
                           size_t size);
 

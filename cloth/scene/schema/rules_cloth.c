@@ -19,35 +19,7 @@ static const struct scene_rule grid_keys[] = {
      WORDS({"mirrored", MESH_MIRRORED}, {"alternate", MESH_ALTERNATE}, {"same", MESH_SAME},
            {"equilateral", MESH_EQUILATERAL}),
      .about = "how their diagonals run: mirrored at the middle lines of the sheet, by turns, "
-     "alike; or equilateral triangles",
-     SECTION("Cells of a grid",
-     "Two triangles make a cell of a grid. The diagonal between them matters to `model: "
-     "triangles`, to `bending`, to the one shear spring of `diagonals: one` and, with triangles, "
-     "to the masses. [physics.md](physics.md#cells-and-masses) compares them by measurement.\n\n"
-     "| `cells` | diagonals | symmetric under u -> -u, v -> -v |\n"
-     "|---|---|---|\n"
-     "| `mirrored` | alike in each quarter of the sheet, mirrored at its two middle lines: they "
-     "point to the centre | yes, each where the number of cells along it (nx - 1, ny - 1) is "
-     "even |\n"
-     "| `alternate` | one way and the other by turns, as on a chessboard | the same |\n"
-     "| `same` | all alike, from (i, j) to (i + 1, j + 1), as papers draw them | no: a sheet "
-     "leans to one side |\n\n"
-     "An odd number of cells leaves a row or column of them on the middle line, and no diagonal "
-     "is its own mirror image. There, `mirrored` sets the diagonals by turns along the line, so "
-     "that no side is preferred. For a symmetric scene take odd nx and ny, a symmetric start, "
-     "and a solve that is tight enough (`solver.stop`): where cloth crumples, the error of a "
-     "loose solve grows.\n\n"
-     "`equilateral` makes a sheet of equilateral triangles. Rows have nx and nx - 1 vertices by "
-     "turns, a = width / (nx - 1) from each other; the shorter rows stand in the middle between "
-     "the longer ones. So the side edges (along v) are ragged, and the other two are straight. "
-     "The sheet is symmetric under u -> -u, and with an odd ny under v -> -v. Rows are a "
-     "sqrt(3)/2 apart, so the height is (ny - 1) a sqrt(3)/2: leave `height` out (one that "
-     "differs by more than 0.1 % is an error). Row j begins with vertex j nx - floor(j/2). All "
-     "springs of such a sheet are equally stiff, except that those at the border are half as "
-     "stiff. The sheet is isotropic: E is `stretch` and nu is 1/3 in every direction, and "
-     "`bending` has the same rigidity in every direction. It has no rows and columns of cells, "
-     "so `shear` and `diagonals` of springs mean nothing.",
-     "mesh: {grid: {width: 1, nx: 31, ny: 35, cells: equilateral}}\n")},
+     "alike; or equilateral triangles", .section = "Cells of a grid"},
     {0}};
 
 static const struct scene_rule disc_keys[] = {
@@ -56,9 +28,7 @@ static const struct scene_rule disc_keys[] = {
      .about = "from the middle to the border"},
     {"rings", SCENE_INTEGER, .required = true, .min = 1, .max = MESH_DISC_RINGS,
      INTO(struct scene_disc, rings),
-     .about = "of vertices around the one in the middle",
-     .more = "Ring k has 6 k vertices; it begins with vertex 1 + 3 k (k - 1), on +x, and goes on "
-     "towards +z."},
+     .about = "of vertices around the one in the middle"},
     {0}};
 
 static const struct scene_rule inline_keys[] = {
@@ -102,23 +72,14 @@ static const struct scene_rule mesh_keys[] = {
     {"disc", SCENE_MAP, .choice = true, .inside = disc_keys, .apart = true, MESH_PLACE,
      .about = "a flat round sheet in the x-z plane, centred, of almost equal triangles"},
     {"file", SCENE_TEXT, .choice = true, MESH_PLACE,
-     .about = "an OBJ file, relative to the scene's folder ([mesh.md](mesh.md))",
-     .more = "A convex polygon is cut into a fan of triangles from its first corner, a concave "
-     "one by clipping ears in its own plane (of Newell's normal). A polygon without area, or one "
-     "that crosses itself, is an error. The output keeps the polygons. `l` lines are edges "
-     "without triangles, each given once. `g` and `o` lines name [groups](#picking-vertices)."},
+     .about = "an OBJ file, relative to the scene's folder ([mesh.md](mesh.md))"},
     {"inline", SCENE_MAP, .choice = true, .inside = inline_keys, .apart = true, MESH_PLACE,
      .about = "a mesh written out"},
     {"pattern", SCENE_MAP, .choice = true, .inside = pattern_keys, .apart = true, MESH_PLACE,
-     .about = "the panels of a sewing pattern, where it places them",
-     .more = "uv is that of the panels, and each is a [group](#picking-vertices) of its name. A "
-     "largest panel shorter than 5 cm or longer than 4 m, by `units_in_meter`, draws a warning."},
+     .about = "the panels of a sewing pattern, where it places them"},
     {"weld", SCENE_NUMBER, "m", .range = SCENE_POSITIVE, INTO(struct model_cloth, weld),
      .about = "vertices that lie so near to each other, after the transform, are one, as by "
-     "[welds](#welds)",
-     .more = "For meshes in pieces, and slits, whose borders a program wrote twice; 1e-5 does "
-     "for these. Vertices at borders of an OBJ or inline mesh that lie on another's place, "
-     "unjoined, draw a warning. So does a mesh whose triangles are wound against each other."},
+     "[welds](#welds)"},
     {0}};
 
 static const struct scene_rule transform_keys[] = {
@@ -159,89 +120,53 @@ static const struct scene_rule cloth_keys[] = {
     {"name", SCENE_TEXT, INTO(struct model_cloth, name),
      .about = "unique; else cloth1, cloth2, ..."},
     {"mesh", SCENE_MAP, .required = true, .inside = mesh_keys,
-     .about = "its shape at rest",
-     SECTION("Meshes", NULL, "mesh: {grid: {width: 1, height: 2, nx: 21, ny: 41}}\n")},
+     .about = "its shape at rest", .section = "Meshes"},
     {"transform", SCENE_MAP, .fallback = "{}", .inside = transform_keys, .apart = true,
-     .about = "of the mesh, before lengths and masses are taken",
-     .more = "The transformed mesh lies within 10^6 m of the origin along each axis. A mesh with "
-     "faces draws a warning if its largest extent is above 10 m or below 1 cm: lengths are "
-     "metres."},
+     .about = "of the mesh, before lengths and masses are taken"},
     {"material", SCENE_TEXT, .required = true,
      .about = "a name in materials, or a fabric that every scene knows"},
     {"pins", SCENE_LIST, .fallback = "[]", .inside = &scene_pin,
      ARRAY(struct model_cloth, pins, n_pins),
-     .about = "vertices held, or moved", .section = &scene_pins_section},
+     .about = "vertices held, or moved", .section = "Pins"},
     {"loads", SCENE_LIST, .fallback = "[]", .inside = &scene_load,
      ARRAY(struct model_cloth, loads, n_loads),
-     .about = "forces on vertices", .section = &scene_loads_section},
+     .about = "forces on vertices", .section = "Loads"},
     {"masses", SCENE_LIST, .fallback = "[]", .inside = &scene_mass,
      ARRAY(struct model_cloth, masses, n_masses),
-     .about = "more mass of vertices: a weight, a hem; they add up",
-     .section = &scene_masses_section},
+     .about = "more mass of vertices: a weight, a hem; they add up", .section = "Masses"},
     {"layer", SCENE_INTEGER, .fallback = "0", INTO(struct model_cloth, layer),
      .about = "of two cloths that meet the higher one is outside, where a start is untangled",
-     .more = "Out is the side that the triangles of the inner cloth face.",
      .needs = "contact.untangle = on"},
     {"rest", SCENE_CHOICE, .fallback = "position", .words = scene_rests,
      .about = "where the shape at rest, which gives lengths, angles and masses, is taken from: "
-     "the transformed mesh, or its uv, flat and in m",
-     .more = "Where islands of uv meet, an edge has the mean length of both sides; `uv` takes no "
-     "transform."},
+     "the transformed mesh, or its uv, flat and in m"},
     {"groups", SCENE_LIST, .filled = true, .inside = &scene_text,
      .about = "names for contact.ignore, of your choice, for the whole cloth"},
     {"mass_per_vertex", SCENE_NUMBER, "kg", .range = SCENE_POSITIVE,
      INTO(struct model_cloth, mass_per_vertex),
      .about = "instead of density times area"},
-    {"velocity", SCENE_LIST, "m/s", .fallback = "[0, 0, 0]", .length = 3, .inside = &scene_number,
-     INTO(struct model_cloth, velocity), PLACE(struct model_cloth, velocity_place),
+    {"velocity", SCENE_LIST, "m/s", "[0, 0, 0]", VECTOR, INTO(struct model_cloth, velocity),
+     PLACE(struct model_cloth, velocity_place),
      .about = "at the start; less than 10^6 along each axis"},
     {"panels", SCENE_LIST, .fallback = "[]", .inside = &panel,
      .about = "groups of other materials or directions of threads; the last one counts",
-     SECTION("Panels", "An entry has a `material`, a `grain` or both. The grain turns warp and "
-     "weft of `model: triangles`, of springs and of `bending`; in a pattern, and wherever uv "
-     "shows the front, it is counterclockwise as seen from the front. The three corners of a "
-     "triangle lie in the group, and both ends of a spring or hinge. A grain is an error where "
-     "the mesh has no uv, and a warning where no material has two numbers for warp and weft. A "
-     "triangle outside the group whose corners all lie on its border counts as the group's own, "
-     "which draws a warning.",
-     "panels:\n"
-     "  - {group: front, grain: 45}                       # cut on the bias\n"
-     "  - {group: collar, material: canvas, grain: 90}\n")},
+     .section = "Panels"},
     {"regions", SCENE_LIST, .fallback = "[]", .inside = &scene_region,
      .about = "parts of other materials; the last one that has an element counts, and all count "
-     "more than panels",
-     SECTION("Regions: a cloth of several materials", "An element with all its vertices in a "
-     "region is of that material. For a triangle (its stiffness and mass) these are its three "
-     "corners, for a spring its two ends, and for a hinge the two ends of its edge. The drag of "
-     "a vertex (`viscous` and `mass` damping) goes by the vertex itself. An element in no region "
-     "is of the cloth's own material. So a box whose faces run along lines of the mesh cuts it "
-     "there. Materials of one cloth have the same `model` and `diagonals`, and those that have "
-     "`bending` have the same model of it. A region without even one edge is an error. A cloth "
-     "has at most 64 regions and panels.",
-     "regions:\n"
-     "  - {box: [[-0.5, 0, 0.4], [0.5, 0, 0.5]], material: hem}       # the last tenth of a "
-     "sheet\n"
-     "  - {vertices: [1, 2], material: weak}                          # one link of a chain\n")},
+     "more than panels", .section = "Regions: a cloth of several materials"},
     {"folds", SCENE_LIST, .fallback = "[]", .inside = &scene_fold,
      ARRAY(struct model_cloth, folds, n_folds),
-     .about = "creases: edges whose angle at rest is given", .section = &scene_folds_section},
+     .about = "creases: edges whose angle at rest is given", .section = "Folds"},
     {"from", SCENE_MAP, .inside = settled_keys, .apart = true,
      .about = "a frame of an earlier run, in which it starts at rest",
-     SECTION("Starting from an earlier run", "The cloth starts where the run with `--output` had "
-     "it in that frame; the mesh must have as many vertices. It is at rest there but for its "
-     "`velocity`. Lengths and angles at rest, masses, and what pins and boxes pick are those of "
-     "the mesh as without `from`; pins hold where the vertices start. `start` changes what "
-     "`from` gives. Frames are floats, and forces of contact begin at 0, so a settled cloth "
-     "moves a little before it is at rest again. `certified` contact checks this start as any "
-     "other; what ended a run certified is free.",
-     "from: {frames: ../draped}\n")},
+     .section = "Starting from an earlier run"},
     {"start", SCENE_LIST, .fallback = "[]", .inside = &scene_start,
      ARRAY(struct model_cloth, starts, n_starts),
      .about = "how vertices start, where that is not the mesh's shape at rest",
-     .section = &scene_starts_section},
+     .section = "How vertices start"},
     {"seams", SCENE_MAP, .inside = scene_seams_keys, INTO(struct model_cloth, seams),
      .about = "of a mesh that has them: what joins the panels; without the key nothing does",
-     .section = &scene_seams_section},
+     .section = "Seams"},
     {0}};
 const struct scene_rule scene_cloth = {
     .type = SCENE_MAP, .inside = cloth_keys, PLACE(struct model_cloth, place)};

@@ -1,8 +1,6 @@
 /* Keys of materials. */
 #include "cloth/scene/schema/tables.h"
 
-#include "cloth/scene/schema/fabrics.h"
-
 /* clang-format off */
 static const struct scene_rule damping_keys[] = {
     {"viscous", SCENE_NUMBER, "kg/s", "0", .range = SCENE_NOT_NEGATIVE,
@@ -59,18 +57,6 @@ static const struct scene_rule correction_keys[] = {
               "struct model_material", sizeof(struct model_material)}
 _Static_assert(offsetof(struct model_material, weft_excess) ==
                offsetof(struct model_material, stretch) + sizeof(double), "weft after warp");
-const struct scene_section scene_materials_section = {"Materials",
-    "[physics.md](physics.md#fabrics) has the values of the four fabrics that every scene knows. "
-    "Triangles whose `shear` is 0 draw a warning, as nothing resists their being sheared; so do "
-    "a `density` outside 0.005 to 5 kg/m^2, a `bending.rigidity` above 0.01 N m, and a `stretch` "
-    "of 0 that triangles have.",
-    "materials:\n"
-    "  cotton: {density: 0.2, stretch: 5000, shear: 2500, bend: 10, damping: {viscous: 0.0001, "
-    "mass: 0.1, stiffness: 0.01}}\n"
-    "  canvas: {like: denim, damping: {stiffness: 0.001}}       # denim, but with damping\n"
-    "  rope: {ea: 500}                                          # of a chain\n"
-    "  woven: {density: 0.15, model: triangles, stretch: [4000, 2000], shear: 30, poisson: 0.2, "
-    "bending: {rigidity: [2e-6, 1e-6]}}\n"};
 static const struct scene_rule material_keys[] = {
     {"like", SCENE_CHOICE, .words = scene_fabrics,
      .about = "a measured one, whose values stand where none are given"},
@@ -84,14 +70,9 @@ static const struct scene_rule material_keys[] = {
     {"stretch", SCENE_NUMBER_OR_LIST, "N/m", .range = SCENE_NOT_NEGATIVE, .length = 2,
      .inside = &not_negative, STRETCH_AND_WEFT,
      .about = "modulus of triangles, or along threads or edges: one, or those of warp and weft",
-     .more = "Required where a cloth of the material has triangles. Threads are those of grids; "
-     "of other meshes with springs it is of edges, which need uv for two moduli. "
-     "[physics.md](physics.md#springs) has the E, G and nu of a lattice of springs.",
      .needs = NEEDS_OWN_TRIANGLES},
     {"ea", SCENE_NUMBER, "N", .range = SCENE_NOT_NEGATIVE, INTO(struct model_material, ea),
      .about = "force / strain of edges without triangles: chains, ropes",
-     .more = "Required where a cloth of the material has such edges. An edge is one spring of "
-     "`ea` / its length at rest (N/m), so a chain is as stiff however many links it has.",
      .needs = NEEDS_OWN_LINKS},
     {"shear", SCENE_NUMBER, "N/m", "0", .range = SCENE_NOT_NEGATIVE,
      INTO(struct model_material, shear),
@@ -113,19 +94,13 @@ static const struct scene_rule material_keys[] = {
      "else there is none", .needs = NEEDS_OWN_TRIANGLES},
     {"strain_limit", SCENE_MAP, .inside = limit_keys,
      .about = "springs that pull edges back which are stretched too far "
-     "([physics.md](physics.md#limits-of-strain))",
-     .more = "It is of all edges, with or without triangles; on grids of springs it is of the "
-     "edges along the threads.", .needs = NEEDS_OWN_EDGES},
+     "([physics.md](physics.md#limits-of-strain))", .needs = NEEDS_OWN_EDGES},
     {"velocity_correction", SCENE_MAP, .inside = correction_keys,
      .about = "impulses after a step's solve, so that no edge ends it stretched too far "
-     "([physics.md](physics.md#velocity-correction))",
-     .more = "`strain_limit` is a spring, which gives way under a load; this is no force and "
-     "does not. It is of the same edges, across welds too: where a weld makes two edges one, the "
-     "first one's counts. `{}` is all defaults.", .needs = NEEDS_OWN_EDGES},
+     "([physics.md](physics.md#velocity-correction))", .needs = NEEDS_OWN_EDGES},
     {"damping", SCENE_MAP, .fallback = "{}", .inside = damping_keys, .about = "of motion"},
     {"friction", SCENE_NUMBER, .range = SCENE_COEFFICIENT, INTO(struct model_material, friction),
-     .about = "coefficient of contact; else that of contact",
-     .more = "A cloth with `regions` has that of its own material.", .needs = NEEDS_MET},
+     .about = "coefficient of contact; else that of contact", .needs = NEEDS_MET},
     {"diagonals", SCENE_CHOICE, .fallback = "both", INTO(struct model_material, both_diagonals),
      WORDS({"both", true}, {"one", false}),
      .about = "shear springs in a cell of a grid"},

@@ -1,7 +1,9 @@
-/* Keys of the steps of a run: time, solves, and the files in its folder. */
+/* Keys of the steps of a run: time, contact, solves, and the files in its folder. */
 #include "cloth/scene/schema/tables.h"
 
 /* clang-format off */
+/* ---- Time ---- */
+
 static const struct scene_rule rest_keys[] = {
     {"speed", SCENE_NUMBER, "m/s", "0.001", .range = SCENE_POSITIVE,
      INTO(struct model_rest, speed),
@@ -13,8 +15,6 @@ static const struct scene_rule sewn_keys[] = {
     {"distance", SCENE_NUMBER, "m", "0.001", .range = SCENE_POSITIVE, INTO(struct model, sewn),
      .about = "partners of pulled seams are at most so far from each other"},
     {0}};
-const struct scene_section scene_time_section = {"Time", NULL,
-    "time: {h: 0.001, end: 10, fps: 25, rest: {speed: 0.002, hold: 0.2}}\n"};
 const struct scene_rule scene_time_keys[] = {
     {"h", SCENE_NUMBER, "s", .required = true, .range = SCENE_POSITIVE, INTO(struct model, h),
      PLACE(struct model, h_place),
@@ -23,17 +23,10 @@ const struct scene_rule scene_time_keys[] = {
      .about = "round(end / h) steps are made, more where steps are halved"},
     {"fps", SCENE_NUMBER, "1/s", "25", .range = SCENE_POSITIVE, INTO(struct model, fps),
      PLACE(struct model, fps_place),
-     .about = "frames a second; frame 0 is the start",
-     .more = "Where frames are closer than steps, a step is shown several times (10 times and "
-     "more: with a warning). A run whose frames and probes do not fit on the disk of `--output` "
-     "is refused before it begins; more than 10 GB of them draw a warning."},
+     .about = "frames a second; frame 0 is the start"},
     {"halving", SCENE_CHOICE, .fallback = "on", INTO(struct model, halving),
      WORDS({"on", true}, {"off", false}),
-     .about = "a step that fails is made again with half the length, down to h/1024",
-     .more = "A step fails if its solve breaks down or does not converge, a position or velocity "
-     "leaves all bounds, an edge is stretched too much, or `certified` contact finds no end of "
-     "it. Steps grow back on multiples of their own length. If the shortest step fails too, the "
-     "run ends and says why; by `off` the first failure ends the run."},
+     .about = "a step that fails is made again with half the length, down to h/1024"},
     {"stretch_growth", SCENE_NUMBER, .fallback = "0.1", .range = SCENE_NOT_NEGATIVE,
      INTO(struct model, stretch_growth),
      .about = "the largest stretch (length / length at rest, of the edges of all cloths) may "
@@ -44,62 +37,91 @@ const struct scene_rule scene_time_keys[] = {
     {"energy_growth", SCENE_NUMBER, .fallback = "0.005", .range = SCENE_NOT_NEGATIVE,
      INTO(struct model, energy_growth),
      .about = "how far the energy of an implicit step may end above an earlier one where nothing "
-     "does work on the cloth; 0: not checked",
-     .more = "It is a part of the energy of motion and strain, or of what weights and loads can "
-     "set free. The earlier energy is the largest so far. A step that ends higher is made again: first by "
-     "implicit Euler if it was by `bdf2`, then with half the length, down to h/16 "
-     "([physics.md](physics.md#energy)). In a step in which contact moved vertices beyond "
-     "what was solved it does not count.", .needs = NEEDS_GUARDED},
+     "does work on the cloth; 0: not checked", .needs = NEEDS_GUARDED},
     {"rest", SCENE_MAP, .inside = rest_keys, INTO(struct model, rest),
      .about = "the run ends when the cloth is at rest, and at `end` at the latest",
-     .more = "In the seconds of `hold` no `motion` may move anything, and no `curve` may vary. "
-     "The next frame is the last one. The report has the time as `rest_seconds`; a run that does "
-     "not come to rest warns.", .needs = NEEDS_NO_SINE},
+     .needs = NEEDS_NO_SINE},
     {"sewn", SCENE_MAP, .inside = sewn_keys,
      .about = "the run ends when all [pulled seams](#seams) are closed; it fails if `end` comes "
-     "first",
-     .more = "The next frame is the last one. The error of a run that fails names the seams that "
-     "are open most, with their panels and edges; the frames are kept."},
+     "first"},
     {0}};
 
+/* ---- Contact ---- */
+
+static const struct scene_rule pair_keys[] = {
+    {"of", SCENE_LIST, .required = true, .length = 2, .inside = &scene_text,
+     .about = "names of materials or obstacles; a cloth with `regions` goes by its own material"},
+    {"friction", SCENE_NUMBER, .required = true, .range = SCENE_COEFFICIENT,
+     INTO(struct model_rub, friction),
+     .about = "coefficient of the two"},
+    {0}};
+static const struct scene_rule pair = {.type = SCENE_MAP, .inside = pair_keys};
+static const struct scene_rule ignored = {.type = SCENE_LIST, .length = 2, .inside = &scene_text};
+const struct scene_rule scene_contact_keys[] = {
+    {"mode", SCENE_CHOICE, INTO(struct model_contact, mode), .words = model_contact_modes,
+     .about = "certified: in the solve, and no step ends where a contact is not proven; "
+     "repulsion: springs push apart what is too near; project: vertices in obstacles are put out "
+     "after the step; else certified in implicit steps where there is more to touch than planes"},
+    {"self", SCENE_CHOICE, .fallback = "off", INTO(struct model_contact, self),
+     WORDS({"on", true}, {"off", false}),
+     .about = "a cloth touches itself, too; different cloths always touch", .needs = NEEDS_MET},
+    {"untangle", SCENE_CHOICE, .fallback = "off", INTO(struct model_contact, untangle),
+     WORDS({"on", true}, {"off", false}),
+     .about = "cloths that start in each other or in obstacles are moved apart",
+     .needs = NEEDS_CERTIFIED,
+     .section = "Starts that are tangled"},
+    {"force", SCENE_CHOICE, .fallback = "off", INTO(struct model_contact, force),
+     WORDS({"on", true}, {"off", false}),
+     .about = "frames have the force of contact on each vertex, in contact.pc2",
+     .needs = NEEDS_CERTIFIED},
+    {"thickness", SCENE_NUMBER, "m", "0.001", .range = SCENE_POSITIVE,
+     INTO(struct model_contact, thickness),
+     .about = "how near to each other what touches is",
+     .needs = NEEDS_MET},
+    {"pressure", SCENE_NUMBER, "Pa", "5000", .range = SCENE_POSITIVE,
+     INTO(struct model_contact, pressure),
+     .about = "by which the thickness of cloth without room is half of it",
+     .needs = NEEDS_CERTIFIED},
+    {"friction", SCENE_NUMBER, .fallback = "0", .range = SCENE_COEFFICIENT,
+     INTO(struct model_contact, friction),
+     .about = "coefficient of materials and obstacles that give none; sides a and b: sqrt(a b)",
+     .needs = NEEDS_MET},
+    {"pairs", SCENE_LIST, .fallback = "[]", .max = SCENE_MOST_NAMED, .inside = &pair,
+     ARRAY(struct model_contact, pairs, n_pairs),
+     .about = "two sides with a friction of their own, in place of sqrt(a b)", .needs = NEEDS_MET},
+    {"ignore", SCENE_LIST, .fallback = "[]", .max = SCENE_MOST_NAMED, .inside = &ignored,
+     .about = "[A, B]: cloths, obstacles or groups that do not meet", .needs = NEEDS_MEETINGS,
+     .section = "What does not meet"},
+    {"stiffness", SCENE_NUMBER, "N/m", .range = SCENE_POSITIVE,
+     INTO(struct model_contact, stiffness),
+     .about = "force by which a contact pushes apart, for each metre that is missing of the "
+     "thickness; else by mass and time.h",
+     .needs = NEEDS_REPULSION},
+    {"damping", SCENE_NUMBER, .fallback = "0.2", .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_contact, damping),
+     .about = "part of the critical damping of a vertex of mean mass on one contact",
+     .needs = NEEDS_REPULSION},
+    {0}};
+
+/* ---- Solves ---- */
+
 static const struct scene_rule stop_kinds[] = {
-    {"relative", SCENE_NUMBER, .range = SCENE_FRACTION, INTO(struct model, tolerance),
-     MEANS(struct model, stop, MODEL_STOP_RELATIVE),
+    {"relative", SCENE_NUMBER, .choice = true, .range = SCENE_FRACTION,
+     INTO(struct model, tolerance), MEANS(struct model, stop, MODEL_STOP_RELATIVE),
      .about = "residual against the right side"},
-    {"absolute", SCENE_NUMBER, "kg m/s", .range = SCENE_POSITIVE, INTO(struct model, tolerance),
-     MEANS(struct model, stop, MODEL_STOP_ABSOLUTE),
+    {"absolute", SCENE_NUMBER, "kg m/s", .choice = true, .range = SCENE_POSITIVE,
+     INTO(struct model, tolerance), MEANS(struct model, stop, MODEL_STOP_ABSOLUTE),
      .about = "residual"},
-    {"mass_norm", SCENE_NUMBER, .range = SCENE_FRACTION, INTO(struct model, tolerance),
-     MEANS(struct model, stop, MODEL_STOP_MASS_NORM),
+    {"mass_norm", SCENE_NUMBER, .choice = true, .range = SCENE_FRACTION,
+     INTO(struct model, tolerance), MEANS(struct model, stop, MODEL_STOP_MASS_NORM),
      .about = "estimated error of the change of velocity against that change, by mass"},
-    {"normalised", SCENE_NUMBER, .range = SCENE_POSITIVE, INTO(struct model, tolerance),
-     MEANS(struct model, stop, MODEL_STOP_NORMALISED),
+    {"normalised", SCENE_NUMBER, .choice = true, .range = SCENE_POSITIVE,
+     INTO(struct model, tolerance), MEANS(struct model, stop, MODEL_STOP_NORMALISED),
      .about = "distance that the residual moves vertices in the step, against that of neighbours"},
-    {"count", SCENE_INTEGER, .min = 1, INTO(struct model, max_iterations),
+    {"count", SCENE_INTEGER, .choice = true, .min = 1, INTO(struct model, max_iterations),
      MEANS(struct model, stop, MODEL_STOP_COUNT),
      .about = "so many iterations, no test"},
     {0}};
-const struct scene_section scene_solver_section = {"Solver",
-    "The residual misleads: where the cloth moves as a whole, it is small long before the error "
-    "is. `stop.mass_norm` stops by the error itself, which conjugate gradients estimate for "
-    "earlier iterations; the report gives this error for every stop (`mass_norm_error`). At the "
-    "end of a solve the true residual b - A dv is computed once (but not with `stop.count`). If "
-    "it is more than twice what was asked for, or with `mass_norm` as far from its recurrence as "
-    "the error may be, the solve goes on from what it has, and the report counts that "
-    "(`cg_restarts`). A matrix that is too stiff for the tolerance fails the solve, and its step "
-    "is halved. `momentum_lost` of the report is of the true residual.\n\n"
-    "`stop.normalised: e` asks for (h / l) sqrt(sum of |r_i|^2 / d_i / m) <= e over all vertices "
-    "that are not held: h is the step's length (s), r_i the residual of vertex i (kg m/s), d_i "
-    "its mass with h times its drag (kg), m the mass of all these vertices (kg), and l the mean "
-    "length at rest of the edges of all cloths (m). The left side is how far the residual would "
-    "move the vertices in the step, root mean square by mass, in mean edges, so it is the same "
-    "in every system of units.\n\n"
-    "Every format of the matrix gives the same motion to the tolerance of the solve. `springs` "
-    "needs the least memory for a cloth of springs; half storage holds what joins any vertices. "
-    "The diagonal follows from the off-diagonal values as they are rounded, so that what moves "
-    "as a whole keeps its momentum in float, too.",
-    "solver: {preconditioner: ic0_coarse, format: half, guess: auto, stop: {relative: 1e-6}, "
-    "max_iterations: 2000}\n"};
 const struct scene_rule scene_solver_keys[] = {
     {"stop", SCENE_ONE_OF, .fallback = "{mass_norm: 0.01}", .inside = stop_kinds,
      .about = "when conjugate gradients end"},
@@ -108,42 +130,26 @@ const struct scene_rule scene_solver_keys[] = {
      MODEL_GUESS_PREVIOUS}),
      .about = "of the change of velocity: nothing, or that of the step before; auto: that in "
      "steps shorter than 10 ms",
-     .more = "`previous` begins with the multiple of the last step's change that is nearest to "
-     "the solution in the norm of the matrix; it costs one and a half iterations.",
      .needs = "previous: integrator = implicit_euler and newton.steps = 1"},
     {"preconditioner", SCENE_CHOICE, .fallback = "ic0_coarse", INTO(struct model, preconditioner),
      .words = model_preconditioners,
-     .about = "of conjugate gradients",
-     .more = "`jacobi` has the inverses of the 3 x 3 blocks on the diagonal, `ic0` incomplete "
-     "Cholesky of each block of vertices. `coarse` is `jacobi` and a coarse space of motions "
-     "that are affine on each patch of a block; `ic0_coarse` is `ic0` and that space."},
+     .about = "of conjugate gradients"},
     {"patches", SCENE_INTEGER, .min = 1, .max = 4, INTO(struct model, patches),
      .about = "of a block, each with motions of its own in the coarse space; else as many as pay",
-     .more = "With more a solve needs fewer iterations, but all blocks wait longer in each for "
-     "the coarse system. More than 256 patches in all are solved by groups, in tasks. The "
-     "default is 4; it is halved while a patch would have less than 100 vertices, and once more "
-     "if that leaves at most 256 patches.", .needs = "preconditioner = coarse or ic0_coarse"},
+     .needs = "preconditioner = coarse or ic0_coarse"},
     {"format", SCENE_CHOICE, .fallback = "springs", INTO(struct model, format),
      WORDS({"springs", SOLVE_SPRINGS}, {"half", SOLVE_HALF}, {"half_float", SOLVE_HALF_FLOAT}),
      .about = "how the matrix is kept: four numbers a spring, or nine a pair of vertices, in "
      "double or float; half in place of springs where a cloth has more than springs",
-     .more = "With `half_float` vectors and the diagonal are in double.",
      .needs = "springs: " NEEDS_ONLY_SPRINGS},
     {"jacobian", SCENE_CHOICE, .fallback = "definite", INTO(struct model, full_slope),
      WORDS({"definite", PHYS_DEFINITE}, {"full", PHYS_FULL}, {"absolute", PHYS_ABSOLUTE}),
      .about = "definite: without what could make the matrix indefinite; full: the whole slope; "
-     "absolute: of compressed springs its absolute value",
-     .more = "`full` leaves out the slope of damping against positions alone. By `absolute` a "
-     "compressed spring resists being turned as strongly as it pushes, for cloth that crumples "
-     "in long steps.", .needs = "absolute: " NEEDS_SPRINGS},
+     "absolute: of compressed springs its absolute value", .needs = "absolute: " NEEDS_SPRINGS},
     {"max_iterations", SCENE_INTEGER, .fallback = "10000", .min = 1,
      INTO(struct model, max_iterations),
      .about = "a solve that needs more fails", .needs = "no stop.count"},
     {0}};
-const struct scene_section scene_newton_section = {"Newton steps", "An implicit step makes at "
-    "most `steps` Newton steps, each with a line search. A single one is the linear step, "
-    "without line search.",
-    "newton: {steps: 8, tolerance: 1e-6}\n"};
 const struct scene_rule scene_newton_keys[] = {
     {"steps", SCENE_INTEGER, .fallback = "1", .min = 1, .max = 100,
      INTO(struct model, newton_steps),
@@ -153,6 +159,8 @@ const struct scene_rule scene_newton_keys[] = {
      .about = "the step ends when a Newton step changed the velocity by at most so much of the "
      "change in the whole step, by mass", .needs = "steps > 1"},
     {0}};
+
+/* ---- Files ---- */
 
 const struct model_word scene_hdf5_fields[] = {
     {"velocity", (int)offsetof(struct model_hdf5, velocity)},
@@ -179,35 +187,5 @@ const struct scene_rule scene_output_keys[] = {
     {"hdf5", SCENE_MAP, .inside = hdf5_keys, INTO(struct model, hdf5),
      PLACE(struct model, hdf5_place),
      .about = "frames for ParaView and for analysis, beside the others; else there are none",
-     SECTION("Scientific frames",
-     "A run with `--output DIR` writes an HDF5 file for each frame, too: "
-     "`DIR/hdf5/frame-000000.vtkhdf` and so on. duite needs HDF5 when it is built, which the "
-     "summary of `configure` tells; a scene that asks for it in a build without is an error.\n\n"
-     "| field | of each | |\n"
-     "|---|---|---|\n"
-     "| `Points` | vertex | where it is, m; always there |\n"
-     "| `velocity` | vertex | m/s; by `symplectic_euler` that of half a step before |\n"
-     "| `block`, `rank` | vertex | its block, and the rank that keeps the block; -1 where no "
-     "triangle or edge has the vertex |\n"
-     "| `contact_force` | vertex | N, as in `contact.pc2`; with `contact: {mode: certified, "
-     "force: on}` |\n"
-     "| `strain` | cell | the largest principal strain of a triangle, against its shape at rest, "
-     "of any material; of an edge without triangles its length against that at rest, less 1 |\n"
-     "| `stress` | cell | N/m along warp, along weft, and of shear: what `model: triangles` "
-     "resists with, without damping; NaN in other materials |\n\n"
-     "Vertices are numbered as in `cloth.obj`; the partners of a weld have the same numbers. "
-     "Cells are the triangles of all cloths, then the edges without triangles. The layout is "
-     "VTKHDF 1.0, an unstructured grid. Frames are the same on any ranks and threads, but for "
-     "`rank`. Two indexes lie in `DIR`: `cloth.xmf`, and `cloth.vtkhdf.series` for ParaView from "
-     "5.12 on. ParaView 5.11 opens `cloth.xmf`:\n\n"
-     "    paraview DIR/cloth.xmf\n\n"
-     "A thread writes the frames while the next steps run. Two frames at most wait in memory; "
-     "then the run waits for the disk. A frame has its name when it is whole, and the indexes "
-     "name it then: a run that is killed leaves whole frames. A frame that cannot be written is "
-     "left out, with a warning at once; the run goes on, and ends with an error that counts such "
-     "frames. A run with `--restart` keeps the frames up to its checkpoint, with their entries "
-     "in the indexes, and goes on behind them; where its scene has no `output.hdf5`, too, they "
-     "stay.",
-     "output: {hdf5: {fields: [velocity, strain, stress], precision: double, every: 2, "
-     "compression: 4}}\n")},
+     .section = "Scientific frames"},
     {0}};

@@ -1,7 +1,7 @@
 /* A field is found by its offset alone, so its rule must fit its type: tests/cloth/scene/test_rules
  * compares the widths of all rules. */
-#include "cloth/scene/schema/store.h"
-#include "cloth/scene/yaml/scalar.h"
+#include "cloth/base/memory.h"
+#include "cloth/scene/schema/check.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -42,9 +42,12 @@ static void store_value(void *field, size_t width, int value)
 int scene_store_scalar(void *base, const struct scene_rule *rule, const char *text,
                        struct cloth_error *error)
 {
-    void *field = member_of(base, &rule->field);
+    size_t step;
     if (!rule->field.width)
         return CLOTH_OK;
+    void *field = scene_store_items(base, rule, 1, &step, error);
+    if (!field)
+        return error->code;
     if (rule->type == SCENE_TEXT)
         return store_text(field, text, error);
     bool word = false;
@@ -61,7 +64,7 @@ int scene_store_scalar(void *base, const struct scene_rule *rule, const char *te
 }
 
 int scene_store_presence(void *base, const struct scene_rule *rule, const struct scene_tree *tree,
-                         int node, struct cloth_error *error)
+                         int node)
 {
     if (rule->kind.width)
         store_value(member_of(base, &rule->kind), rule->kind.width, rule->value);
@@ -69,23 +72,24 @@ int scene_store_presence(void *base, const struct scene_rule *rule, const struct
         return CLOTH_OK;
     char **place = member_of(base, &rule->place);
     *place = scene_tree_place(tree, node);
-    return *place ? CLOTH_OK : store_no_memory(error);
+    return *place ? CLOTH_OK : store_no_memory(tree->error);
 }
 
 void *scene_store_items(void *base, const struct scene_rule *rule, size_t n, size_t *step,
                         struct cloth_error *error)
 {
-    void *field = member_of(base, &rule->field);
-    *step = rule->count.width ? rule->item : rule->inside->field.width;
+    void **array = member_of(base, &rule->field);
+    const bool one =
+        !rule->inside || rule->length; /* of an array: an item, whose parts these are */
     if (!rule->field.width)
         return NULL;
+    if (rule->inside)
+        *step = rule->count.width && !one ? rule->item : rule->inside->field.width;
     if (!rule->count.width)
-        return field;
-    void **array = field;
-    *array = calloc(n ? n : 1, rule->item);
-    *(uint32_t *)member_of(base, &rule->count) = *array ? (uint32_t)n : 0;
-    if (!*array)
-        store_no_memory(error);
+        return array;
+    free(*array); /* of another key that is a choice, too, which the check refuses */
+    *array = cloth_alloc(one ? 1 : n, rule->item, error);
+    *(uint32_t *)member_of(base, &rule->count) = !*array ? 0 : one ? 1 : (uint32_t)n;
     return *array;
 }
 

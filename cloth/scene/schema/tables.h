@@ -5,10 +5,10 @@
 #include "cloth/scene/schema/rules.h"
 
 /* Macros for tables of rules. INTO: where the value goes. ARRAY: where a list of any length goes,
- * and the number of its items. PLACE: where the place of the value goes (model.h). MEANS: which
- * field says, by a value, that this key was chosen, or given. WORDS: the words of a choice, each
- * with its meaning. ITEM: the type of an item of a list. SECTION: head, text and example of a
- * section of the page. */
+ * or one value as a list of one, and the number of its items. PLACE: where the place of the value
+ * goes (model.h). MEANS: which field says, by a value, that this key was chosen, or given. WORDS:
+ * the words of a choice, each with its meaning. ITEM: the type of an item of a list. VECTOR: a
+ * list of three numbers. */
 /* clang-format off */
 #define FIELD(type, member) \
     {offsetof(type, member), sizeof(((type *)0)->member), #type, sizeof(type)}
@@ -18,8 +18,8 @@
 #define PLACE(type, member) .place = FIELD(type, member)
 #define MEANS(type, member, is) .kind = FIELD(type, member), .value = (is)
 #define WORDS(...) .words = (const struct model_word[]){__VA_ARGS__, {0}}
+#define VECTOR .length = 3, .inside = &scene_number
 #define ITEM(type) .field = {.width = sizeof(type)}
-#define SECTION(...) .section = &(const struct scene_section){__VA_ARGS__}
 
 /* Keys of the struct mesh_transform `within` the type. */
 #define TRANSFORM(type, within) \
@@ -28,29 +28,29 @@
      .about = "first: a factor, or one for each axis"}, \
     {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &scene_number, \
      INTO(type, within rotate), .about = "then: a quaternion [w, x, y, z]"}, \
-    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &scene_number, \
+    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", VECTOR, \
      INTO(type, within translate), .about = "last: a shift"}
 
 /* Ways to choose vertices, one of these: into the struct model_pick `pick` of a type. */
 #define PICK_VERTICES(type, pick) \
     {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &scene_vertex, \
      ARRAY(type, pick vertices, pick n_vertices), MEANS(type, pick kind, MODEL_PICK_VERTICES), \
-     .about = "in the mesh's numbering, from 0", .shared = &scene_picks}
+     .about = "in the mesh's numbering, from 0", .shared = "Picking vertices"}
 #define PICK_BOX(type, pick) \
     {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &scene_point, \
      INTO(type, pick box), MEANS(type, pick kind, MODEL_PICK_BOX), \
-     .about = "all vertices in the box between two corners", .shared = &scene_picks}
+     .about = "all vertices in the box between two corners", .shared = "Picking vertices"}
 #define PICK_GROUP(type, pick) \
     {"group", SCENE_TEXT, .choice = true, MEANS(type, pick kind, MODEL_PICK_VERTICES), \
      .about = "all vertices of a group of the mesh's faces: of an OBJ file, or a panel", \
-     .shared = &scene_picks}
+     .shared = "Picking vertices"}
 #define PICK(type) \
     PICK_VERTICES(type, pick.), \
-    {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &scene_number, \
+    {"nearest", SCENE_LIST, "m", .choice = true, VECTOR, \
      INTO(type, pick.point), MEANS(type, pick.kind, MODEL_PICK_NEAREST), \
-     .about = "the vertex nearest to a point", .shared = &scene_picks}, \
+     .about = "the vertex nearest to a point", .shared = "Picking vertices"}, \
     {"radius", SCENE_NUMBER, "m", .range = SCENE_NOT_NEGATIVE, INTO(type, pick.radius), \
-     .about = "of nearest: and all vertices within it", .shared = &scene_picks}, \
+     .about = "of nearest: and all vertices within it", .shared = "Picking vertices"}, \
     PICK_BOX(type, pick.), \
     PICK_GROUP(type, pick.)
 /* clang-format on */
@@ -66,26 +66,7 @@ extern const struct scene_rule scene_point, scene_edge, scene_quaternion;
 extern const struct scene_rule scene_cloth, scene_material, scene_obstacle;
 extern const struct scene_rule scene_pin, scene_load, scene_mass, scene_start, scene_probe;
 extern const struct scene_rule scene_joint, scene_weld, scene_fold;
-extern const struct scene_rule scene_seams_keys[], scene_time_keys[], scene_mannequin_keys[],
-    scene_contact_keys[];
+extern const struct scene_rule scene_seams_keys[], scene_time_keys[], scene_contact_keys[];
 extern const struct scene_rule scene_solver_keys[], scene_newton_keys[], scene_output_keys[];
 extern const struct scene_rule scene_curve_kinds[], scene_motion_keys[];
-/* Sections of the page that stand with the keys of an entry. */
-extern const struct scene_section scene_picks, scene_curve, scene_motion;
-extern const struct scene_section scene_contact_section;
-extern const struct scene_section scene_obstacles_section;
-extern const struct scene_section scene_materials_section;
-extern const struct scene_section scene_solver_section;
-extern const struct scene_section scene_newton_section;
-extern const struct scene_section scene_time_section;
-extern const struct scene_section scene_probes_section;
-extern const struct scene_section scene_joints_section;
-extern const struct scene_section scene_welds_section;
-extern const struct scene_section scene_pins_section;
-extern const struct scene_section scene_loads_section;
-extern const struct scene_section scene_starts_section;
-extern const struct scene_section scene_masses_section;
-extern const struct scene_section scene_folds_section;
-extern const struct scene_section scene_seams_section;
-
 #endif

@@ -1,6 +1,7 @@
 /* Words for people: the values that a rule allows, and guesses for a wrong word. */
 #include "cloth/scene/schema/rules.h"
 
+#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -33,7 +34,8 @@ static unsigned word_distance(const char *a, const char *b)
     return d[n][m];
 }
 
-const char *scene_nearest_word(const char *word, const char *const *candidates, size_t n)
+/* The candidate nearest to a word, if it is near enough to be meant; else NULL. */
+static const char *nearest_word(const char *word, const char *const *candidates, size_t n)
 {
     size_t length = strlen(word);
     unsigned limit = length < 4 ? 1 : length < 9 ? 2 : 3;
@@ -60,89 +62,82 @@ int scene_word_value(const struct model_word *words, const char *word, bool *kno
     return words->value;
 }
 
-static void append_text(char *text, size_t size, const char *more)
+/* Adds to a text of a size, cut to it. */
+__attribute__((format(printf, 3, 4))) static void append(char *text, size_t size,
+                                                         const char *format, ...)
 {
-    size_t used = strlen(text);
-    snprintf(text + used, size - used, "%s", more);
+    const size_t used = strlen(text);
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text + used, size - used, format, list);
+    va_end(list);
 }
 
 char *scene_allowed_words(const char *word, const char *const *candidates, size_t n, char *text,
                           size_t size)
 {
-    const char *nearest = scene_nearest_word(word, candidates, n);
+    const char *nearest = nearest_word(word, candidates, n);
     *text = 0;
     if (nearest)
-        snprintf(text, size, "; did you mean '%s'? Allowed: ", nearest);
+        append(text, size, "; did you mean '%s'? Allowed: ", nearest);
     else
-        append_text(text, size, "; allowed: ");
-    for (size_t i = 0; i < n; i++) {
-        append_text(text, size, i ? ", " : "");
-        append_text(text, size, candidates[i]);
-    }
+        append(text, size, "; allowed: ");
+    for (size_t i = 0; i < n; i++)
+        append(text, size, "%s%s", i ? ", " : "", candidates[i]);
     return text;
 }
 
-static void append_keys(char *text, size_t size, const struct scene_rule *keys)
+static void append_keys(const struct scene_rule *keys, char *text, size_t size)
 {
-    for (const struct scene_rule *key = keys; key->key; key++) {
-        append_text(text, size, key == keys ? "" : ", ");
-        append_text(text, size, key->key);
-    }
+    for (const struct scene_rule *key = keys; key->key; key++)
+        append(text, size, "%s%s", key == keys ? "" : ", ", key->key);
 }
 
-static void integer_expected(const struct scene_rule *rule, char *text, size_t size)
+static void append_integer(const struct scene_rule *rule, char *text, size_t size)
 {
     if (rule->max > 0 && rule->min >= rule->max)
-        snprintf(text, size, "%.0f", rule->max);
+        append(text, size, "%.0f", rule->max);
     else
-        snprintf(text, size, "a whole number from %.0f to %.0f", rule->min,
-                 rule->max > 0 ? rule->max : (double)UINT32_MAX);
+        append(text, size, "a whole number from %.0f to %.0f", rule->min,
+               rule->max > 0 ? rule->max : (double)UINT32_MAX);
 }
 
-static void list_expected(const struct scene_rule *rule, char *text, size_t size)
+static void append_list(const struct scene_rule *rule, char *text, size_t size)
 {
-    const char *const items[] = {[SCENE_NUMBER] = "numbers", [SCENE_INTEGER] = "whole numbers",
-                                 [SCENE_LIST] = "lists",     [SCENE_CHOICE] = "words",
-                                 [SCENE_MAP] = "maps",       [SCENE_ONE_OF] = "maps",
-                                 [SCENE_TEXT] = "texts"};
+    const char *const all[] = {[SCENE_NUMBER] = "numbers", [SCENE_INTEGER] = "whole numbers",
+                               [SCENE_LIST] = "lists",     [SCENE_CHOICE] = "words",
+                               [SCENE_MAP] = "maps",       [SCENE_ONE_OF] = "maps",
+                               [SCENE_TEXT] = "texts"};
+    const char *items = all[rule->inside->type];
     if (rule->length)
-        snprintf(text, size, "a list of %zu %s", rule->length, items[rule->inside->type]);
+        append(text, size, "a list of %zu %s", rule->length, items);
     else if (rule->max > 0)
-        snprintf(text, size, "a list of %s %g %s", rule->filled ? "1 to" : "at most", rule->max,
-                 items[rule->inside->type]);
+        append(text, size, "a list of %s %g %s", rule->filled ? "1 to" : "at most", rule->max,
+               items);
     else
-        snprintf(text, size, "a %slist of %s", rule->filled ? "non-empty " : "",
-                 items[rule->inside->type]);
+        append(text, size, "a %slist of %s", rule->filled ? "non-empty " : "", items);
 }
 
-static void number_expected(const struct scene_rule *rule, char *text, size_t size)
+static void append_number(const struct scene_rule *rule, char *text, size_t size)
 {
     const char *const ranges[] = {"", " > 0", " >= 0", " > 0 and < 1", " >= 0 and <= 1000"};
-    snprintf(text, size, "a finite number%s", ranges[rule->range]);
-    if (rule->type != SCENE_NUMBER_OR_LIST)
-        return;
-    size_t used = strlen(text);
-    if (rule->length)
-        snprintf(text + used, size - used, " or a list of %zu of them", rule->length);
-    else
-        snprintf(text + used, size - used, " or a list of them");
+    append(text, size, "a finite number%s", ranges[rule->range]);
+    if (rule->type == SCENE_NUMBER_OR_LIST && rule->length)
+        append(text, size, " or a list of %zu of them", rule->length);
+    else if (rule->type == SCENE_NUMBER_OR_LIST)
+        append(text, size, " or a list of them");
 }
 
 static void append_words(const struct scene_rule *rule, char *text, size_t size)
 {
-    for (const struct model_word *word = rule->words; word->word; word++) {
-        append_text(text, size, *text ? " or " : "");
-        append_text(text, size, word->word);
-    }
+    for (const struct model_word *word = rule->words; word->word; word++)
+        append(text, size, "%s%s", *text ? " or " : "", word->word);
 }
 
 static void append_unit(const struct scene_rule *rule, char *text, size_t size)
 {
-    if (!rule->unit)
-        return;
-    append_text(text, size, " (");
-    append_text(text, size, rule->unit);
-    append_text(text, size, ")");
+    if (rule->unit)
+        append(text, size, " (%s)", rule->unit);
 }
 
 char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size)
@@ -150,41 +145,35 @@ char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size
     *text = 0;
     switch (rule->type) {
     case SCENE_MAP:
-        append_text(text, size, "a map of ");
-        append_keys(text, size, rule->inside);
-        break;
     case SCENE_ONE_OF:
-        append_text(text, size, "a map with exactly one of ");
-        append_keys(text, size, rule->inside);
+        append(text, size, "a map %s ", rule->type == SCENE_MAP ? "of" : "with exactly one of");
+        append_keys(rule->inside, text, size);
         break;
     case SCENE_NAMED:
-        append_text(text, size, "a non-empty map of names");
+        append(text, size, "a non-empty map of names");
         break;
     case SCENE_EDITS:
-        append_text(text, size, "a map KEY: VALUE, such as time.h: 0.002");
+        append(text, size, "a map KEY: VALUE, such as time.h: 0.002");
         break;
     case SCENE_LIST:
-        list_expected(rule, text, size);
+        append_list(rule, text, size);
         break;
     case SCENE_INTEGER:
-        integer_expected(rule, text, size);
+        append_integer(rule, text, size);
         break;
     case SCENE_NUMBER:
     case SCENE_NUMBER_OR_LIST:
-        number_expected(rule, text, size);
-        break;
     case SCENE_NUMBER_OR_WORD:
-        number_expected(rule, text, size);
-        append_unit(rule, text, size);
-        append_words(rule, text, size);
-        return text;
+        append_number(rule, text, size);
+        break;
     case SCENE_TEXT:
-        append_text(text, size, "a text");
+        append(text, size, "a text");
         break;
     case SCENE_CHOICE:
-        append_words(rule, text, size);
         break;
     }
     append_unit(rule, text, size);
+    if (rule->type == SCENE_CHOICE || rule->type == SCENE_NUMBER_OR_WORD)
+        append_words(rule, text, size);
     return text;
 }

@@ -2,8 +2,9 @@
  * set is a copy that only its parent knows; the root has no parent. So writing through it changes
  * one place. Its key is new, so that the mark of a key names the last set that changed anything
  * below it. */
-#include "cloth/scene/yaml/edit.h"
+#include "cloth/scene/yaml/tree.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,17 +14,16 @@ struct edit {
     struct scene_tree *tree;
     yaml_mark_t mark;
     const char *start, *at; /* text of the set, and the rest of its path */
-    struct cloth_error *error;
-    int value;         /* a node; 0: the text has it, behind the path */
-    const char *whole; /* where a key begins that may have '.' and '[' in it; NULL: nowhere */
-    int parts;         /* of the path, so far */
+    int value;              /* a node; 0: the text has it, behind the path */
+    const char *whole;      /* where a key begins that may have '.' and '[' in it; NULL: nowhere */
+    int parts;              /* of the path, so far */
 };
 /* No scene is as deep; each part of a path is a call. */
 enum { MAX_PARTS = 100 };
 
-static int edit_out_of_memory(struct cloth_error *error)
+static int edit_out_of_memory(const struct scene_tree *tree)
 {
-    cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+    cloth_fail(tree->error, CLOTH_E_MEMORY, "out of memory while the scene is read");
     return 0;
 }
 
@@ -41,7 +41,7 @@ static int edit_add_node(struct edit *edit, const yaml_node_t *like)
     else
         node = yaml_document_add_mapping(document, like->tag, YAML_FLOW_MAPPING_STYLE);
     if (!node)
-        return edit_out_of_memory(edit->error);
+        return edit_out_of_memory(edit->tree);
     scene_tree_node(edit->tree, node)->start_mark = edit->mark;
     return node;
 }
@@ -76,17 +76,22 @@ static int graft_nodes(struct edit *edit, const yaml_document_t *from)
     int to = shift + 1;
     for (const yaml_node_t *node = from->nodes.start; node < from->nodes.top; node++, to++)
         if (!copy_children(tree, to, node, shift))
-            return edit_out_of_memory(edit->error);
+            return edit_out_of_memory(edit->tree);
     return shift + 1;
 }
 
-static int edit_fails(const struct edit *edit, const char *what)
+__attribute__((format(printf, 2, 3))) static int edit_fails(const struct edit *edit,
+                                                            const char *format, ...)
 {
-    char *place = scene_tree_mark_place(edit->tree, &edit->mark);
+    char what[400], *place = scene_tree_mark_place(edit->tree, &edit->mark);
+    va_list list;
+    va_start(list, format);
+    vsnprintf(what, sizeof what, format, list);
+    va_end(list);
     if (place)
-        cloth_fail(edit->error, CLOTH_E_INPUT, "%s: %s", place, what);
+        cloth_fail(edit->tree->error, CLOTH_E_INPUT, "%s: %s", place, what);
     else
-        edit_out_of_memory(edit->error);
+        edit_out_of_memory(edit->tree);
     free(place);
     return 0;
 }
@@ -97,14 +102,13 @@ static int add_value(struct edit *edit, const char *text)
     yaml_parser_t parser;
     yaml_document_t document;
     if (!yaml_parser_initialize(&parser))
-        return edit_out_of_memory(edit->error);
+        return edit_out_of_memory(edit->tree);
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, strlen(text));
     int node = 0;
     if (!yaml_parser_load(&parser, &document)) {
-        char what[256];
-        snprintf(what, sizeof what, "the value is not YAML: %s", parser.problem);
-        node = parser.error == YAML_MEMORY_ERROR ? edit_out_of_memory(edit->error)
-                                                 : edit_fails(edit, what);
+        node = parser.error == YAML_MEMORY_ERROR
+                   ? edit_out_of_memory(edit->tree)
+                   : edit_fails(edit, "the value is not YAML: %s", parser.problem);
     } else {
         size_t line;
         if (scene_tree_circle(&document, &line))
@@ -130,18 +134,15 @@ static int own_node(struct edit *edit, int node, yaml_node_type_t type)
         return node;
     if (!node || scene_tree_empty(tree, node))
         return edit_add_node(edit, &like);
-    if (!scene_tree_is(tree, node, type)) {
-        char what[160];
-        snprintf(what, sizeof what, "'%.*s' is not a %s", (int)(edit->at - edit->start),
-                 edit->start, type == YAML_SEQUENCE_NODE ? "list" : "map");
-        return edit_fails(edit, what);
-    }
+    if (!scene_tree_is(tree, node, type))
+        return edit_fails(edit, "'%.*s' is not a %s", (int)(edit->at - edit->start), edit->start,
+                          type == YAML_SEQUENCE_NODE ? "list" : "map");
     int copy = edit_add_node(edit, &like);
     if (!copy)
         return 0;
     const yaml_node_t *from = scene_tree_node(tree, node);
     scene_tree_node(tree, copy)->start_mark = from->start_mark;
-    return copy_children(tree, copy, from, 0) ? copy : edit_out_of_memory(edit->error);
+    return copy_children(tree, copy, from, 0) ? copy : edit_out_of_memory(edit->tree);
 }
 
 static int edit_put_value(struct edit *edit, int node);
@@ -189,7 +190,7 @@ static int edit_put_key(struct edit *edit, int node)
     if (key && i < n)
         scene_tree_node(tree, map)->data.mapping.pairs.start[i] = (yaml_node_pair_t){key, value};
     else if (key && !yaml_document_append_mapping_pair(&tree->document, map, key, value))
-        key = edit_out_of_memory(edit->error);
+        key = edit_out_of_memory(edit->tree);
     return key ? map : 0;
 }
 
@@ -204,18 +205,15 @@ static int put_index(struct edit *edit, int node)
     if (!list)
         return 0;
     size_t n = scene_tree_length(tree, list);
-    if (i > n) {
-        char what[160];
-        snprintf(what, sizeof what, "'%.*s' has %zu entries; an index from 0 to %zu is expected",
-                 (int)(edit->at - edit->start), edit->start, n, n);
-        return edit_fails(edit, what);
-    }
+    if (i > n)
+        return edit_fails(edit, "'%.*s' has %zu entries; an index from 0 to %zu is expected",
+                          (int)(edit->at - edit->start), edit->start, n, n);
     edit->at = end + 1;
     int value = edit_put_value(edit, i < n ? scene_tree_item(tree, list, i) : 0);
     if (value && i < n)
         scene_tree_node(tree, list)->data.sequence.items.start[i] = value;
     else if (value && !yaml_document_append_sequence_item(&tree->document, list, value))
-        return edit_out_of_memory(edit->error);
+        return edit_out_of_memory(edit->tree);
     return value ? list : 0;
 }
 
@@ -256,36 +254,39 @@ static const char *key_of_phase(const char *text)
 }
 
 /* Applies the tree's sets that change the phases themselves, or the others. */
-static int edit_by_options(struct scene_tree *tree, bool phases, struct cloth_error *error)
+static int edit_by_options(struct scene_tree *tree, bool phases)
 {
     for (size_t i = 0; i < tree->n_sets; i++) {
         const char *text = tree->sets[i].text;
-        struct edit edit = {
-            tree, {.index = SCENE_BY_SET, .line = i}, text, text, error, 0, key_of_phase(text), 0};
+        struct edit edit = {.tree = tree,
+                            .mark = {.index = SCENE_BY_SET, .line = i},
+                            .start = text,
+                            .at = text,
+                            .whole = key_of_phase(text)};
         if (is_of_phases(text) != phases)
             continue;
         if (starts_no_path(text))
             no_path(&edit);
         else
             edit_put_value(&edit, 1);
-        if (error->code)
-            return error->code;
+        if (tree->error->code)
+            return tree->error->code;
     }
     return CLOTH_OK;
 }
 
 /* The check reports a set that is no map, and faults of its keys. */
-static int edit_by_phase(struct scene_tree *tree, uint32_t phase, struct cloth_error *error)
+static int edit_by_phase(struct scene_tree *tree, uint32_t phase)
 {
     const int map = scene_tree_phase(tree, phase), set = map ? scene_tree_get(tree, map, "set") : 0;
     if (!scene_tree_is(tree, set, YAML_MAPPING_NODE))
         return CLOTH_OK;
-    for (size_t i = 0; i < scene_tree_length(tree, set) && !error->code; i++) {
+    for (size_t i = 0; i < scene_tree_length(tree, set) && !tree->error->code; i++) {
         const yaml_node_pair_t pair = scene_tree_pair(tree, set, i);
         const char *key = scene_tree_scalar(tree, pair.key);
         const yaml_mark_t mark = {
             .index = SCENE_BY_PHASE, .line = (size_t)pair.key, .column = phase};
-        struct edit edit = {tree, mark, key, key, error, pair.value, NULL, 0};
+        struct edit edit = {tree, mark, key, key, pair.value, NULL, 0};
         if (key && is_of_phases(key))
             edit_fails(&edit, "a phase cannot change the phases");
         else if (key && starts_no_path(key))
@@ -293,26 +294,25 @@ static int edit_by_phase(struct scene_tree *tree, uint32_t phase, struct cloth_e
         else if (key)
             edit_put_value(&edit, 1);
     }
-    return error->code;
+    return tree->error->code;
 }
 
-int scene_edit_sets(struct scene_tree *tree, uint32_t phase, struct cloth_error *error)
+int scene_edit_sets(struct scene_tree *tree, uint32_t phase)
 {
-    int code = edit_by_options(tree, true, error);
+    int code = edit_by_options(tree, true);
     for (uint32_t i = 0; i <= phase && !code; i++)
-        code = edit_by_phase(tree, i, error);
-    return code ? code : edit_by_options(tree, false, error);
+        code = edit_by_phase(tree, i);
+    return code ? code : edit_by_options(tree, false);
 }
 
-int scene_edit_default(struct scene_tree *tree, int map, const char *key, const char *value,
-                       struct cloth_error *error)
+int scene_edit_default(struct scene_tree *tree, int map, const char *key, const char *value)
 {
-    struct edit edit = {tree, {.index = SCENE_BY_DEFAULT}, value, value, error, 0, NULL, 0};
+    struct edit edit = {tree, {.index = SCENE_BY_DEFAULT}, value, value, 0, NULL, 0};
     int value_node = add_value(&edit, value);
     int key_node = value_node ? edit_add_key(&edit, key, strlen(key)) : 0;
     if (key_node && !yaml_document_append_mapping_pair(&tree->document, map, key_node, value_node))
-        key_node = edit_out_of_memory(error);
-    return key_node ? CLOTH_OK : error->code;
+        key_node = edit_out_of_memory(tree);
+    return key_node ? CLOTH_OK : tree->error->code;
 }
 
 void scene_edit_remove(struct scene_tree *tree, int map, size_t i)

@@ -1,17 +1,13 @@
 /* strtod alone would also take nan, inf, hexadecimal numbers, leading blanks and half a word: the
  * form is checked first. */
-#include "cloth/scene/yaml/scalar.h"
+#include "cloth/scene/yaml/tree.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-static const char *skip_digits(const char *at)
-{
-    while (*at >= '0' && *at <= '9')
-        at++;
-    return at;
-}
+static const char DIGITS[] = "0123456789";
 
 static const char *skip_sign(const char *at)
 {
@@ -20,22 +16,20 @@ static const char *skip_sign(const char *at)
 
 static bool is_number(const char *text)
 {
-    const char *start = skip_sign(text), *at = skip_digits(start);
-    bool any = at > start;
+    const char *at = skip_sign(text);
+    size_t digits = strspn(at, DIGITS);
+    at += digits;
     if (*at == '.') {
-        const char *fraction = at + 1;
-        at = skip_digits(fraction);
-        any = any || at > fraction;
+        const size_t decimals = strspn(at + 1, DIGITS);
+        at += 1 + decimals;
+        digits += decimals;
     }
-    if (!any)
-        return false;
-    if (*at == 'e' || *at == 'E') {
-        const char *exponent = skip_sign(at + 1);
-        at = skip_digits(exponent);
-        if (at == exponent)
-            return false;
+    if (digits && (*at == 'e' || *at == 'E')) {
+        at = skip_sign(at + 1);
+        digits = strspn(at, DIGITS);
+        at += digits;
     }
-    return !*at;
+    return digits && !*at;
 }
 
 bool scene_scalar_number(const char *text, double *value)
@@ -48,11 +42,10 @@ bool scene_scalar_number(const char *text, double *value)
 
 bool scene_scalar_integer(const char *text, uint32_t *value)
 {
-    const char *start = skip_sign(text), *end = skip_digits(start);
+    const char *start = skip_sign(text);
     double number;
-    if (end == start || *end || !scene_scalar_number(text, &number))
-        return false;
-    if (number < 0 || number > UINT32_MAX)
+    if (start[strspn(start, DIGITS)] || !scene_scalar_number(text, &number) || number < 0 ||
+        number > UINT32_MAX)
         return false;
     *value = (uint32_t)number;
     return true;

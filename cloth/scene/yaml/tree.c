@@ -1,7 +1,6 @@
 /* A loaded tree holds one document whose root is a map. Nodes are never removed, and never change
  * their type or text. Only scene_edit adds nodes or changes the children of a map or list. */
 #include "cloth/scene/yaml/tree.h"
-#include "cloth/scene/yaml/scalar.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -57,6 +56,11 @@ int scene_tree_item(const struct scene_tree *tree, int list, size_t i)
     return scene_tree_node(tree, list)->data.sequence.items.start[i];
 }
 
+int scene_tree_part(const struct scene_tree *tree, int node, size_t i)
+{
+    return scene_tree_scalar(tree, node) ? node : scene_tree_item(tree, node, i);
+}
+
 yaml_node_pair_t scene_tree_pair(const struct scene_tree *tree, int map, size_t i)
 {
     return scene_tree_node(tree, map)->data.mapping.pairs.start[i];
@@ -71,6 +75,18 @@ int scene_tree_get(const struct scene_tree *tree, int map, const char *key)
             return pair.value;
     }
     return 0;
+}
+
+int scene_tree_at(const struct scene_tree *tree, int map, const char *path)
+{
+    char key[60];
+    for (const char *rest = path; map && *rest; rest += *rest == '.') {
+        const size_t n = strcspn(rest, ".");
+        snprintf(key, sizeof key, "%.*s", (int)n, rest);
+        map = scene_tree_get(tree, map, key);
+        rest += n;
+    }
+    return map;
 }
 
 int scene_tree_phase(const struct scene_tree *tree, uint32_t phase)
@@ -116,15 +132,14 @@ char *scene_tree_place(const struct scene_tree *tree, int node)
     return scene_tree_mark_place(tree, &scene_tree_node(tree, node)->start_mark);
 }
 
-int scene_tree_fail(const struct scene_tree *tree, int node, struct cloth_error *error,
-                    const char *format, ...)
+int scene_tree_fail(const struct scene_tree *tree, int node, const char *format, ...)
 {
     char text[900], *place = scene_tree_place(tree, node);
     va_list list;
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    int code = cloth_fail(error, CLOTH_E_INPUT, "%s: %s", place ? place : tree->path, text);
+    int code = cloth_fail(tree->error, CLOTH_E_INPUT, "%s: %s", place ? place : tree->path, text);
     free(place);
     return code;
 }
@@ -136,23 +151,16 @@ double scene_tree_number(const struct scene_tree *tree, int map, const char *key
     return value;
 }
 
-uint32_t scene_tree_integer(const struct scene_tree *tree, int map, const char *key)
-{
-    uint32_t value = 0;
-    scene_scalar_integer(scene_tree_scalar(tree, scene_tree_get(tree, map, key)), &value);
-    return value;
-}
-
 const char *scene_tree_text(const struct scene_tree *tree, int map, const char *key)
 {
     int node = scene_tree_get(tree, map, key);
     return node ? scene_tree_scalar(tree, node) : NULL;
 }
 
-void scene_tree_vector(const struct scene_tree *tree, int list, size_t n, double *value)
+void scene_tree_vector(const struct scene_tree *tree, int node, size_t n, double *value)
 {
     for (size_t i = 0; i < n; i++)
-        scene_scalar_number(scene_tree_scalar(tree, scene_tree_item(tree, list, i)), &value[i]);
+        scene_scalar_number(scene_tree_scalar(tree, scene_tree_part(tree, node, i)), &value[i]);
 }
 
 const char *scene_tree_found(const struct scene_tree *tree, int node, const char *quotes,

@@ -52,7 +52,7 @@ void draw_lights_free(struct draw_lights *lights);
 
 /* --- sky.c: light that is worked out once for all pixels --- */
 
-/* What textures shaders find where: the maps of the sun and the sky; two of light; surfaces. */
+/* Units of textures: the maps of the sun and the sky; two of light; surfaces. */
 enum { DRAW_UNIT_SUNS, DRAW_UNIT_SKIES, DRAW_UNIT_FRONT, DRAW_UNIT_BACK, DRAW_UNIT_SURFACES };
 
 /* The light on both sides, a texel for each vertex of a mesh, or for each place of a square. */
@@ -138,6 +138,7 @@ struct draw_mesh {
     float *vertex; /* n_vertices x (position, normal) */
     GLuint array, vertices, indices, values;
     float center[3], radius; /* a sphere around the vertices */
+    struct draw_sky sky;     /* its light on them, where they were lit last */
 };
 int draw_mesh_make(struct draw_mesh *mesh, uint32_t n_vertices, uint32_t n_triangles,
                    const uint32_t *triangle, uint32_t n_lines, const uint32_t *line,
@@ -159,9 +160,6 @@ struct draw_part {
 };
 void draw_mesh_draw_part(const struct draw_mesh *mesh, const struct draw_part *part);
 void draw_mesh_free(struct draw_mesh *mesh);
-/* Area-weighted normals into vertex[6 v + 3 ..]; up where no triangle says. Pure. */
-void draw_normals(uint32_t n_vertices, float *vertex, uint32_t n_triangles,
-                  const uint32_t *triangle);
 
 /* Joins vertices over edges shorter than `longest` (m), so that about a fifth of the triangles are
  * left where all edges are: n of them are in and out. Returns how many are left. vertex: n_vertices

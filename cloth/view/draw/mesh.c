@@ -74,8 +74,8 @@ static void upload_indices(const struct draw_mesh *mesh, const uint32_t *line)
     glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, (GLintptr)triangles, (GLsizeiptr)lines, line);
 }
 
-/* Adds the coarse triangles behind the others and the lines. What there is no memory for casts all
- * its triangles. */
+/* Adds the coarse triangles behind the others and the lines. A mesh that there is no memory for
+ * casts all its triangles. */
 static void make_coarse(struct draw_mesh *mesh)
 {
     const size_t bytes = (size_t)12 * mesh->n_triangles;
@@ -119,11 +119,12 @@ int draw_mesh_make(struct draw_mesh *mesh, uint32_t n_vertices, uint32_t n_trian
         glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float),
                               (const void *)(i * 3 * sizeof(float)));
     }
-    return 0;
+    return draw_sky_make(&mesh->sky, n_vertices ? n_vertices : 1, error);
 }
 
-void draw_normals(uint32_t n_vertices, float *vertex, uint32_t n_triangles,
-                  const uint32_t *triangle)
+/* Area-weighted; up where no triangle says. */
+static void find_normals(uint32_t n_vertices, float *vertex, uint32_t n_triangles,
+                         const uint32_t *triangle)
 {
     for (size_t v = 0; v < n_vertices; v++)
         memset(vertex + 6 * v + 3, 0, 3 * sizeof *vertex);
@@ -181,7 +182,7 @@ void draw_mesh_move(struct draw_mesh *mesh, const double *position)
     for (size_t v = 0; v < mesh->n_vertices; v++)
         for (size_t k = 0; k < 3; k++)
             mesh->vertex[6 * v + k] = (float)position[3 * v + k];
-    draw_normals(mesh->n_vertices, mesh->vertex, mesh->n_triangles, mesh->triangle);
+    find_normals(mesh->n_vertices, mesh->vertex, mesh->n_triangles, mesh->triangle);
     upload_vertices(mesh);
 }
 
@@ -248,6 +249,7 @@ void draw_mesh_free(struct draw_mesh *mesh)
     glDeleteBuffers(1, &mesh->vertices);
     glDeleteBuffers(1, &mesh->indices);
     glDeleteBuffers(1, &mesh->values);
+    draw_sky_free(&mesh->sky);
     free(mesh->vertex);
     mesh->vertex = NULL;
 }

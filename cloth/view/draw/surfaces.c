@@ -1,5 +1,6 @@
-/* What a picture shows, before it is shaded: of each sample its surface, the sky's light on it and
- * its depth. Triangles are small: shading each once would cost many times what its pixels do. */
+/* The surfaces of a picture before it is shaded: of each sample its surface, the light of the sky
+ * on it and its depth. Triangles are small: shading each once would cost many times what its pixels
+ * do. */
 #include "cloth/view/draw/draw.h"
 
 enum { SAMPLES = 4 };

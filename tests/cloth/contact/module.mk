@@ -1,12 +1,12 @@
 if HAVE_CHECK
 CONTACT_TEST_RANDOM = tests/cloth/contact/shapes.h tests/support/random.h
-ASAN_TESTS += tests/cloth/contact/test_body tests/cloth/contact/test_body_refused tests/cloth/contact/test_body_skin \
+ASAN_TESTS += tests/cloth/contact/test_body tests/cloth/contact/test_body_skin \
     tests/cloth/contact/test_certificate tests/cloth/contact/test_image tests/cloth/contact/test_meet tests/cloth/contact/test_pair \
     tests/cloth/contact/test_row tests/cloth/contact/test_shape tests/cloth/contact/test_skin tests/cloth/contact/test_solid \
     tests/cloth/contact/test_body_frames
 LONG_SH += tests/cloth/contact/test_certificate_long.sh
-tests_cloth_contact_test_body_SOURCES = tests/cloth/contact/test_body.c tests/cloth/contact/bodies.h tests/support/random.h
-tests_cloth_contact_test_body_refused_SOURCES = tests/cloth/contact/test_body_refused.c tests/cloth/contact/bodies.h
+tests_cloth_contact_test_body_SOURCES = tests/cloth/contact/test_body.c tests/cloth/contact/bodies.h tests/cloth/contact/distances.h \
+	tests/support/random.h
 tests_cloth_contact_test_body_skin_SOURCES = tests/cloth/contact/test_body_skin.c tests/cloth/contact/bodies.h tests/support/random.h
 tests_cloth_contact_test_certificate_SOURCES = tests/cloth/contact/test_certificate.c tests/cloth/contact/pairs.h tests/support/random.h
 tests_cloth_contact_test_image_SOURCES = tests/cloth/contact/test_image.c tests/cloth/contact/images.h tests/cloth/contact/bodies.h

@@ -68,6 +68,17 @@ static inline void pairs_draw(enum contact_pair pair, const struct pairs_sort *s
     }
 }
 
+static const enum contact_pair KINDS[2] = {CONTACT_VT, CONTACT_EE};
+static const double THICKNESS = 0.001; /* m */
+
+/* Where corners end that go so much of their way, but for those that are held. */
+static inline void pairs_end(const phys_vec x[4], const phys_vec y[4], unsigned held,
+                             const double t[4], phys_vec end[4])
+{
+    for (int k = 0; k < 4; k++)
+        end[k] = held >> k & 1 ? y[k] : x[k] + t[k] * (y[k] - x[k]);
+}
+
 /* How many pairs of a kind: quick, DUITE_LONG=1 for the full number, or that of make check. */
 static inline int pairs_count(void)
 {

@@ -4,6 +4,8 @@
 #include "cloth/contact/solid.h"
 #include "tests/cloth/contact/shapes.h"
 
+#include <check.h>
+
 /* A moving convex shape and a triangle, and what is inside of the shape at a time of the step: said
  * here once more, without what the product knows. */
 
@@ -90,8 +92,7 @@ static inline void point_then(const struct meeting *m, double s, const phys_vec 
             a[i][j] = (1 - s) * from->turn[i][j] + s * to->turn[i][j];
         a[i][3] = (*x)[i] - from->about[i] - (1 - s) * from->translate[i] - s * to->translate[i];
     }
-    for (int i = 0; i < 3;
-         i++) { /* near to a rotation: its pivots are not small where it matters */
+    for (int i = 0; i < 3; i++) { /* near to a rotation: pivots are not small where it matters */
         int best = i;
         for (int r = i + 1; r < 3; r++)
             best = fabs(a[r][i]) > fabs(a[best][i]) ? r : best;
@@ -160,8 +161,23 @@ static inline double level_capsule(const struct meeting *m, double s, const phys
     return length(&away) - m->shape.value[6];
 }
 
-static double (*const LEVEL[])(const struct meeting *, double, const phys_vec *) = {
-    level_plane, level_sphere, level_box, level_capsule, level_box};
+static const struct {
+    const struct contact_kind *kind;
+    double (*level)(const struct meeting *m, double s, const phys_vec *x);
+} LEVELS[] = {{&contact_plane, level_plane},
+              {&contact_sphere, level_sphere},
+              {&contact_box, level_box},
+              {&contact_capsule, level_capsule},
+              {&contact_cylinder, level_box}};
+
+static inline double level(const struct meeting *m, double s, const phys_vec *x)
+{
+    for (size_t i = 0; i < sizeof LEVELS / sizeof *LEVELS; i++)
+        if (LEVELS[i].kind == contact_kinds[m->shape.kind])
+            return LEVELS[i].level(m, s, x);
+    ck_abort_msg("%s: nothing here says what is inside", contact_kinds[m->shape.kind]->name);
+    return NAN;
+}
 
 /* The least of a convex function on a line of a triangle, then of a triangle: thirds that cannot
  * hold it are left out. */
@@ -173,7 +189,7 @@ static inline double least_on_line(const struct meeting *m, double s, const phys
         const double part[2] = {low + (high - low) / 3, high - (high - low) / 3};
         for (int k = 0; k < 2; k++) {
             const phys_vec x = (1 - part[k]) * *a + part[k] * *b;
-            value[k] = LEVEL[m->shape.kind](m, s, &x);
+            value[k] = level(m, s, &x);
         }
         *(value[0] < value[1] ? &high : &low) = part[value[0] < value[1]];
     }
@@ -204,7 +220,7 @@ static inline bool outside_by_middle(const struct meeting *m, double s, const ph
         const phys_vec away = x[k] - middle;
         reach = fmax(reach, length(&away));
     }
-    return LEVEL[m->shape.kind](m, s, &middle) > 2 * reach;
+    return level(m, s, &middle) > 2 * reach;
 }
 
 /* The shape at a time as one that stands still, and the triangle as that one sees it: of a box and

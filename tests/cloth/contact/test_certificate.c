@@ -7,9 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 
-static const enum contact_pair KINDS[2] = {CONTACT_VT, CONTACT_EE};
-static const double THICKNESS = 0.001;
-
 /* ---- Known cases ---- */
 
 /* A vertex over a triangle, or an edge over one that it crosses, so high; each goes down by so
@@ -76,13 +73,6 @@ UNIT_TEST(not_finite)
 
 /* ---- Cuts ---- */
 
-static void end_of(const phys_vec x[4], const phys_vec y[4], unsigned held, const double t[4],
-                   phys_vec end[4])
-{
-    for (int k = 0; k < 4; k++)
-        end[k] = held >> k & 1 ? y[k] : x[k] + t[k] * (y[k] - x[k]);
-}
-
 /* Whether the plane of a cut may move. */
 static bool flies(const phys_vec x[4], const phys_vec y[4])
 {
@@ -101,19 +91,19 @@ static void check_cut(enum contact_pair pair, const phys_vec x[4], const phys_ve
 {
     phys_vec end[4], further[4];
     double less[4], again[4] = {1, 1, 1, 1};
-    end_of(x, y, held, t, end);
+    pairs_end(x, y, held, t, end);
     PAIRS_CHECK(contact_certify(pair, x, end, THICKNESS));
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 4; k++)
             less[k] = i == k ? 0 : uniform(0, 1) * (i % 2 ? t[k] : 1);
-        end_of(x, i % 2 ? y : end, held, less, further);
+        pairs_end(x, i % 2 ? y : end, held, less, further);
         if (contact_certify(pair, x, further, THICKNESS))
             continue;
         PAIRS_CHECK(flies(x, y));
         if (held)
             continue;
         PAIRS_CHECK(contact_cut(pair, x, further, THICKNESS, held, again));
-        end_of(x, further, held, again, end);
+        pairs_end(x, further, held, again, end);
         PAIRS_CHECK(contact_certify(pair, x, end, THICKNESS));
     }
 }
@@ -184,7 +174,7 @@ UNIT_TEST(again_and_again)
             phys_vec x[4], y[4], end[4];
             lay(KINDS[i], height, 1e-2, -1e-3, x, y);
             ck_assert(contact_cut(KINDS[i], x, y, THICKNESS, 0, t));
-            end_of(x, y, 0, t, end);
+            pairs_end(x, y, 0, t, end);
             ck_assert(contact_certify(KINDS[i], x, end, THICKNESS));
             height = end[0][2] - end[3][2];
         }

@@ -13,8 +13,6 @@
 #include <stdio.h>
 
 enum { SCALE = 200, DEPTH = 100 };
-static const enum contact_pair KINDS[2] = {CONTACT_VT, CONTACT_EE};
-static const double THICKNESS = 0.001;
 
 typedef mpz_t exact_vec[3];
 
@@ -247,13 +245,6 @@ static bool truly_apart(enum contact_pair pair, const phys_vec x[4], const phys_
 
 /* ---- Tests ---- */
 
-static void end_of(const phys_vec x[4], const phys_vec y[4], unsigned held, const double t[4],
-                   phys_vec end[4])
-{
-    for (int k = 0; k < 4; k++)
-        end[k] = held >> k & 1 ? y[k] : x[k] + t[k] * (y[k] - x[k]);
-}
-
 UNIT_LOOP(certain_is_true, 0, PAIRS_SORTS_N)
 {
     const struct pairs_sort *sort = PAIRS_SORTS + _i;
@@ -269,7 +260,7 @@ UNIT_LOOP(certain_is_true, 0, PAIRS_SORTS_N)
             PAIRS_CHECK(truly_apart(pair, x, y));
             certain++;
         } else if (contact_cut(pair, x, y, THICKNESS, held, t)) {
-            end_of(x, y, held, t, end);
+            pairs_end(x, y, held, t, end);
             PAIRS_CHECK(truly_apart(pair, x, end));
             cut++;
         }

@@ -7,8 +7,6 @@
 
 #include <math.h>
 
-static const enum contact_pair KINDS[2] = {CONTACT_VT, CONTACT_EE};
-
 static int n_first(enum contact_pair pair)
 {
     return pair == CONTACT_VT ? 1 : 2;
@@ -90,10 +88,10 @@ UNIT_TEST(same_bits)
         memset(&wide, 0, sizeof wide);
         memset(&narrow, 0, sizeof narrow);
         contact_nearest_of(pair, x, &wide);
-        const bool certain = contact_certify(pair, x, y, 0.001);
+        const bool certain = contact_certify(pair, x, y, THICKNESS);
         cloth_simd = CLOTH_SIMD_NONE;
         contact_nearest_of(pair, x, &narrow);
-        PAIRS_CHECK(certain == contact_certify(pair, x, y, 0.001));
+        PAIRS_CHECK(certain == contact_certify(pair, x, y, THICKNESS));
         cloth_simd = widest;
         PAIRS_CHECK(!memcmp(&wide, &narrow, sizeof wide));
     }

@@ -231,7 +231,7 @@ UNIT_LOOP(apart, 0, N_SHAPES)
             phys_vec x = {0};
             for (int c = 0; c < 3; c++)
                 x[c] = k < 8 ? (k >> c & 1 ? high : low)[c] : uniform(low[c], high[c]);
-            ck_assert_double_gt(LEVEL[_i](&m, k % 20 / 19.0, &x), 0);
+            ck_assert_double_gt(level(&m, k % 20 / 19.0, &x), 0);
             struct contact_hit hit;
             contact_closest(&m.shape, &m.pose, 1, &x, &hit);
             ck_assert_double_gt(hit.gap, reach);

@@ -147,12 +147,12 @@ static inline bool run_how(struct how *how, const char *const sets[MAX_SETS])
 {
     if (left_out())
         return false;
-    struct scene_set some[MAX_SETS];
+    const char *some[MAX_SETS];
     char name[1024] = "";
     size_t n = 0;
     for (size_t i = 0; i < MAX_SETS; i++)
         if (sets[i]) {
-            some[n++] = (struct scene_set){.text = sets[i]};
+            some[n++] = sets[i];
             snprintf(name + strlen(name), sizeof name - strlen(name), " %s", sets[i]);
         }
     int rank, ranks;

@@ -1,187 +1,85 @@
 /* One small run of each kind that has fields of its own, or treats fields in its own way. */
 #include "tests/cloth/flow/kinds.h"
 
-enum { SIDE = 6 };
+#include <string.h>
 
-static void run_of(struct session *s, enum model_integrator integrator)
-{
-    *s = (struct session){0};
-    setup_sheet(&s->setup, SIDE);
-    setup_pin(&s->setup, 2, (const uint32_t[]){0, SIDE - 1});
-    s->setup.model.integrator = integrator;
-    s->setup.model.grain = 9;
-    s->setup.model.halving = true;
-}
+/* Joints across the sheet and inside a block, which end some time; or a seam of them. */
+enum tied { APART, JOINED, SEWN };
 
-static void plain(struct session *s)
-{
-    run_of(s, MODEL_IMPLICIT_EULER);
-}
+/* What is not said is as in most: a sheet of 6 x 6 vertices in blocks of about nine. */
+static const struct kind {
+    enum model_integrator integrator;
+    enum model_preconditioner preconditioner;
+    enum model_guess guess;
+    uint32_t newton_steps;
+    enum model_contact_mode contact;
+    enum tied tied;
+    bool corrected; /* no edge may get longer */
+    bool grouped;   /* so many patches that groups solve the coarse space */
+} kinds[] = {
+    {.integrator = MODEL_IMPLICIT_EULER},
+    {MODEL_IMPLICIT_EULER, .preconditioner = MODEL_IC0_COARSE},
+    {MODEL_IMPLICIT_EULER, MODEL_IC0_COARSE, .grouped = true},
+    {MODEL_IMPLICIT_EULER, MODEL_IC0_COARSE, .guess = MODEL_GUESS_PREVIOUS},
+    {MODEL_IMPLICIT_EULER, .newton_steps = 3},
+    {MODEL_BDF2, .newton_steps = 1},
+    {.integrator = MODEL_EXPLICIT_EULER},
+    {.integrator = MODEL_VERLET},
+    {.integrator = MODEL_RK4},
+    {MODEL_IMPLICIT_EULER, MODEL_IC0_COARSE, .tied = JOINED},
+    {MODEL_IMPLICIT_EULER, MODEL_PLAIN, MODEL_GUESS_PREVIOUS, .tied = JOINED},
+    {MODEL_EXPLICIT_EULER, .tied = JOINED},
+    {MODEL_IMPLICIT_EULER, MODEL_IC0_COARSE, .contact = MODEL_CONTACT_CERTIFIED},
+    {MODEL_IMPLICIT_EULER, MODEL_IC0_COARSE, .contact = MODEL_CONTACT_REPULSION},
+    {MODEL_VERLET, .contact = MODEL_CONTACT_REPULSION},
+    {MODEL_IMPLICIT_EULER, MODEL_IC0_COARSE, .tied = SEWN},
+    {MODEL_IMPLICIT_EULER, MODEL_IC0_COARSE, .corrected = true},
+    {MODEL_BDF2, .newton_steps = 1, .corrected = true},
+    {MODEL_VERLET, .corrected = true},
+};
+_Static_assert(sizeof kinds / sizeof *kinds == KINDS, "the kinds of the header");
 
-static void conditioned(struct session *s)
+static void tie(struct model *model, uint32_t side, enum tied tied)
 {
-    run_of(s, MODEL_IMPLICIT_EULER);
-    s->setup.model.preconditioner = MODEL_IC0_COARSE;
-}
-
-/* So many patches that groups solve the coarse space. */
-static void grouped(struct session *s)
-{
-    *s = (struct session){0};
-    setup_sheet(&s->setup, 17);
-    s->setup.model.preconditioner = MODEL_IC0_COARSE;
-    s->setup.model.grain = 1;
-}
-
-/* Each solve begins with what the step before left. */
-static void guessed(struct session *s)
-{
-    conditioned(s);
-    s->setup.model.guess = MODEL_GUESS_PREVIOUS;
-}
-
-static void newton(struct session *s)
-{
-    run_of(s, MODEL_IMPLICIT_EULER);
-    s->setup.model.newton_steps = 3;
-    s->setup.model.newton_tolerance = 1e-9;
-}
-
-static void bdf2(struct session *s)
-{
-    run_of(s, MODEL_BDF2);
-    s->setup.model.newton_steps = 1;
-}
-
-static void euler(struct session *s)
-{
-    run_of(s, MODEL_EXPLICIT_EULER);
-}
-
-static void verlet(struct session *s)
-{
-    run_of(s, MODEL_VERLET);
-}
-
-static void runge(struct session *s)
-{
-    run_of(s, MODEL_RK4);
-}
-
-/* A joint across the sheet, and one inside a block, which end some time. */
-static void tie(struct session *s)
-{
-    static uint32_t from[] = {1, SIDE * SIDE - 2}, to[] = {SIDE * SIDE - 2, SIDE * SIDE - 3};
+    static uint32_t from[2], to[2];
     static struct model_joint joint;
-    joint = (struct model_joint){.pairs = {.end = {{.cloth = 0, .n = 2, .vertices = from},
+    const uint32_t last = side * side - 1;
+    memcpy(from, (uint32_t[2]){1, last - 1}, sizeof from);
+    memcpy(to, (uint32_t[2]){last - 1, last - 2}, sizeof to);
+    joint = (struct model_joint){.pairs = {.seam = tied == SEWN,
+                                           .end = {{.cloth = 0, .n = 2, .vertices = from},
                                                    {.cloth = 0, .n = 2, .vertices = to}}},
                                  .stiffness = 30,
                                  .damping = 0.01,
-                                 .length = 0.5,
-                                 .end = 100};
-    s->setup.model.joints = &joint;
-    s->setup.model.n_joints = 1;
+                                 .length = tied == SEWN ? 0 : 0.5,
+                                 .end = tied == SEWN ? 0 : 100};
+    model->joints = &joint;
+    model->n_joints = 1;
+    model->n_pulled = tied == SEWN;
 }
 
-static void tied(struct session *s)
+void kind_setup(int number, struct session *s)
 {
-    conditioned(s);
-    tie(s);
+    const struct kind *kind = kinds + number;
+    const uint32_t side = kind->grouped ? 17 : 6;
+    *s = (struct session){0};
+    setup_sheet(&s->setup, side);
+    setup_pin(&s->setup, 2, (const uint32_t[]){0, side - 1});
+    struct model *model = &s->setup.model;
+    model->integrator = kind->integrator;
+    model->preconditioner = kind->preconditioner;
+    model->guess = kind->guess;
+    model->newton_steps = kind->newton_steps;
+    model->newton_tolerance = 1e-9;
+    model->grain = kind->grouped ? 1 : 9;
+    model->halving = true;
+    if (kind->contact)
+        model->contact = (struct model_contact){
+            .mode = kind->contact, .self = true, .thickness = 0.002, .friction = 0.3};
+    if (kind->tied)
+        tie(model, side, kind->tied);
+    if (kind->corrected) {
+        s->setup.material.correction = (struct model_correction){0, 0.01, 20};
+        model->correction_rounds = 20;
+    }
 }
-
-static void tied_plainly(struct session *s)
-{
-    guessed(s);
-    s->setup.model.preconditioner = MODEL_PLAIN;
-    tie(s);
-}
-
-static void tied_explicitly(struct session *s)
-{
-    euler(s);
-    tie(s);
-}
-
-/* A seam of two pairs, across the sheet and inside a block. */
-static void sewn(struct session *s)
-{
-    static struct model_joint joint;
-    conditioned(s);
-    tie(s);
-    joint = *s->setup.model.joints;
-    joint.pairs.seam = 1;
-    joint.length = joint.end = 0;
-    s->setup.model.joints = &joint;
-    s->setup.model.n_pulled = 1;
-}
-
-/* Over a floor that it comes to. */
-static void certified(struct session *s)
-{
-    conditioned(s);
-    s->setup.model.contact = (struct model_contact){
-        .mode = MODEL_CONTACT_CERTIFIED, .self = true, .thickness = 0.002, .friction = 0.3};
-}
-
-static void repel(struct session *s)
-{
-    s->setup.model.contact =
-        (struct model_contact){.mode = MODEL_CONTACT_REPULSION, .self = true, .thickness = 0.002};
-}
-
-static void repelled(struct session *s)
-{
-    conditioned(s);
-    repel(s);
-}
-
-static void repelled_explicitly(struct session *s)
-{
-    verlet(s);
-    repel(s);
-}
-
-/* Nothing may get longer. */
-static void correct(struct session *s)
-{
-    s->setup.material.correction = (struct model_correction){0, 0.01, 20};
-    s->setup.model.correction_rounds = 20;
-}
-
-static void corrected(struct session *s)
-{
-    conditioned(s);
-    correct(s);
-}
-
-static void corrected_by_bdf2(struct session *s)
-{
-    bdf2(s);
-    correct(s);
-}
-
-static void corrected_explicitly(struct session *s)
-{
-    verlet(s);
-    correct(s);
-}
-
-void (*const kinds[KINDS])(struct session *) = {plain,
-                                                conditioned,
-                                                grouped,
-                                                guessed,
-                                                newton,
-                                                bdf2,
-                                                euler,
-                                                verlet,
-                                                runge,
-                                                tied,
-                                                tied_plainly,
-                                                tied_explicitly,
-                                                certified,
-                                                repelled,
-                                                repelled_explicitly,
-                                                sewn,
-                                                corrected,
-                                                corrected_by_bdf2,
-                                                corrected_explicitly};

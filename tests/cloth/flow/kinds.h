@@ -3,9 +3,10 @@
 
 #include "tests/cloth/flow/session.h"
 
-/* Kinds of runs, for what must hold in all of them. Each fills the setup of a session that is then
- * to be started; session_end frees it. */
+/* Kinds of runs, for what must hold in all of them. */
 enum { KINDS = 19 };
-extern void (*const kinds[KINDS])(struct session *);
+
+/* Fills the setup of a session that is then to be started; session_end frees it. */
+void kind_setup(int kind, struct session *session);
 
 #endif

@@ -51,11 +51,19 @@ void setup_sheet(struct setup *s, uint32_t n)
         die(error.text);
 }
 
+void setup_mesh(struct setup *s, uint32_t n, const double *vertices, uint32_t n_edges,
+                const uint32_t *edges, uint32_t n_triangles, const uint32_t *triangles)
+{
+    struct cloth_error error = {0};
+    mesh_free(&s->cloth.mesh);
+    if (mesh_inline(&s->cloth.mesh, n, vertices, n_edges, edges, n_triangles, triangles, &error))
+        die(error.text);
+}
+
 void setup_weight(struct setup *s)
 {
     static const double vertices[] = {0, 0, 0, 0, -1, 0};
     static const uint32_t edge[] = {0, 1};
-    struct cloth_error error = {0};
     memset(s, 0, sizeof *s);
     setup_common(s);
     s->material.density = 1;
@@ -63,8 +71,7 @@ void setup_weight(struct setup *s)
     s->material.damping_stiffness = 0.002;
     s->cloth.mass_per_vertex = 0.1;
     s->model.grain = 1;
-    if (mesh_inline(&s->cloth.mesh, 2, vertices, 1, edge, 0, NULL, &error))
-        die(error.text);
+    setup_mesh(s, 2, vertices, 1, edge, 0, NULL);
     setup_pin(s, 1, (const uint32_t[]){0});
 }
 
@@ -72,19 +79,16 @@ void setup_chain(struct setup *s, uint32_t links, double x, double y, double mas
 {
     double *vertices = calloc(3 * ((size_t)links + 1), sizeof *vertices);
     uint32_t *edges = calloc(2 * (size_t)links, sizeof *edges);
-    struct cloth_error error = {0};
     if (!vertices || !edges)
         die("out of memory");
     setup_weight(s);
-    mesh_free(&s->cloth.mesh);
     for (uint32_t i = 0; i <= links; i++) {
         vertices[3 * i] = x * i;
         vertices[3 * i + 1] = y * i;
     }
     for (uint32_t i = 0; i < 2 * links; i++)
         edges[i] = (i + 1) / 2;
-    if (mesh_inline(&s->cloth.mesh, links + 1, vertices, links, edges, 0, NULL, &error))
-        die(error.text);
+    setup_mesh(s, links + 1, vertices, links, edges, 0, NULL);
     s->cloth.mass_per_vertex = mass;
     s->material.ea = stiffness * hypot(x, y);
     s->material.damping_stiffness = 0;
@@ -94,8 +98,7 @@ void setup_chain(struct setup *s, uint32_t links, double x, double y, double mas
 
 void setup_masses(const struct setup *s, double *mass)
 {
-    for (uint32_t t = 0; t < s->cloth.mesh.n_triangles; t++)
-        mesh_add_cell_mass_of(&s->cloth.mesh, t, s->material.density, mass);
+    mesh_add_mass(&s->cloth.mesh, s->material.density, true, mass);
 }
 
 void setup_pin(struct setup *s, uint32_t n, const uint32_t *vertices)
@@ -206,8 +209,6 @@ static void run_prepared(struct record *r, struct flow *flow)
     options.context = flow;
     options.threads = r->threads ? r->threads : 1;
     options.bind = 0;
-    if (r->scheduler)
-        options.scheduler = duite_scheduler_find(r->scheduler);
     if (r->balance)
         options.balance = duite_balancer_find(r->balance);
     if (duite_start(&rt, &options))
@@ -250,6 +251,16 @@ double record_at(const struct record *r, size_t frame, size_t vertex, size_t c)
     if (frame >= r->frames || vertex >= r->vertices)
         die("no such frame or vertex");
     return r->position[3 * (r->vertices * frame + vertex) + c];
+}
+
+double record_farthest(const struct record *a, const struct record *b)
+{
+    double max = 0;
+    ck_assert_uint_eq(a->frames, b->frames);
+    ck_assert_uint_eq(a->vertices, b->vertices);
+    for (size_t i = 0; i < 3 * a->frames * a->vertices; i++)
+        max = fmax(max, fabs(a->position[i] - b->position[i]));
+    return max;
 }
 
 void record_free(struct record *r)

@@ -3,8 +3,6 @@
 
 #include "cloth/flow/run.h"
 
-#include <stdbool.h>
-
 /* Models for the tests of cloth/flow, made in C, and their runs with every frame kept. A model
  * points into the setup it was made from, which stays where it is while the model is used. */
 struct setup {
@@ -29,6 +27,10 @@ void setup_sheet(struct setup *setup, uint32_t n);
  * the spring. */
 void setup_weight(struct setup *setup);
 
+/* setup_weight with a mesh of these vertices, edges and triangles in its place. */
+void setup_mesh(struct setup *setup, uint32_t n, const double *vertices, uint32_t n_edges,
+                const uint32_t *edges, uint32_t n_triangles, const uint32_t *triangles);
+
 /* setup_weight with a chain of edges in its place, from the pin at the origin on: links + 1
  * vertices of `mass` kg, each (x, y, 0) m after the one before it, whose springs have `stiffness`
  * N/m and no damping. */
@@ -51,11 +53,10 @@ struct record {
     double *time;           /* frames */
     _Atomic uint64_t shown; /* steps that the progress was told of; tasks read it */
     /* Set before the run: */
-    uint64_t stop_after;   /* asks for a stop once so many steps were shown; 0: never */
-    uint64_t break_frame;  /* writing this frame fails; 0: none */
-    unsigned threads;      /* 0: 1 */
-    const char *scheduler; /* NULL: the default */
-    const char *balance;   /* NULL: the default */
+    uint64_t stop_after;  /* asks for a stop once so many steps were shown; 0: never */
+    uint64_t break_frame; /* writing this frame fails; 0: none */
+    unsigned threads;     /* 0: 1 */
+    const char *balance;  /* NULL: the default */
 };
 
 /* Prepares, runs and frees; every rank has the whole record then. Starts MPI if it is not; it ends
@@ -67,6 +68,8 @@ void record_fine(struct record *record, const struct model *model);
 void record_mpi(int *rank, int *ranks);
 /* Component c of a vertex in a frame. */
 double record_at(const struct record *record, size_t frame, size_t vertex, size_t c);
+/* The largest difference of a component in any frame; both have as many of the same vertices. */
+double record_farthest(const struct record *a, const struct record *b);
 void record_free(struct record *record);
 
 /* In a unit test: `setup`, which the call makes; with a `record` of its run to come. Both are freed

@@ -1,7 +1,7 @@
 if HAVE_CHECK
 FLOW_TEST_MODELS = tests/cloth/flow/models.c tests/cloth/flow/models.h
 LEAK_TESTS += tests/cloth/flow/test_failures tests/cloth/flow/test_run tests/cloth/flow/test_memory
-TSAN_TESTS += tests/cloth/flow/test_grid tests/cloth/flow/test_cut_run tests/cloth/flow/test_skins \
+TSAN_TESTS += tests/cloth/flow/test_grid tests/cloth/flow/test_skins \
     tests/cloth/flow/test_sliders tests/cloth/flow/test_ties \
     tests/cloth/flow/test_ties_runs tests/cloth/flow/test_levels
 ASAN_TESTS += tests/cloth/flow/test_motion tests/cloth/flow/test_halving tests/cloth/flow/test_limits tests/cloth/flow/test_strain_limit \
@@ -10,7 +10,7 @@ PLAIN_TESTS += tests/cloth/flow/test_solvers tests/cloth/flow/test_obstacles tes
     tests/cloth/flow/test_integrators tests/cloth/flow/test_chain tests/cloth/flow/test_newton
 tests_cloth_flow_test_failures_SOURCES = tests/cloth/flow/test_failures.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_memory_SOURCES = tests/cloth/flow/test_memory.c $(SCARCE) $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_memory_LDFLAGS = $(SCARCE_WRAP) -Wl,--wrap=flow_memory_take,--wrap=flow_source_gather
+tests_cloth_flow_test_memory_LDFLAGS = $(SCARCE_WRAP) -Wl,--wrap=flow_memory_take,--wrap=flow_source_gather,--wrap=duite_new
 check_PROGRAMS += tests/cloth/flow/test_late
 tests_cloth_flow_test_late_SOURCES = tests/cloth/flow/test_late.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_late_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=flow_halo_make

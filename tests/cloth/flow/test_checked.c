@@ -33,13 +33,37 @@ int __wrap_check_call(struct check *check, const struct check_task *task, duite_
 
 /* ---- Cases ---- */
 
-static const char *const integrators[] = {
-    "integrator=implicit_euler",   "integrator=bdf2",   "integrator=explicit_euler",
-    "integrator=symplectic_euler", "integrator=verlet", "integrator=rk4"};
-enum { INTEGRATORS = 6, IMPLICIT = 2 };
-static const char *const preconditioners[] = {
-    "solver.preconditioner=none", "solver.preconditioner=jacobi", "solver.preconditioner=ic0",
-    "solver.preconditioner=coarse", "solver.preconditioner=ic0_coarse"};
+/* What scenes choose from, as sets of the words that they have for it. */
+enum { MOST_CHOICES = 16, CHOICE_TEXT = 48 };
+struct choices {
+    size_t n;
+    char set[MOST_CHOICES][CHOICE_TEXT];
+};
+static struct choices integrators, preconditioners;
+static size_t n_implicit; /* of the integrators, which come first */
+
+/* Before any test, which might say that there is no room. */
+static void choices_add(struct choices *choices, const char *key, const char *word)
+{
+    if (choices->n == MOST_CHOICES)
+        abort();
+    snprintf(choices->set[choices->n++], CHOICE_TEXT, "%s=%s", key, word);
+}
+
+static void choices_find(void)
+{
+    for (int is_explicit = 0; is_explicit < 2; is_explicit++)
+        for (const struct model_word *word = model_integrators; word->word; word++)
+            if (is_explicit == (model_schemes[word->value].limit != NULL)) {
+                choices_add(&integrators, "integrator", word->word);
+                n_implicit += !is_explicit;
+            }
+    for (const struct model_word *word = model_preconditioners; word->word; word++)
+        choices_add(&preconditioners, "solver.preconditioner", word->word);
+}
+
+static const char *const none = "solver.preconditioner=none";
+static const char *const ic0_coarse = "solver.preconditioner=ic0_coarse";
 static const char *const formats[] = {"solver.format=springs", "solver.format=half",
                                       "solver.format=half_float"};
 static const char *const newton = "newton={steps: 2, tolerance: 1e-9}";
@@ -63,10 +87,10 @@ UNIT_TEST(materials)
         "cloths[0].material=hinges",    "cloths[0].material=quadratic",
         "cloths[0].material=triangles", "cloths[0].material=uncorrected"};
     sample_no_more();
-    for (size_t i = 0; i < INTEGRATORS; i++)
+    for (size_t i = 0; i < integrators.n; i++)
         for (size_t k = 0; k < LENGTH(all); k++)
-            if (paired(i, INTEGRATORS, k, LENGTH(all)))
-                run(SETS(integrators[i], all[k]));
+            if (paired(i, integrators.n, k, LENGTH(all)))
+                run(SETS(integrators.set[i], all[k]));
 }
 
 UNIT_TEST(pins)
@@ -80,18 +104,18 @@ UNIT_TEST(pins)
          "{times: [0, 1], rotate: [[1, 0, 0, 0], [0.8, 0, 0.6, 0]]}}]"),
     };
     sample_no_more();
-    for (size_t i = 0; i < INTEGRATORS; i++)
+    for (size_t i = 0; i < integrators.n; i++)
         for (size_t k = 0; k < LENGTH(all); k++)
-            if (paired(i, INTEGRATORS, k, LENGTH(all)))
-                run(SETS(integrators[i], all[k]));
+            if (paired(i, integrators.n, k, LENGTH(all)))
+                run(SETS(integrators.set[i], all[k]));
 }
 
 UNIT_TEST(contact)
 {
-    for (size_t i = 0; i < IMPLICIT; i++)
+    for (size_t i = 0; i < n_implicit; i++)
         for (size_t k = 0; k < LENGTH(formats); k++)
-            if (paired(i, IMPLICIT, k, LENGTH(formats)))
-                run(SETS(integrators[i], formats[k],
+            if (paired(i, n_implicit, k, LENGTH(formats)))
+                run(SETS(integrators.set[i], formats[k],
                          k % 2 ? "cloths[0].material=triangles" : NULL));
     run(SETS("obstacles=[]"));
 }
@@ -99,11 +123,11 @@ UNIT_TEST(contact)
 static void solves(const char *of)
 {
     for (size_t i = 0; i < LENGTH(formats); i++)
-        for (size_t k = 0; k < LENGTH(preconditioners); k++) {
-            if (!paired(i, LENGTH(formats), k, LENGTH(preconditioners)))
+        for (size_t k = 0; k < preconditioners.n; k++) {
+            if (!paired(i, LENGTH(formats), k, preconditioners.n))
                 continue;
-            run(SETS(of, formats[i], preconditioners[k]));
-            run(SETS(of, formats[i], preconditioners[k], "solver.guess=zero",
+            run(SETS(of, formats[i], preconditioners.set[k]));
+            run(SETS(of, formats[i], preconditioners.set[k], "solver.guess=zero",
                      "cloths[0].material=hinges"));
         }
 }
@@ -120,13 +144,13 @@ UNIT_TEST(solves_of_newton_steps)
 
 UNIT_TEST(filtered_solves)
 {
-    for (size_t i = 0; i < LENGTH(preconditioners); i++) {
-        if (paired(i, LENGTH(preconditioners), 0, 2))
+    for (size_t i = 0; i < preconditioners.n; i++) {
+        if (paired(i, preconditioners.n, 0, 2))
             run(SETS("cloths[0].pins=[{vertices: [0, 35], to: line, direction: [1, 2, 0]}]",
-                     preconditioners[i]));
-        if (paired(i, LENGTH(preconditioners), 1, 2))
+                     preconditioners.set[i]));
+        if (paired(i, preconditioners.n, 1, 2))
             run(SETS(newton, "cloths[0].pins=[{vertices: [0, 35], to: plane, normal: [1, 2, 0]}]",
-                     preconditioners[i]));
+                     preconditioners.set[i]));
     }
 }
 
@@ -144,8 +168,7 @@ UNIT_TEST(other_solves)
     for (size_t i = 0; i < LENGTH(all); i++)
         for (size_t k = 0; k < 2; k++)
             if (paired(i, LENGTH(all), k, 2))
-                run(SETS(all[i], k ? preconditioners[4] : preconditioners[0],
-                         "cloths[0].mesh.grid.nx=7"));
+                run(SETS(all[i], k ? ic0_coarse : none, "cloths[0].mesh.grid.nx=7"));
 }
 
 UNIT_TEST(outside)
@@ -154,11 +177,12 @@ UNIT_TEST(outside)
                                     "{sine: {frequency: 5}}}, {edges: [[0, 1]], force: [1, 0, 0], "
                                     "curve: {keys: [[0, 0], [1, 1]]}}, {vertices: [9], force: [0, "
                                     "0, 1]}]";
-    for (size_t i = 0; i < INTEGRATORS; i++) {
-        if (paired(i, INTEGRATORS, 0, 2))
-            run(SETS(integrators[i], load));
-        if (paired(i, INTEGRATORS, 1, 2))
-            run(SETS(integrators[i], load, "air={wind: [1, 2, 3], curve: {sine: {frequency: 1}}}",
+    for (size_t i = 0; i < integrators.n; i++) {
+        if (paired(i, integrators.n, 0, 2))
+            run(SETS(integrators.set[i], load));
+        if (paired(i, integrators.n, 1, 2))
+            run(SETS(integrators.set[i], load,
+                     "air={wind: [1, 2, 3], curve: {sine: {frequency: 1}}}",
                      "cloths[0].material=triangles"));
     }
 }
@@ -195,12 +219,12 @@ UNIT_TEST(timed_joints)
         "joints=[{from: {vertices: [1, 2, 3]}, to: {vertices: [34, 33, 2]}, stiffness: 5, damping: "
         "0.01, end: 0.0015}, {from: {vertex: 5}, to: {vertex: 30}, stiffness: 5, begin: 0.001}, "
         "{from: {vertex: 0}, to: {vertex: 35}, stiffness: 5, length: 0, end: 0.001}]";
-    for (size_t i = 0; i < INTEGRATORS; i++)
-        run(SETS(integrators[i], joints, i % 2 ? "cloths[0].pins=[]" : NULL));
+    for (size_t i = 0; i < integrators.n; i++)
+        run(SETS(integrators.set[i], joints, i % 2 ? "cloths[0].pins=[]" : NULL));
     for (size_t i = 0; i < LENGTH(formats); i++)
-        for (size_t k = 0; k < LENGTH(preconditioners); k++)
-            if (paired(i, LENGTH(formats), k, LENGTH(preconditioners)))
-                run(SETS(joints, formats[i], preconditioners[k],
+        for (size_t k = 0; k < preconditioners.n; k++)
+            if (paired(i, LENGTH(formats), k, preconditioners.n))
+                run(SETS(joints, formats[i], preconditioners.set[k],
                          k % 2 ? "solver.guess=previous" : "newton.steps=2"));
     run_how(&(struct how){.system = true}, SETS(joints));
     run_how(&(struct how){.system = true}, SETS(joints, "cloths[0].material=hinges"));
@@ -209,11 +233,11 @@ UNIT_TEST(timed_joints)
 /* What gives a step up, and begins it again with half the length. */
 UNIT_TEST(halved_steps)
 {
-    for (size_t i = 0; i < INTEGRATORS; i++) {
+    for (size_t i = 0; i < integrators.n; i++) {
         struct how how = {0};
-        if (!paired(i, INTEGRATORS, 0, 3))
+        if (!paired(i, integrators.n, 0, 3))
             continue;
-        if (run_how(&how, SETS(integrators[i], "time.stretch_growth=0.004", "time.end=0.001",
+        if (run_how(&how, SETS(integrators.set[i], "time.stretch_growth=0.004", "time.end=0.001",
                                "cloths[0].start=[{vertices: [20], velocity: [9, 0, 0]}]")))
             ck_assert_uint_gt(how.report.steps_halved, 0);
     }
@@ -221,9 +245,10 @@ UNIT_TEST(halved_steps)
 
 UNIT_TEST(cut_newton_steps)
 {
-    for (size_t i = 0; i < (whole ? IMPLICIT : 1); i++)
-        run(SETS(integrators[i], "newton={steps: 5, tolerance: 1e-9}", "time={h: 0.05, end: 0.1}",
-                 "time.halving=off", "materials.springs={density: 0.2, stretch: 5000, shear: 10}",
+    for (size_t i = 0; i < (whole ? n_implicit : 1); i++)
+        run(SETS(integrators.set[i], "newton={steps: 5, tolerance: 1e-9}",
+                 "time={h: 0.05, end: 0.1}", "time.halving=off",
+                 "materials.springs={density: 0.2, stretch: 5000, shear: 10}",
                  "cloths[0].start=[{vertices: [20], velocity: [50, 0, 0]}]"));
 }
 
@@ -258,9 +283,9 @@ UNIT_TEST(maps)
         "view: y, resolution: 33, frames: {obj: [box.obj, wide.obj], fps: 1}}}";
     scene_write_file("box.obj", box, sizeof box - 1);
     scene_write_file("wide.obj", wide, sizeof wide - 1);
-    for (size_t i = 0; i < INTEGRATORS; i++)
-        if (paired(i, INTEGRATORS, 0, 3))
-            run(SETS(integrators[i], moves, changes, "contact.mode=project"));
+    for (size_t i = 0; i < integrators.n; i++)
+        if (paired(i, integrators.n, 0, 3))
+            run(SETS(integrators.set[i], moves, changes, "contact.mode=project"));
 }
 
 /* A plane, cloth on cloth, and a body that comes from below; a solve that ends early leaves ways to
@@ -278,8 +303,9 @@ UNIT_TEST(certified_contact)
     static const char *const probes =
         "probes=[{cloth: sheet, vertices: [0], values: [contact, contact_total]}, {obstacle: 1}]";
     scene_write_file("box.obj", box, sizeof box - 1);
-    for (size_t i = 0; i < IMPLICIT; i++)
-        run(SETS(integrators[i], mode, body, above, probes, i ? "solver.stop={count: 1}" : NULL));
+    for (size_t i = 0; i < n_implicit; i++)
+        run(SETS(integrators.set[i], mode, body, above, probes,
+                 i ? "solver.stop={count: 1}" : NULL));
 }
 
 /* A plane, and cloth on cloth. */
@@ -290,17 +316,17 @@ UNIT_TEST(repulsion)
     static const char *const above =
         "cloths[1]={mesh: {grid: {width: 1, height: 1, nx: 3, ny: 3}}, material: triangles, "
         "velocity: [0, -3, 0], transform: {translate: [0.1, 0.001, 0.1]}}";
-    for (size_t i = 0; i < INTEGRATORS; i++)
+    for (size_t i = 0; i < integrators.n; i++)
         if (whole || i % 2 == 0)
-            run(SETS(integrators[i], mode, above, "probes=[]"));
+            run(SETS(integrators.set[i], mode, above, "probes=[]"));
 }
 
 /* Rows on a slider and held ones, edges within blocks and between them. */
 UNIT_TEST(velocity_correction)
 {
-    for (size_t i = 0; i < INTEGRATORS; i++)
+    for (size_t i = 0; i < integrators.n; i++)
         if (whole || i % 2 == 0)
-            run(SETS(integrators[i], "materials.springs.velocity_correction={at: 0, rounds: 5}",
+            run(SETS(integrators.set[i], "materials.springs.velocity_correction={at: 0, rounds: 5}",
                      "cloths[0].start=[{vertices: [20], velocity: [9, 0, 0]}]"));
 }
 
@@ -326,8 +352,8 @@ UNIT_TEST(checkpoints)
 
 UNIT_TEST(pulled_seams)
 {
-    for (size_t i = 0; i < INTEGRATORS; i++)
-        run(SETS(integrators[i], "cloths[0].mesh={pattern: {garment: skirt, edge: 0.15}}",
+    for (size_t i = 0; i < integrators.n; i++)
+        run(SETS(integrators.set[i], "cloths[0].mesh={pattern: {garment: skirt, edge: 0.15}}",
                  "cloths[0].pins=[]", "cloths[0].material=triangles",
                  "cloths[0].seams={state: pulled, stiffness: 5, damping: 0.01}"));
 }
@@ -336,7 +362,7 @@ UNIT_TEST(pulled_seams)
 UNIT_TEST(groups)
 {
     run(SETS("cloths[0].mesh.grid.nx=30", "cloths[0].mesh.grid.ny=30", "grain=6",
-             "solver.patches=2", "time.end=0.001", preconditioners[4]));
+             "solver.patches=2", "time.end=0.001", ic0_coarse));
 }
 
 /* ---- All kernels ---- */
@@ -361,6 +387,7 @@ int main(int argc, char **argv)
 {
     whole = argc > 1 && !strcmp(argv[1], "long");
     quick = !whole && (argc > 1 || unit_quick());
+    choices_find();
     ran = mmap(NULL, MAX_KERNELS, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     return ran == MAP_FAILED ? 99 : unit_main();
 }

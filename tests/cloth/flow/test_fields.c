@@ -58,7 +58,7 @@ static void check_last(const struct session *s, int field)
 UNIT_LOOP(what_exists_is_made, 0, KINDS)
 {
     struct session s;
-    kinds[_i](&s);
+    kind_setup(_i, &s);
     session_start(&s);
     ck_assert_uint_gt(s.flow->tables.n_blocks, 2);
     for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
@@ -72,7 +72,7 @@ UNIT_LOOP(what_exists_is_made, 0, KINDS)
 UNIT_LOOP(all_is_freed, 0, KINDS)
 {
     struct session s;
-    kinds[_i](&s);
+    kind_setup(_i, &s);
     session_start(&s);
     ck_assert_int_eq(flow_objects_free(&s.state), 0);
     for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
@@ -99,7 +99,7 @@ UNIT_TEST(every_field_has_a_run)
     bool exists[FLOW_FIELDS_OF_ALL] = {false};
     for (int kind = 0; kind < KINDS; kind++) {
         struct session s;
-        kinds[kind](&s);
+        kind_setup(kind, &s);
         session_start(&s);
         for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
             exists[field] = exists[field] || made(&s, field, 0).generation;
@@ -182,7 +182,7 @@ static int step_on(struct session *s)
 static uint64_t run_changed(int kind, enum flow_life life, int only, change *how)
 {
     struct session s;
-    kinds[kind](&s);
+    kind_setup(kind, &s);
     session_start(&s);
     if (model_is_implicit(&s.setup.model))
         ck_assert_int_eq(flow_cg_record(&s.state), 0);
@@ -194,7 +194,8 @@ static uint64_t run_changed(int kind, enum flow_life life, int only, change *how
                 change_field(&s, field, how);
         ck_assert_int_eq(step_on(&s), 0);
         ck_assert_int_eq(duite_wait(s.rt), 0);
-        flow_contact_settled(&s.state, true);
+        const double status[FLOW_STATUS] = {0};
+        ck_assert_int_eq(flow_contact_settled(&s.state, status, true), 0);
         s.state.smooth = FLOW_TICKS; /* BDF2 goes on */
     }
     const uint64_t hash = hash_state(&s);
@@ -236,7 +237,7 @@ UNIT_LOOP(state_lasts, 0, KINDS)
     const uint64_t hash = run_changed(_i, FLOW_WORK, -1, NULL);
     struct session s;
     bool is_state[FLOW_FIELDS_OF_ALL];
-    kinds[_i](&s);
+    kind_setup(_i, &s);
     session_start(&s);
     for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
         is_state[field] = is_changed(&s, field, FLOW_STATE_FIELD, field);
@@ -263,7 +264,7 @@ UNIT_LOOP(what_the_main_program_knows_lasts, 0, KINDS)
     struct session s;
     struct flow_checkpoint saved = {0};
     const struct flow_output output = {.save = take_checkpoint, .context = &saved};
-    kinds[_i](&s);
+    kind_setup(_i, &s);
     if (flow_contact_mode(&s.setup.model)->carries) { /* its lists would have to be made first */
         setup_free(&s.setup);
         return;

@@ -220,8 +220,7 @@ UNIT_TEST(bdf2_begins_anew_after_another_length)
     double start[24] = {0};
     UNIT_OWNED(record_free) struct record r = {0};
     SETUP(setup_weight(&setup));
-    mesh_free(&setup.cloth.mesh);
-    UNIT_FINE(mesh_inline(&setup.cloth.mesh, 4, vertices, 2, edges, 0, NULL, &error));
+    setup_mesh(&setup, 4, vertices, 2, edges, 0, NULL);
     for (int i = 0; i < 12; i++)
         start[i / 3 * 6 + i % 3] = vertices[i];
     start[12 + 3] = -10;

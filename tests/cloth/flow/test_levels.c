@@ -3,8 +3,6 @@
 #include "tests/cloth/flow/session.h"
 #include "tests/support/unit.h"
 
-#include <math.h>
-
 /* Blocks of few vertices, a patch each: on how many levels their groups are, and how many times the
  * iterations that takes at most. The exact space of patches of two vertices solves nearly all. */
 static const struct {
@@ -38,15 +36,6 @@ UNIT_LOOP(groups_are_on_so_many_levels, 0, KINDS)
     session_end(&s);
 }
 
-static double farthest(const struct record *a, const struct record *b)
-{
-    double max = 0;
-    ck_assert_uint_eq(a->frames, b->frames);
-    for (size_t i = 0; i < 3 * a->frames * a->vertices; i++)
-        max = fmax(max, fabs(a->position[i] - b->position[i]));
-    return max;
-}
-
 static void run(struct setup *setup, bool exact, struct record *record)
 {
     setup->model.exact_coarse = exact;
@@ -63,7 +52,7 @@ static void compare(struct setup *setup, double more)
     const double iterations = (double)exact.report.cg_iterations_total;
     ck_assert_double_le((double)one.report.cg_iterations_total, more * iterations);
     ck_assert_uint_eq(one.report.state_hash, two.report.state_hash);
-    ck_assert_double_le(farthest(&exact, &one), 1e-6);
+    ck_assert_double_le(record_farthest(&exact, &one), 1e-6);
     record_free(&exact);
     record_free(&one);
     record_free(&two);

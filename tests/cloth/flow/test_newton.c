@@ -154,8 +154,7 @@ UNIT_TEST(line_search)
     static const uint32_t edges[] = {0, 1, 1, 2};
     UNIT_OWNED(record_free) struct record r = {0};
     SETUP(chain(&setup, h, 1));
-    mesh_free(&setup.cloth.mesh);
-    UNIT_FINE(mesh_inline(&setup.cloth.mesh, 3, vertices, 2, edges, 0, NULL, &error));
+    setup_mesh(&setup, 3, vertices, 2, edges, 0, NULL);
     setup_pin(&setup, 2, (const uint32_t[]){0, 2});
     setup.material.ea = k * half;
     setup.model.newton_steps = 2;

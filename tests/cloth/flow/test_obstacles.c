@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 enum { MASSES = 4 };
@@ -53,6 +52,11 @@ static void free_all(struct setup *setup)
     setup_free(setup);
 }
 
+static void row_free(struct row *row)
+{
+    free_all(&row->setup);
+}
+
 /* A row of masses upright on a shape, GAP apart at rest, joined by springs, on no pin. The shape
  * rises with SPEED from time 0 on. */
 static void row_make(struct row *row, int shape)
@@ -61,8 +65,7 @@ static void row_make(struct row *row, int shape)
     static const uint32_t edges[] = {0, 1, 1, 2, 2, 3};
     struct setup *s = &row->setup;
     setup_weight(s);
-    mesh_free(&s->cloth.mesh);
-    UNIT_FINE(mesh_inline(&s->cloth.mesh, MASSES, vertices, MASSES - 1, edges, 0, NULL, &error));
+    setup_mesh(s, MASSES, vertices, MASSES - 1, edges, 0, NULL);
     s->cloth.n_pins = 0;
     s->cloth.mass_per_vertex = MASS;
     s->material.ea = EA;
@@ -106,8 +109,8 @@ enum { N_WAYS = sizeof WAYS / sizeof *WAYS };
 UNIT_LOOP(carries_a_row, 0, N_WAYS *N_SHAPES)
 {
     const struct way *way = WAYS + _i / N_SHAPES;
-    struct row row;
-    struct record record = {0};
+    UNIT_OWNED(row_free) struct row row;
+    UNIT_OWNED(record_free) struct record record = {0};
     row_make(&row, _i % N_SHAPES);
     struct model *model = &row.setup.model;
     model->integrator = way->integrator;
@@ -134,15 +137,13 @@ UNIT_LOOP(carries_a_row, 0, N_WAYS *N_SHAPES)
     /* It lies on the shape, less what a step falls before it is put back. */
     ck_assert_double_eq_tol(record_at(&record, last, 0, 1), SPEED * record.time[last], 1e-9);
     ck_assert_double_eq_tol(record_at(&record, last, 0, 0), 0, 1e-12);
-    record_free(&record);
-    free_all(&row.setup);
 }
 
 /* Without weight and springs the step in which the shape comes gives the lowest mass m v. */
 UNIT_LOOP(gives_momentum, 0, N_SHAPES)
 {
-    struct row row;
-    struct record record = {0};
+    UNIT_OWNED(row_free) struct row row;
+    UNIT_OWNED(record_free) struct record record = {0};
     row_make(&row, _i);
     struct model *model = &row.setup.model;
     row.setup.material.ea = 1e-12;
@@ -159,16 +160,14 @@ UNIT_LOOP(gives_momentum, 0, N_SHAPES)
     for (size_t frame = 6; frame < record.frames; frame++)
         ck_assert_double_eq_tol(MASS * speed_of(&record, frame, 0), MASS * SPEED, 1e-9);
     ck_assert_double_eq_tol(speed_of(&record, record.frames - 1, 1), 0, 1e-9);
-    record_free(&record);
-    free_all(&row.setup);
 }
 
 /* A step that is given up and made in parts sees the shape where it is at the end of each part: the
  * mass on it is exactly there at every time. */
 UNIT_TEST(halved_steps_see_their_time)
 {
-    struct row row;
-    struct record record = {0};
+    UNIT_OWNED(row_free) struct row row;
+    UNIT_OWNED(record_free) struct record record = {0};
     row_make(&row, 0);
     struct model *model = &row.setup.model;
     model->halving = true;
@@ -183,15 +182,13 @@ UNIT_TEST(halved_steps_see_their_time)
         const double off = record_at(&record, frame, 0, 1) - SPEED * record.time[frame];
         ck_assert_double_eq_tol(off, 0, 1e-12);
     }
-    record_free(&record);
-    free_all(&row.setup);
 }
 
 /* What rests while a shape has yet to move does not end the run. */
 UNIT_TEST(waits_for_a_shape)
 {
-    struct row row;
-    struct record record = {0};
+    UNIT_OWNED(row_free) struct row row;
+    UNIT_OWNED(record_free) struct record record = {0};
     row_make(&row, 0);
     struct model *model = &row.setup.model;
     row.keys[0].time = 0.2;
@@ -206,8 +203,6 @@ UNIT_TEST(waits_for_a_shape)
     record_fine(&record, model);
     ck_assert_double_gt(record.report.rest_seconds, 0.3);
     ck_assert_double_lt(record.report.rest_seconds, 3);
-    record_free(&record);
-    free_all(&row.setup);
 }
 
 /* A ball goes through where a sheet hangs: no vertex is in it, and the sheet is out of its way. */
@@ -215,7 +210,7 @@ UNIT_TEST(pushes_a_sheet)
 {
     static struct phys_key keys[2] = {{0, {0, 0, 0}, {1, 0, 0, 0}}, {1, {0, 0, 0.6}, {1, 0, 0, 0}}};
     const double radius = 0.15;
-    struct setup s;
+    UNIT_OWNED(free_all) struct setup s;
     UNIT_OWNED(record_free) struct record record = {0};
     setup_sheet(&s, 21); /* in the x-z plane: its weight hangs along x */
     s.model.gravity[0] = -9.81;
@@ -246,7 +241,6 @@ UNIT_TEST(pushes_a_sheet)
         }
     const size_t middle = 220;
     ck_assert_double_gt(record_at(&record, record.frames - 1, middle, 1), 0.3);
-    free_all(&s);
 }
 
 /* A sheet of n x n vertices that falls onto something, 0.2 s in 50 steps. */
@@ -273,7 +267,7 @@ UNIT_TEST(a_ball_of_triangles)
     for (int i = 0; i < 2; i++) {
         const struct contact_shape shape[2] = {{.kind = 1, .value = {0, -0.31, 0, radius}},
                                                {.kind = 5, .body = 1}};
-        struct setup s;
+        UNIT_OWNED(free_all) struct setup s;
         sheet_make(&s, 21, shape + i);
         if (i) {
             struct mesh mesh;
@@ -284,7 +278,6 @@ UNIT_TEST(a_ball_of_triangles)
             body_make(&s.model, &mesh, &place);
         }
         record_fine(on + i, &s.model);
-        free_all(&s);
     }
     size_t lies = 0;
     double sum = 0;
@@ -318,7 +311,7 @@ UNIT_TEST(crumples_by_absolute_slopes)
 {
     struct flow_report report[2];
     for (int absolute = 0; absolute < 2; absolute++) {
-        struct setup s;
+        UNIT_OWNED(free_all) struct setup s;
         UNIT_OWNED(record_free) struct record record = {0};
         sheet_make(&s, 24, &PLANE(0, 0, 0, 0, 1, 0));
         for (size_t v = 0; v < s.cloth.mesh.n_vertices; v++) {
@@ -336,7 +329,6 @@ UNIT_TEST(crumples_by_absolute_slopes)
         s.model.energy_steps = true;
         record_fine(&record, &s.model);
         report[absolute] = record.report;
-        free_all(&s);
     }
     ck_assert_double_lt(2 * report[1].energy_gained, report[0].energy_gained);
     ck_assert_uint_lt(report[1].cg_iterations_total, report[0].cg_iterations_total);
@@ -346,7 +338,7 @@ UNIT_TEST(crumples_by_absolute_slopes)
  * step. */
 UNIT_LOOP(a_real_body, 0, access(real_body_path(), R_OK) == 0)
 {
-    struct setup s;
+    UNIT_OWNED(free_all) struct setup s;
     UNIT_OWNED(record_free) struct record record = {0};
     struct mesh mesh;
     sheet_make(&s, 41, &(const struct contact_shape){.kind = 5, .body = 1});
@@ -368,5 +360,4 @@ UNIT_LOOP(a_real_body, 0, access(real_body_path(), R_OK) == 0)
             touched += hit.gap < 1e-7;
         }
     ck_assert_uint_gt(touched, 100);
-    free_all(&s);
 }

@@ -40,8 +40,7 @@ UNIT_TEST(hash_of_positions_then_velocities)
     static const double vertices[5][3] = {{0, 0, 0.5}, {9, 8, 7}, {1, 0, 0}, {0, 0, 1}, {1, 2, 1}};
     static const uint32_t triangles[] = {0, 2, 3, 2, 4, 3};
     TRIAL(setup_sheet(&setup, 2));
-    setup_free(&setup);
-    UNIT_FINE(mesh_inline(&setup.cloth.mesh, 5, vertices[0], 0, NULL, 2, triangles, &error));
+    setup_mesh(&setup, 5, vertices[0], 0, NULL, 2, triangles);
     setup.model.grain = 2;
     setup.model.h = 1;
     setup.model.end = 0.4;
@@ -135,9 +134,8 @@ UNIT_TEST(unused_vertices_stay)
     static const double vertices[] = {0, 0, 0, 9, 8, 7, 1, 0, 0, 0, 0, 1};
     static const uint32_t triangle[] = {0, 2, 3};
     TRIAL(setup_sheet(&setup, 2));
-    setup_free(&setup);
+    setup_mesh(&setup, 4, vertices, 0, NULL, 1, triangle);
     setup.model.grain = 2;
-    UNIT_FINE(mesh_inline(&setup.cloth.mesh, 4, vertices, 0, NULL, 1, triangle, &error));
     setup.cloth.velocity[0] = 1;
     record_fine(&record, &setup.model);
     for (size_t f = 0; f < record.frames; f++)
@@ -168,24 +166,4 @@ UNIT_TEST(two_cloths)
                                 v < 25 ? 0 : 0.02, 1e-12);
         ck_assert_double_eq_tol(record_at(&record, 10, v, 1), -drop, 1e-12);
     }
-}
-
-/* The same bits for any threads and schedulers; other bits where something else is computed. */
-UNIT_TEST(threads_and_schedulers_change_no_bit)
-{
-    static const char *const schedulers[] = {"steal", "fifo", "shuffle"};
-    uint64_t hash = 0;
-    SETUP(setup_sheet(&setup, 12));
-    setup_pin(&setup, 1, (const uint32_t[]){0});
-    for (unsigned i = 0; i < 9; i++) {
-        UNIT_OWNED(record_free)
-        struct record record = {.threads = 1 + i / 3, .scheduler = schedulers[i % 3]};
-        record_fine(&record, &setup.model);
-        hash = i ? hash : record.report.state_hash;
-        ck_assert_uint_eq(record.report.state_hash, hash);
-    }
-    UNIT_OWNED(record_free) struct record other = {0};
-    setup.model.tolerance = 1e-4;
-    record_run(&other, &setup.model);
-    ck_assert_uint_ne(other.report.state_hash, hash);
 }

@@ -174,8 +174,7 @@ static void hang(struct setup *setup, uint32_t links, double mass)
     static const double vertices[] = {-1, 1, 0, 0, 0, 0, 1, 1, 0};
     static const uint32_t edges[] = {0, 1, 1, 2};
     setup_weight(setup);
-    mesh_free(&setup->cloth.mesh);
-    UNIT_FINE(mesh_inline(&setup->cloth.mesh, links + 1, vertices, links, edges, 0, NULL, &error));
+    setup_mesh(setup, links + 1, vertices, links, edges, 0, NULL);
     setup->cloth.mass_per_vertex = mass;
     setup->material.ea = 40;
     setup->model.tolerance = 1e-13;

@@ -5,7 +5,6 @@
 #include "tests/support/unit.h"
 
 #include <math.h>
-#include <string.h>
 
 static const enum model_preconditioner kinds[] = {MODEL_JACOBI, MODEL_IC0, MODEL_COARSE,
                                                   MODEL_IC0_COARSE};
@@ -21,16 +20,6 @@ static void setup_stiff(struct setup *setup, uint32_t n)
     setup_pin(setup, 2, (const uint32_t[]){0, n - 1});
 }
 
-static double farthest(const struct record *a, const struct record *b)
-{
-    double max = 0;
-    ck_assert_uint_eq(a->frames, b->frames);
-    ck_assert_uint_eq(a->vertices, b->vertices);
-    for (size_t i = 0; i < 3 * a->frames * a->vertices; i++)
-        max = fmax(max, fabs(a->position[i] - b->position[i]));
-    return max;
-}
-
 /* Runs the model without a preconditioner and with each: the same within 1e-6 m. Returns the
  * iterations of plain conjugate gradients. */
 static uint64_t compare(struct setup *setup, uint64_t iterations[KINDS])
@@ -44,7 +33,7 @@ static uint64_t compare(struct setup *setup, uint64_t iterations[KINDS])
         UNIT_OWNED(record_free) struct record record = {.threads = 1 + (unsigned)i % 2};
         setup->model.preconditioner = kinds[i];
         record_fine(&record, &setup->model);
-        ck_assert_double_le(farthest(&plain, &record), 1e-6);
+        ck_assert_double_le(record_farthest(&plain, &record), 1e-6);
         iterations[i] = record.report.cg_iterations_total;
     }
     record_free(&plain);
@@ -86,7 +75,7 @@ UNIT_LOOP(patches_move_alike, 0, 2)
         UNIT_OWNED(record_free) struct record record = {.threads = 1 + patches % 2};
         setup.model.patches = patches;
         record_fine(&record, &setup.model);
-        ck_assert_double_le(farthest(&none, &record), 1e-6);
+        ck_assert_double_le(record_farthest(&none, &record), 1e-6);
         if (!_i)
             ck_assert_uint_lt(record.report.cg_iterations_total, before);
         before = record.report.cg_iterations_total;
@@ -108,7 +97,7 @@ UNIT_TEST(formats_move_alike)
         setup.model.preconditioner = kinds[i / 2];
         setup.model.format = i % 2 ? SOLVE_HALF_FLOAT : SOLVE_HALF;
         record_fine(&record, &setup.model);
-        ck_assert_double_le(farthest(&springs, &record), 1e-6);
+        ck_assert_double_le(record_farthest(&springs, &record), 1e-6);
         ck_assert_double_le(record.report.momentum_lost, 1e-9);
     }
 }
@@ -135,7 +124,7 @@ UNIT_LOOP(starts_move_alike, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
     const uint64_t many = iterations_of(&setup, MODEL_GUESS_ZERO, 0.001, &zero);
     const uint64_t few = iterations_of(&setup, MODEL_GUESS_PREVIOUS, 0.001, &previous);
     ck_assert_uint_lt(few, many);
-    ck_assert_double_le(farthest(&zero, &previous), 1e-6);
+    ck_assert_double_le(record_farthest(&zero, &previous), 1e-6);
     ck_assert_uint_eq(iterations_of(&setup, MODEL_GUESS_AUTO, 0.001, &automatic), few);
     ck_assert_uint_eq(automatic.report.state_hash, previous.report.state_hash);
     record_free(&zero);

@@ -59,28 +59,29 @@ static struct girth_worst compare(const struct garment_pattern *pattern, uint32_
     return worst;
 }
 
+static struct garment_pattern pattern; /* the tube */
+static struct prism prism;             /* the body, which each test makes */
+
 /* Two rectangles of 0.5 x 0.3 m at z = +-0.2, sewn at their sides. */
-static void tube(struct garment_pattern *pattern, struct garment_panel panel[2],
-                 struct garment_stitch stitch[2])
+static void tube(void)
 {
     static double corner[4][2] = {{-0.25, 0}, {0.25, 0}, {0.25, 0.3}, {-0.25, 0.3}};
     static struct garment_edge edge[4] = {
         {.end = {0, 1}}, {.end = {1, 2}}, {.end = {2, 3}}, {.end = {3, 0}}};
     static char front[] = "front", back[] = "back";
+    static struct garment_panel panel[2];
+    static struct garment_stitch stitch[2];
     panel[0] = (struct garment_panel){front, 4, 4, corner, edge, {0, 0, 0}, {0, 0, 0.2}};
     panel[1] = (struct garment_panel){back, 4, 4, corner, edge, {0, 180, 0}, {0, 0, -0.2}};
     stitch[0] = (struct garment_stitch){{{0, 1}, {1, 3}}, false};
     stitch[1] = (struct garment_stitch){{{0, 3}, {1, 1}}, false};
-    *pattern = (struct garment_pattern){2, 2, panel, stitch};
+    pattern = (struct garment_pattern){2, 2, panel, stitch};
 }
+
+UNIT_FIXTURE(tube, NULL)
 
 UNIT_TEST(a_tube_around_a_prism)
 {
-    struct garment_pattern pattern;
-    struct garment_panel panel[2];
-    struct garment_stitch stitch[2];
-    struct prism prism;
-    tube(&pattern, panel, stitch);
     for (int i = 0; i < 4; i++) {
         const double radius = 0.1 + 0.03 * i; /* 0.1 to 0.19: girths of 0.63 to 1.19 m */
         prism_make(&prism, radius, 0.01, 0);
@@ -97,15 +98,10 @@ UNIT_TEST(a_tube_around_a_prism)
 /* The hull around two prisms has straight ways between them. */
 UNIT_TEST(a_tube_around_two_legs)
 {
-    struct garment_pattern pattern;
-    struct garment_panel panel[2];
-    struct garment_stitch stitch[2];
     struct {
         double place[2][2 * SIDES][3];
         uint32_t triangle[2][2 * SIDES][3];
     } legs;
-    struct prism prism;
-    tube(&pattern, panel, stitch);
     for (uint32_t leg = 0; leg < 2; leg++) {
         prism_make(&prism, 0.08, leg ? 0.12 : -0.12, 0);
         memcpy(legs.place[leg], prism.place, sizeof prism.place);
@@ -123,11 +119,6 @@ UNIT_TEST(a_tube_around_two_legs)
 /* What is not surrounded, or only partly, is not compared; nor is a cut that does not close. */
 UNIT_TEST(nothing_to_compare)
 {
-    struct garment_pattern pattern;
-    struct garment_panel panel[2];
-    struct garment_stitch stitch[2];
-    struct prism prism;
-    tube(&pattern, panel, stitch);
     prism_make(&prism, 0.1, 0.5, 0);
     struct girth_mesh body = body_of(&prism, 1);
     ck_assert(!compare(&pattern, 2, &body).found);
@@ -149,16 +140,15 @@ UNIT_TEST(skirts_of_random_waists)
     const struct garment_own *own = garment_own_find("skirt");
     const int waist = garment_own_measure(own, "waist");
     for (int i = 0; i < 20; i++) {
-        UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
-        struct prism prism;
+        UNIT_OWNED(garment_pattern_free) struct garment_pattern skirt;
         double value[GARMENT_MEASURES];
         const double radius = 0.11 + 0.003 * (i * 7 % 20);
         garment_own_size(own, SIZE_M, value);
         value[waist] = 0.7 + 0.012 * (i * 11 % 20);
-        UNIT_FINE(garment_own_make(&pattern, own, value, &error));
+        UNIT_FINE(garment_own_make(&skirt, own, value, &error));
         prism_make(&prism, radius, 0, 0);
         const struct girth_mesh body = body_of(&prism, 1);
-        const struct girth_worst worst = compare(&pattern, pattern.n_stitches, &body);
+        const struct girth_worst worst = compare(&skirt, skirt.n_stitches, &body);
         ck_assert(worst.found);
         ck_assert_double_eq_tol(worst.garment, value[waist] + 0.02, 1e-12);
         ck_assert_double_eq_tol(worst.body, around(radius), 1e-12);

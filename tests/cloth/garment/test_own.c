@@ -215,11 +215,9 @@ static void refuse(int which, const char *measure, double value, const char *sen
     const struct garment_own *own = garment_own_find(SHAPES[which].name);
     double values[GARMENT_MEASURES];
     UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
-    struct cloth_error error = {0};
     garment_own_size(own, MIDDLE, values);
     values[garment_own_measure(own, measure)] = value;
-    ck_assert_int_eq(garment_own_make(&pattern, own, values, &error), CLOTH_E_INPUT);
-    unit_says(error.text, sentence);
+    UNIT_REFUSED(garment_own_make(&pattern, own, values, &error), CLOTH_E_INPUT, sentence);
 }
 
 UNIT_TEST(refused)

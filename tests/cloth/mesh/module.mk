@@ -1,5 +1,5 @@
 if HAVE_CHECK
-ASAN_TESTS += tests/cloth/mesh/test_grid tests/cloth/mesh/test_disc tests/cloth/mesh/test_obj tests/cloth/mesh/test_obj_errors \
+ASAN_TESTS += tests/cloth/mesh/test_grid tests/cloth/mesh/test_disc tests/cloth/mesh/test_obj \
     tests/cloth/mesh/test_polygons tests/cloth/mesh/test_inline tests/cloth/mesh/test_edges tests/cloth/mesh/test_lattice \
     tests/cloth/mesh/test_elastic tests/cloth/mesh/test_blocks tests/cloth/mesh/test_shadow tests/cloth/mesh/test_real \
     tests/cloth/mesh/test_memory
@@ -7,7 +7,6 @@ tests_cloth_mesh_test_grid_SOURCES = tests/cloth/mesh/test_grid.c tests/cloth/me
 tests_cloth_mesh_test_disc_SOURCES = tests/cloth/mesh/test_disc.c tests/cloth/mesh/tools.h
 tests_cloth_mesh_test_disc_LDADD = $(CLOTH_TEST_LIBS) -lm
 tests_cloth_mesh_test_obj_SOURCES = tests/cloth/mesh/test_obj.c tests/cloth/mesh/tools.h
-tests_cloth_mesh_test_obj_errors_SOURCES = tests/cloth/mesh/test_obj_errors.c tests/cloth/mesh/tools.h
 tests_cloth_mesh_test_polygons_SOURCES = tests/cloth/mesh/test_polygons.c tests/cloth/mesh/tools.h
 tests_cloth_mesh_test_inline_SOURCES = tests/cloth/mesh/test_inline.c tests/cloth/mesh/tools.h
 tests_cloth_mesh_test_edges_SOURCES = tests/cloth/mesh/test_edges.c tests/cloth/mesh/tools.h

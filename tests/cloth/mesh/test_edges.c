@@ -92,10 +92,8 @@ UNIT_TEST(non_manifold)
     double x[15] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 5, 5, 5};
     uint32_t triangles[] = {0, 1, 2, 2, 3, 0, 0, 2, 4};
     struct mesh mesh = {.n_vertices = 5, .position = x, .n_triangles = 3, .triangle = triangles};
-    struct cloth_error error = {0};
     struct mesh_edges edges;
-    ck_assert_int_eq(mesh_edges_find(&edges, &mesh, &error), CLOTH_E_INPUT);
-    unit_says(error.text, "triangle 3 is the third");
+    UNIT_REFUSED(mesh_edges_find(&edges, &mesh, &error), CLOTH_E_INPUT, "triangle 3 is the third");
     ck_assert_ptr_null(edges.edge);
 }
 

@@ -1,6 +1,6 @@
 /* The closed forms against the energy of the springs of an inner vertex in all uniform strains,
  * whose matrix is inverted here; and against those that can be said by heart. */
-#include "cloth/mesh/elastic.h"
+#include "cloth/mesh/lattice.h"
 #include "tests/cloth/mesh/tools.h"
 
 #include <math.h>

@@ -1,5 +1,4 @@
 /* Grids, what all meshes can do with their vertices, and the frame they stand in. */
-#include "cloth/mesh/detail/vector.h"
 #include "tests/cloth/mesh/tools.h"
 
 #include <math.h>
@@ -149,7 +148,7 @@ UNIT_TEST(mass_of_vertices)
     UNIT_OWNED(mesh_free) struct mesh mesh = grid(1.5, 0.8, 41, 23);
     double *mass = calloc(mesh.n_vertices, sizeof *mass), sum = 0;
     mass[0] = 1; /* is added to */
-    mesh_add_mass(&mesh, 0.25, mass);
+    mesh_add_mass(&mesh, 0.25, false, mass);
     for (uint32_t v = 0; v < mesh.n_vertices; v++)
         sum += mass[v];
     ck_assert_double_eq_tol(sum, 1 + 1.5 * 0.8 * 0.25, 1e-13);
@@ -186,7 +185,7 @@ UNIT_TEST(equilateral)
         }
     ck_assert_double_eq(mesh.position[0], -1);
     ck_assert_double_eq_tol(mesh.position[2], -3 * sqrt(3) / 8, 1e-15);
-    mesh_add_mass(&mesh, 1, mass);
+    mesh_add_mass(&mesh, 1, false, mass);
     ck_assert_double_eq_tol(mass[6], sqrt(3) / 16 * 2, 1e-15); /* six */
     mesh_free(&mesh);
     mesh = grid_of(1, 0, 2, 2, MESH_EQUILATERAL);
@@ -199,8 +198,7 @@ UNIT_TEST(mass_of_cells)
     for (size_t k = 0; k < 3; k++) {
         UNIT_OWNED(mesh_free) struct mesh mesh = grid_of(1.5, 0.8, 4, 3, all[k]);
         double mass[12] = {1};
-        for (uint32_t t = 0; t < mesh.n_triangles; t++)
-            mesh_add_cell_mass_of(&mesh, t, 0.25, mass);
+        mesh_add_mass(&mesh, 0.25, true, mass);
         const double cell = 0.5 * 0.4 * 0.25;
         ck_assert_double_eq_tol(mass[0], 1 + cell / 4, 1e-15);
         ck_assert_double_eq_tol(mass[3], cell / 4, 1e-15);
@@ -211,7 +209,7 @@ UNIT_TEST(mass_of_cells)
     double third[3] = {0};
     UNIT_OWNED(mesh_free)
     struct mesh one = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"); /* has no cells */
-    mesh_add_cell_mass_of(&one, 0, 6, third);
+    mesh_add_mass(&one, 6, true, third);
     ck_assert_double_eq_tol(third[0], 1, 1e-15);
 }
 

@@ -62,7 +62,7 @@ static void check_edges(const struct mesh *mesh, const struct garment *garment)
         area += edges.edge[e].area / 3;
     }
     ck_assert_uint_eq(2 * edges.n - border, 3 * mesh->n_triangles);
-    mesh_add_mass(mesh, 0.2, masses);
+    mesh_add_mass(mesh, 0.2, false, masses);
     for (uint32_t v = 0; v < mesh->n_vertices; v++)
         mass += masses[v];
     ck_assert_double_eq_tol(mass, 0.2 * area, 1e-11 * mass);

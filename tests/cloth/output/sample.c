@@ -4,8 +4,10 @@
 #include "tests/support/unit.h"
 
 #include <ftw.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char QUAD[] = "v 2 0 0\nv 3 0 0\nv 3 1 0\nv 2 1 0\nf 1 2 3 4\nl 1 3\n";
 /* A floor, and a ball that moves. */
@@ -24,8 +26,7 @@ void sample_make(void)
     strcpy(sample.folder, "/tmp/duite-output.XXXXXX");
     ck_assert_ptr_nonnull(mkdtemp(sample.folder));
     snprintf(sample.frames, sizeof sample.frames, "%s/frames", sample.folder);
-    char quad[96];
-    snprintf(quad, sizeof quad, "%s/quad.obj", sample.folder);
+    const char *quad = sample_at("quad.obj");
     sample_write(quad, QUAD, strlen(QUAD));
     UNIT_FINE(mesh_grid(&sample.mesh[0], 1, 1, 4, 3, MESH_SAME, &error));
     UNIT_FINE(mesh_read_obj(&sample.mesh[1], quad, &error));
@@ -62,11 +63,35 @@ void sample_positions(unsigned run, uint64_t frame, double *position)
         position[i] = 1000.0 * run + (double)frame + i / 64.0;
 }
 
+const char *sample_at(const char *format, ...)
+{
+    enum { TURNS = 4, LONG = 200 };
+    static char path[TURNS][LONG];
+    static unsigned turn;
+    char *to = path[turn++ % TURNS];
+    va_list arguments;
+    const int n = snprintf(to, LONG, "%s/", sample.folder);
+    va_start(arguments, format);
+    vsnprintf(to + n, (size_t)(LONG - n), format, arguments);
+    va_end(arguments);
+    return to;
+}
+
 const char *sample_path(const char *name)
 {
-    static char path[128];
-    snprintf(path, sizeof path, "%s/%s", sample.frames, name);
-    return path;
+    return sample_at("frames/%s", name);
+}
+
+bool sample_has(const char *path)
+{
+    return access(path, F_OK) == 0;
+}
+
+struct stat sample_stat(const char *path)
+{
+    struct stat status;
+    ck_assert_msg(!stat(path, &status), "%s is not there", path);
+    return status;
 }
 
 size_t sample_read(const char *path, char *bytes, size_t size)
@@ -79,12 +104,23 @@ size_t sample_read(const char *path, char *bytes, size_t size)
     return n;
 }
 
-void sample_write(const char *path, const char *bytes, size_t size)
+static void write_to(const char *path, const char *how, long at, const char *bytes, size_t size)
 {
-    FILE *file = fopen(path, "wb");
+    FILE *file = fopen(path, how);
     ck_assert_msg(file != NULL, "%s cannot be written", path);
+    ck_assert_int_eq(fseek(file, at < 0 ? 0 : at, at < 0 ? SEEK_END : SEEK_SET), 0);
     ck_assert_uint_eq(fwrite(bytes, 1, size, file), size);
     ck_assert_int_eq(fclose(file), 0);
+}
+
+void sample_write(const char *path, const char *bytes, size_t size)
+{
+    write_to(path, "wb", 0, bytes, size);
+}
+
+void sample_put(const char *path, long at, const char *bytes, size_t size)
+{
+    write_to(path, "r+b", at, bytes, size);
 }
 
 void sample_run(unsigned run, uint64_t n)

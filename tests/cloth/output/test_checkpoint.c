@@ -4,8 +4,6 @@
 #include "tests/cloth/output/sample.h"
 #include "tests/support/unit.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -26,7 +24,6 @@ static void end(void)
 {
     output_checkpoint_free(&read_back);
     output_checkpoints_close(&checkpoints);
-    output_checkpoints_forget(sample.folder, &error);
     sample_free();
 }
 
@@ -41,16 +38,19 @@ static void write_one(unsigned char mark)
     UNIT_FINE(output_checkpoints_write(checkpoints, part, &error));
 }
 
-static void path_of(unsigned number, char path[160])
+static const char *file_of(unsigned number)
 {
-    snprintf(path, 160, "%s/checkpoints/%06u.checkpoint", sample.folder, number);
+    return sample_at("checkpoints/%06u.checkpoint", number);
+}
+
+static const char *part_of(unsigned number)
+{
+    return sample_at("checkpoints/%06u.checkpoint.part", number);
 }
 
 static bool is_there(unsigned number)
 {
-    char path[160];
-    path_of(number, path);
-    return access(path, F_OK) == 0;
+    return sample_has(file_of(number));
 }
 
 static int read_newest(void)
@@ -94,13 +94,10 @@ UNIT_TEST(three_are_kept)
 /* That is killed when the next one is there, and the oldest is not gone yet. */
 UNIT_TEST(three_are_kept_after_a_run_that_was_killed)
 {
-    char first[160], second[160];
     for (unsigned char i = 1; i <= 4; i++)
         write_one(i);
     output_checkpoints_close(&checkpoints);
-    path_of(1, first);
-    path_of(2, second);
-    ck_assert_int_eq(link(second, first), 0);
+    ck_assert_int_eq(link(file_of(2), file_of(1)), 0);
     UNIT_FINE(output_checkpoints_open(&checkpoints, sample.folder, &error));
     for (unsigned number = 1; number <= 4; number++)
         ck_assert(is_there(number));
@@ -108,19 +105,6 @@ UNIT_TEST(three_are_kept_after_a_run_that_was_killed)
     for (unsigned number = 1; number <= 5; number++)
         ck_assert_int_eq(is_there(number), number > 2);
     check_mark(5);
-}
-
-static void part_of(unsigned number, char path[160])
-{
-    path_of(number, path);
-    strcat(path, ".part");
-}
-
-static ino_t file_at(const char *path)
-{
-    struct stat status;
-    ck_assert_int_eq(stat(path, &status), 0);
-    return status.st_ino;
 }
 
 /* The first part is as long as `length`. */
@@ -137,38 +121,29 @@ static void write_long(size_t length)
 /* Longer or shorter, whichever was there; and nothing is left of it at the end. */
 UNIT_TEST(the_oldest_gives_its_room)
 {
-    char path[160], part[160], fifth[160];
     write_long(4000);
-    path_of(1, path);
-    const ino_t first = file_at(path);
+    const ino_t first = sample_stat(file_of(1)).st_ino;
     write_long(100);
     write_long(3000);
     write_long(50);
-    part_of(5, part);
-    ck_assert(file_at(part) == first);
+    ck_assert(sample_stat(part_of(5)).st_ino == first);
     write_long(10);
-    path_of(5, fifth);
-    ck_assert(file_at(fifth) == first);
+    ck_assert(sample_stat(file_of(5)).st_ino == first);
     write_long(5000);
-    part_of(7, part);
-    ck_assert_int_eq(access(part, F_OK), 0);
+    ck_assert(sample_has(part_of(7)));
     output_checkpoints_close(&checkpoints);
-    ck_assert_int_ne(access(part, F_OK), 0);
+    ck_assert(!sample_has(part_of(7)));
 }
 
 UNIT_TEST(what_has_another_name_stays)
 {
-    char path[160], other[160];
     write_one(1);
-    path_of(1, path);
-    snprintf(other, sizeof other, "%s/other", sample.folder);
-    ck_assert_int_eq(link(path, other), 0);
+    ck_assert_int_eq(link(file_of(1), sample_at("other")), 0);
     for (unsigned char i = 2; i <= 6; i++)
         write_one(i);
     ck_assert(!is_there(1));
-    UNIT_FINE(output_checkpoint_read(&read_back, other, &error));
+    UNIT_FINE(output_checkpoint_read(&read_back, sample_at("other"), &error));
     ck_assert_uint_eq(*(const uint64_t *)read_back.part[2].bytes, 1);
-    ck_assert_int_eq(unlink(other), 0);
 }
 
 /* A run that goes on counts on, and still three are kept. */
@@ -187,11 +162,8 @@ UNIT_TEST(counts_on)
 UNIT_TEST(other_numbers_are_nobodys)
 {
     static const char *const names[] = {"0000009", "9", "18446744073709551616", "+00009", "000000"};
-    char path[160];
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        snprintf(path, sizeof path, "%s/checkpoints/%s.checkpoint", sample.folder, names[i]);
-        sample_write(path, "x", 1);
-    }
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        sample_write(sample_at("checkpoints/%s.checkpoint", names[i]), "x", 1);
     write_one(1);
     check_mark(1);
     ck_assert_int_eq(note.code, 0);
@@ -199,60 +171,31 @@ UNIT_TEST(other_numbers_are_nobodys)
     UNIT_FINE(output_checkpoints_open(&checkpoints, sample.folder, &error));
     write_one(2);
     ck_assert(is_there(2));
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        snprintf(path, sizeof path, "%s/checkpoints/%s.checkpoint", sample.folder, names[i]);
-        ck_assert_int_eq(unlink(path), 0);
-    }
 }
 
 /* Numbers end somewhere: a run that could not count on does not begin. */
 UNIT_TEST(the_last_number)
 {
-    char path[160];
+    static const char last[] = "checkpoints/18446744073709551615.checkpoint";
     write_one(1);
     output_checkpoints_close(&checkpoints);
-    snprintf(path, sizeof path, "%s/checkpoints/18446744073709551615.checkpoint", sample.folder);
-    sample_write(path, "x", 1);
-    ck_assert_int_eq(output_checkpoints_open(&checkpoints, sample.folder, &error), CLOTH_E_INPUT);
-    unit_says(error.text, "18446744073709551615.checkpoint: no number is left");
+    sample_write(sample_at("%s", last), "x", 1);
+    UNIT_REFUSED(output_checkpoints_open(&checkpoints, sample.folder, &error), CLOTH_E_INPUT,
+                 "18446744073709551615.checkpoint: no number is left");
     check_mark(1);
     unit_says(note.text, "is no checkpoint of duite-cloth");
-    ck_assert_int_eq(unlink(path), 0);
 }
 
 /* A pipe has nobody at its other end, and is not waited for. */
 UNIT_TEST(only_plain_files_are_read)
 {
-    char path[160];
     write_one(1);
-    path_of(2, path);
-    ck_assert_int_eq(mkfifo(path, 0666), 0);
+    ck_assert_int_eq(mkfifo(file_of(2), 0666), 0);
     check_mark(1);
     unit_says(note.text, "000002.checkpoint: it is no plain file");
 }
 
 /* ---- Damage ---- */
-
-static size_t read_file(unsigned number, unsigned char *bytes, size_t room)
-{
-    char path[160];
-    path_of(number, path);
-    FILE *file = fopen(path, "rb");
-    ck_assert_ptr_nonnull(file);
-    const size_t n = fread(bytes, 1, room, file);
-    fclose(file);
-    return n;
-}
-
-static void put_file(unsigned number, const unsigned char *bytes, size_t n)
-{
-    char path[160];
-    path_of(number, path);
-    FILE *file = fopen(path, "wb");
-    ck_assert_ptr_nonnull(file);
-    ck_assert_uint_eq(fwrite(bytes, 1, n, file), n);
-    ck_assert_int_eq(fclose(file), 0);
-}
 
 /* Whatever is wrong with the newest: the one before it serves, and that is said. */
 static void falls_back(const char *what, size_t at)
@@ -270,33 +213,33 @@ static void falls_back(const char *what, size_t at)
 
 UNIT_TEST(every_length)
 {
-    unsigned char bytes[512];
+    char bytes[512];
     write_one(1);
     write_one(2);
-    const size_t n = read_file(2, bytes, sizeof bytes);
+    const size_t n = sample_read(file_of(2), bytes, sizeof bytes);
     ck_assert_uint_gt(n, 100);
     ck_assert_uint_lt(n, sizeof bytes);
     for (size_t length = 0; length < n; length++) {
-        put_file(2, bytes, length);
+        sample_write(file_of(2), bytes, length);
         falls_back("length", length);
     }
-    put_file(2, bytes, n);
+    sample_write(file_of(2), bytes, n);
     check_mark(2);
-    put_file(2, bytes, n + 1); /* a byte of what lies behind it in memory */
+    sample_write(file_of(2), bytes, n + 1); /* a byte of what lies behind it in memory */
     falls_back("length", n + 1);
 }
 
 UNIT_TEST(every_bit)
 {
-    unsigned char bytes[512];
+    char bytes[512];
     write_one(1);
     write_one(2);
-    const size_t n = read_file(2, bytes, sizeof bytes);
+    const size_t n = sample_read(file_of(2), bytes, sizeof bytes);
     for (size_t bit = 0; bit < 8 * n; bit++) {
-        bytes[bit / 8] ^= (unsigned char)(1 << bit % 8);
-        put_file(2, bytes, n);
+        bytes[bit / 8] = (char)(bytes[bit / 8] ^ 1 << bit % 8);
+        sample_write(file_of(2), bytes, n);
         falls_back("bit", bit);
-        bytes[bit / 8] ^= (unsigned char)(1 << bit % 8);
+        bytes[bit / 8] = (char)(bytes[bit / 8] ^ 1 << bit % 8);
     }
 }
 
@@ -305,7 +248,7 @@ UNIT_TEST(none_is_said)
     ck_assert_int_eq(read_newest(), CLOTH_E_INPUT);
     unit_says(error.text, "holds no checkpoint: a run writes them");
     write_one(1);
-    put_file(1, (const unsigned char *)"a letter", 8);
+    sample_write(file_of(1), "a letter", 8);
     ck_assert_int_eq(read_newest(), CLOTH_E_INPUT);
     unit_says(error.text, "no checkpoint that is whole");
 }
@@ -314,15 +257,12 @@ UNIT_TEST(none_is_said)
 
 UNIT_TEST(failed_write_keeps_others)
 {
-    char path[200];
     write_one(1);
-    path_of(2, path);
-    strcat(path, ".part");
-    ck_assert_int_eq(mkdir(path, 0777), 0);
+    ck_assert_int_eq(mkdir(part_of(2), 0777), 0);
     const struct output_part part[OUTPUT_CHECKPOINT_PARTS] = {{"a", 1}, {"b", 1}, {"c", 1}};
     ck_assert_int_eq(output_checkpoints_write(checkpoints, part, &error), CLOTH_E_IO);
     check_mark(1);
-    ck_assert_int_eq(rmdir(path), 0);
+    ck_assert_int_eq(rmdir(part_of(2)), 0);
     memset(&error, 0, sizeof error);
     write_one(2);
     check_mark(2);
@@ -331,20 +271,13 @@ UNIT_TEST(failed_write_keeps_others)
 /* Half a file of a run that was killed goes, what is not ours stays. */
 UNIT_TEST(cleans_up)
 {
-    char half[200], other[200];
+    static const char other[] = "checkpoints/notes.part";
     write_one(1);
-    path_of(2, half);
-    strcat(half, ".part");
-    snprintf(other, sizeof other, "%s/checkpoints/notes.part", sample.folder);
     output_checkpoints_close(&checkpoints);
-    for (int i = 0; i < 2; i++) {
-        FILE *file = fopen(i ? other : half, "w");
-        ck_assert_ptr_nonnull(file);
-        fclose(file);
-    }
+    sample_write(part_of(2), "", 0);
+    sample_write(sample_at("%s", other), "", 0);
     UNIT_FINE(output_checkpoints_open(&checkpoints, sample.folder, &error));
-    ck_assert(access(half, F_OK) != 0 && access(other, F_OK) == 0);
+    ck_assert(!sample_has(part_of(2)) && sample_has(sample_at("%s", other)));
     UNIT_FINE(output_checkpoints_forget(sample.folder, &error));
-    ck_assert(!is_there(1) && access(other, F_OK) == 0);
-    ck_assert_int_eq(unlink(other), 0);
+    ck_assert(!is_there(1) && sample_has(sample_at("%s", other)));
 }

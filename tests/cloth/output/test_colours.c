@@ -5,7 +5,6 @@
 #include "tests/support/unit.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -16,12 +15,10 @@ static const int32_t BLOCK[N] = {0, 1, -1, 1, 0};
 static struct output_colours *writer;
 static struct output_colours_read *reader;
 static struct cloth_error error;
-static char path[200];
 
-static void make(void)
+static const char *path(void)
 {
-    sample_make();
-    snprintf(path, sizeof path, "%s/colours.bin", sample.folder);
+    return sample_at("colours.bin");
 }
 
 static void end(void)
@@ -49,12 +46,7 @@ static void places(uint64_t frame, int32_t first, int32_t second)
 
 static long size_of(void)
 {
-    FILE *file = fopen(path, "r");
-    ck_assert_ptr_nonnull(file);
-    fseek(file, 0, SEEK_END);
-    const long size = ftell(file);
-    fclose(file);
-    return size;
+    return (long)sample_stat(path()).st_size;
 }
 
 static void opens(void)
@@ -71,7 +63,7 @@ static void has_ranks(uint64_t frame, int32_t first, int32_t second)
     ck_assert_mem_eq(rank, expected, sizeof rank);
 }
 
-UNIT_FIXTURE(make, end)
+UNIT_FIXTURE(sample_make, end)
 
 UNIT_TEST(places_are_read_again)
 {
@@ -128,15 +120,15 @@ UNIT_TEST(what_is_not_whole_was_not_written)
     places(1, 1, 0);
     ends();
     for (long cut = size_of() - 1; cut >= size; cut--) {
-        ck_assert_int_eq(truncate(path, cut), 0);
+        ck_assert_int_eq(truncate(path(), cut), 0);
         opens();
         has_ranks(1, 0, 1);
     }
-    ck_assert_int_eq(truncate(path, 16), 0);
+    ck_assert_int_eq(truncate(path(), 16), 0);
     opens();
     int32_t block[N];
-    ck_assert_int_eq(output_colours_blocks(reader, 0, block, &error), CLOTH_E_INPUT);
-    unit_says(error.text, "does not say the blocks of frame 0");
+    UNIT_REFUSED(output_colours_blocks(reader, 0, block, &error), CLOTH_E_INPUT,
+                 "does not say the blocks of frame 0");
 }
 
 /* A triangle, an edge, two materials. */
@@ -193,15 +185,6 @@ UNIT_TEST(shapes_are_read_again)
     ck_assert(!read.has_stress[0] && read.has_stress[1]);
 }
 
-static void put(long at, unsigned char byte)
-{
-    FILE *file = fopen(path, "r+");
-    ck_assert_ptr_nonnull(file);
-    ck_assert_int_eq(fseek(file, at, SEEK_SET), 0);
-    ck_assert_int_eq(fputc(byte, file), byte);
-    ck_assert_int_eq(fclose(file), 0);
-}
-
 /* Any byte may be any other: what is read then is in range, or refused. */
 UNIT_TEST(damage_does_no_harm)
 {
@@ -209,16 +192,14 @@ UNIT_TEST(damage_does_no_harm)
     places(0, 0, 1);
     write_rest(0);
     ends();
-    const long size = size_of();
+    char bytes[1024];
+    const long size = (long)sample_read(path(), bytes, sizeof bytes);
+    ck_assert_int_lt(size, (long)sizeof bytes - 1);
     for (long at = 16; at < size; at++)
         for (int value = 0; value < 256; value += 51) {
             int32_t number[N];
             struct output_rest rest = {0};
-            FILE *file = fopen(path, "r");
-            ck_assert_int_eq(fseek(file, at, SEEK_SET), 0);
-            const int before = fgetc(file);
-            fclose(file);
-            put(at, (unsigned char)value);
+            sample_put(path(), at, (char[]){(char)value}, 1);
             output_colours_unload(reader);
             if (!output_colours_load(&reader, sample.folder, N, &error)) {
                 if (!output_colours_ranks(reader, 0, number, &error))
@@ -230,31 +211,28 @@ UNIT_TEST(damage_does_no_harm)
                                   isfinite(rest.area[t]));
                 output_rest_free(&rest);
             }
-            put(at, (unsigned char)before);
+            sample_put(path(), at, bytes + at, 1);
         }
-    put(0, 'd');
+    sample_put(path(), 0, "d", 1);
     output_colours_unload(reader);
     ck_assert_int_eq(output_colours_load(&reader, sample.folder, N, &error), CLOTH_E_INPUT);
-    put(0, 'D');
+    sample_put(path(), 0, "D", 1);
     output_colours_unload(reader);
-    ck_assert_int_eq(output_colours_load(&reader, sample.folder, N + 1, &error), CLOTH_E_INPUT);
-    unit_says(error.text, "of another mesh than cloth.obj");
+    UNIT_REFUSED(output_colours_load(&reader, sample.folder, N + 1, &error), CLOTH_E_INPUT,
+                 "of another mesh than cloth.obj");
 }
 
 UNIT_TEST(a_file_of_somebody_else_stays)
 {
-    FILE *file = fopen(path, "w");
-    ck_assert_ptr_nonnull(file);
-    fputs("mine\n", file);
-    fclose(file);
-    ck_assert_int_eq(output_colours_open(&writer, sample.folder, N, NULL, &error), CLOTH_E_INPUT);
-    unit_says(error.text, "colours.bin is in the way");
+    sample_write(path(), "mine\n", 5);
+    UNIT_REFUSED(output_colours_open(&writer, sample.folder, N, NULL, &error), CLOTH_E_INPUT,
+                 "colours.bin is in the way");
     output_colours_close(&writer, &error);
     ck_assert_int_eq(size_of(), 5);
 }
 
 UNIT_TEST(without_a_file_it_says_who_writes_it)
 {
-    ck_assert_int_eq(output_colours_load(&reader, sample.folder, N, &error), CLOTH_E_INPUT);
-    unit_says(error.text, "duite-cloth --output writes it");
+    UNIT_REFUSED(output_colours_load(&reader, sample.folder, N, &error), CLOTH_E_INPUT,
+                 "duite-cloth --output writes it");
 }

@@ -177,7 +177,6 @@ UNIT_TEST(full_disk_keeps_whole_frames)
         struct cloth_error error = {0};
         struct output_frames *frames = NULL;
         double position[3 * SAMPLE_POINTS];
-        struct stat status;
         UNIT_FINE(output_open(&frames, &sample.setup, &error));
         sample_positions(2, 0, position);
         UNIT_FINE(output_frame(frames, 0, 0, position, &error));
@@ -188,10 +187,9 @@ UNIT_TEST(full_disk_keeps_whole_frames)
         through = calls_left >= 0;
         mode = OFF;
         ck_assert_int_eq(check_folder(), through ? 2 : 1);
-        stat(sample_path("cloth.pc2"), &status);
-        ck_assert_int_eq(status.st_size, 32 + (through ? 2 : 1) * 12 * SAMPLE_POINTS);
-        stat(sample_path("frames.csv"), &status);
-        ck_assert_int_eq(status.st_size, through ? 38 : 15);
+        ck_assert_int_eq(sample_stat(sample_path("cloth.pc2")).st_size,
+                         32 + (through ? 2 : 1) * 12 * SAMPLE_POINTS);
+        ck_assert_int_eq(sample_stat(sample_path("frames.csv")).st_size, through ? 38 : 15);
         if (!through) {
             ck_assert_int_eq(code, CLOTH_E_IO);
             unit_says(error.text, "No space left");
@@ -234,9 +232,7 @@ UNIT_TEST(full_disk_is_said_later)
         }
         ck_assert_int_eq(output_settler_close(&sample.setup.settler, &error), settled);
         output_close(&frames, &error);
-        struct stat status;
-        stat(sample_path("frames.csv"), &status);
-        ck_assert_int_eq(status.st_size, through ? 38 : 15);
+        ck_assert_int_eq(sample_stat(sample_path("frames.csv")).st_size, through ? 38 : 15);
         ck_assert_int_eq(check_folder(), through ? 2 : 1);
     }
 }

@@ -88,18 +88,6 @@ static void run(const struct output_hdf5_setup *setup, uint64_t n)
     run_from(setup, 0, n);
 }
 
-static const char *path_of(const char *name)
-{
-    static char path[160];
-    snprintf(path, sizeof path, "%s/%s", sample.folder, name);
-    return path;
-}
-
-static bool is_there(const char *name)
-{
-    return access(path_of(name), F_OK) == 0;
-}
-
 static void read_all(hid_t file, const char *name, hid_t type, size_t n, void *to)
 {
     const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
@@ -150,12 +138,11 @@ static void check_cells(hid_t file)
 
 static void check_frame(uint64_t frame, bool is_double)
 {
-    char name[48];
     int32_t number[POINTS];
     double time;
-    snprintf(name, sizeof name, "hdf5/frame-%06u.vtkhdf", (unsigned)frame);
-    const hid_t file = H5Fopen(path_of(name), H5F_ACC_RDONLY, H5P_DEFAULT);
-    ck_assert_msg(file >= 0, "%s is not there", name);
+    const char *path = sample_at("hdf5/frame-%06u.vtkhdf", (unsigned)frame);
+    const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    ck_assert_msg(file >= 0, "%s is not there", path);
     check_cells(file);
     check_reals(file, "VTKHDF/Points", 3 * POINTS, -1, frame, is_double);
     check_reals(file, "VTKHDF/PointData/velocity", 3 * POINTS, OUTPUT_VELOCITY, frame, is_double);
@@ -177,12 +164,7 @@ static void start(void)
     warnings = derived = 0;
 }
 
-static void end(void)
-{
-    sample_free();
-}
-
-UNIT_FIXTURE(start, end)
+UNIT_FIXTURE(start, sample_free)
 
 UNIT_TEST(comes_back)
 {
@@ -200,9 +182,10 @@ UNIT_TEST(every_third)
     char text[512];
     const struct output_hdf5_setup setup = setup_of(true, 3, 0);
     run(&setup, 7);
-    ck_assert(is_there("hdf5/frame-000003.vtkhdf") && is_there("hdf5/frame-000006.vtkhdf"));
-    ck_assert(!is_there("hdf5/frame-000001.vtkhdf"));
-    sample_read(path_of("cloth.vtkhdf.series"), text, sizeof text);
+    ck_assert(sample_has(sample_at("hdf5/frame-000003.vtkhdf")) &&
+              sample_has(sample_at("hdf5/frame-000006.vtkhdf")));
+    ck_assert(!sample_has(sample_at("hdf5/frame-000001.vtkhdf")));
+    sample_read(sample_at("cloth.vtkhdf.series"), text, sizeof text);
     ck_assert_str_eq(
         text, "{\n\"file-series-version\": \"1.0\",\n\"files\": [\n"
               "{\"name\": \"hdf5/frame-000000.vtkhdf\", \"time\": 0},\n"
@@ -216,10 +199,10 @@ UNIT_TEST(equal_frames_are_equal_files)
     char one[65536], two[65536];
     const struct output_hdf5_setup setup = setup_of(false, 1, 0);
     run(&setup, 1);
-    const size_t n = sample_read(path_of("hdf5/frame-000000.vtkhdf"), one, sizeof one);
+    const size_t n = sample_read(sample_at("hdf5/frame-000000.vtkhdf"), one, sizeof one);
     sleep(1); /* another second on the clock */
     run(&setup, 1);
-    ck_assert_uint_eq(sample_read(path_of("hdf5/frame-000000.vtkhdf"), two, sizeof two), n);
+    ck_assert_uint_eq(sample_read(sample_at("hdf5/frame-000000.vtkhdf"), two, sizeof two), n);
     ck_assert_mem_eq(one, two, n);
     ck_assert((double)n <= output_hdf5_bytes(&setup));
 }
@@ -228,37 +211,32 @@ UNIT_TEST(replaces_an_earlier_run)
 {
     const struct output_hdf5_setup setup = setup_of(false, 1, 0);
     run(&setup, 3);
-    sample_write(path_of("hdf5/frame-000007.vtkhdf.part"), "x", 1);
-    sample_write(path_of("hdf5/mine.txt"), "x", 1);
+    sample_write(sample_at("hdf5/frame-000007.vtkhdf.part"), "x", 1);
+    sample_write(sample_at("hdf5/mine.txt"), "x", 1);
     run(&setup, 1);
-    ck_assert(is_there("hdf5/frame-000000.vtkhdf") && !is_there("hdf5/frame-000001.vtkhdf"));
-    ck_assert(!is_there("hdf5/frame-000007.vtkhdf.part") && is_there("hdf5/mine.txt"));
+    ck_assert(sample_has(sample_at("hdf5/frame-000000.vtkhdf")) &&
+              !sample_has(sample_at("hdf5/frame-000001.vtkhdf")));
+    ck_assert(!sample_has(sample_at("hdf5/frame-000007.vtkhdf.part")) &&
+              sample_has(sample_at("hdf5/mine.txt")));
     UNIT_FINE(output_hdf5_forget(sample.folder, NULL, &error));
-    ck_assert(!is_there("hdf5/frame-000000.vtkhdf") && !is_there("cloth.xmf"));
-    ck_assert(is_there("hdf5/mine.txt"));
+    ck_assert(!sample_has(sample_at("hdf5/frame-000000.vtkhdf")) &&
+              !sample_has(sample_at("cloth.xmf")));
+    ck_assert(sample_has(sample_at("hdf5/mine.txt")));
 }
 
 UNIT_TEST(leaves_what_is_not_ours)
 {
-    struct cloth_error error = {0};
     struct output_hdf5 *frames;
     const struct output_hdf5_setup setup = setup_of(false, 1, 0);
-    sample_write(path_of("cloth.xmf"), "mine", 4);
-    ck_assert_int_eq(output_hdf5_open(&frames, &setup, &error), CLOTH_E_INPUT);
-    unit_says(error.text, "cloth.xmf is in the way");
+    sample_write(sample_at("cloth.xmf"), "mine", 4);
+    UNIT_REFUSED(output_hdf5_open(&frames, &setup, &error), CLOTH_E_INPUT,
+                 "cloth.xmf is in the way");
     UNIT_FINE(output_hdf5_forget(sample.folder, NULL, &error));
-    ck_assert(is_there("cloth.xmf"));
+    ck_assert(sample_has(sample_at("cloth.xmf")));
 }
 
 enum { TEXT = 65536 };
 static const char *const INDEXES[] = {"cloth.vtkhdf.series", "cloth.xmf"};
-
-static ino_t number_of(const char *name)
-{
-    struct stat status;
-    ck_assert_int_eq(stat(path_of(name), &status), 0);
-    return status.st_ino;
-}
 
 /* A run of five frames that is killed as it makes the next one, gone on with after `stay`: as one
  * of seven that is left alone. */
@@ -268,23 +246,24 @@ static void check_going_on(uint32_t every, uint64_t stay)
     struct output_hdf5_setup setup = setup_of(true, every, 0);
     run(&setup, 7);
     for (int i = 0; i < 2; i++)
-        sample_read(path_of(INDEXES[i]), alone[i], TEXT);
+        sample_read(sample_at("%s", INDEXES[i]), alone[i], TEXT);
     run(&setup, 5);
-    sample_write(path_of("hdf5/frame-000005.vtkhdf.part"), "x", 1);
-    sample_write(path_of("hdf5/cloth.xmf.part"), "x", 1);
-    sample_write(path_of("hdf5/cloth.xmf.spare"), "x", 1);
-    const ino_t first = number_of("hdf5/frame-000000.vtkhdf");
+    sample_write(sample_at("hdf5/frame-000005.vtkhdf.part"), "x", 1);
+    sample_write(sample_at("hdf5/cloth.xmf.part"), "x", 1);
+    sample_write(sample_at("hdf5/cloth.xmf.spare"), "x", 1);
+    const ino_t first = sample_stat(sample_at("hdf5/frame-000000.vtkhdf")).st_ino;
     setup.n_frames = &stay;
     run_from(&setup, stay, 7);
     for (int i = 0; i < 2; i++) {
-        sample_read(path_of(INDEXES[i]), text, TEXT);
+        sample_read(sample_at("%s", INDEXES[i]), text, TEXT);
         ck_assert_str_eq(text, alone[i]);
     }
     for (uint64_t frame = 0; frame < 7; frame += every)
         check_frame(frame, true);
-    ck_assert(stay == 0 || number_of("hdf5/frame-000000.vtkhdf") == first);
-    ck_assert(!is_there("hdf5/frame-000005.vtkhdf.part") && !is_there("hdf5/cloth.xmf.part") &&
-              !is_there("hdf5/cloth.xmf.spare"));
+    ck_assert(stay == 0 || sample_stat(sample_at("hdf5/frame-000000.vtkhdf")).st_ino == first);
+    ck_assert(!sample_has(sample_at("hdf5/frame-000005.vtkhdf.part")) &&
+              !sample_has(sample_at("hdf5/cloth.xmf.part")) &&
+              !sample_has(sample_at("hdf5/cloth.xmf.spare")));
 }
 
 UNIT_TEST(goes_on_with_an_earlier_run)
@@ -302,16 +281,17 @@ UNIT_TEST(keeps_frames_of_a_run_that_writes_no_more)
     const struct output_hdf5_setup setup = setup_of(true, 1, 0);
     run(&setup, 3);
     for (int i = 0; i < 2; i++)
-        sample_read(path_of(INDEXES[i]), alone[i], TEXT);
+        sample_read(sample_at("%s", INDEXES[i]), alone[i], TEXT);
     run(&setup, 5);
     for (int again = 0; again < 2; again++)
         UNIT_FINE(output_hdf5_forget(sample.folder, &stay, &error));
     for (int i = 0; i < 2; i++) {
-        sample_read(path_of(INDEXES[i]), text, TEXT);
+        sample_read(sample_at("%s", INDEXES[i]), text, TEXT);
         ck_assert_str_eq(text, alone[i]);
     }
     check_frame(2, true);
-    ck_assert(!is_there("hdf5/frame-000003.vtkhdf") && !is_there("hdf5/cloth.xmf.part"));
+    ck_assert(!sample_has(sample_at("hdf5/frame-000003.vtkhdf")) &&
+              !sample_has(sample_at("hdf5/cloth.xmf.part")));
 }
 
 /* An earlier run that had none is gone on with from the frame that is next. */
@@ -322,7 +302,7 @@ UNIT_TEST(begins_with_a_later_frame)
     struct output_hdf5_setup setup = setup_of(true, 1, 0);
     setup.n_frames = &stay;
     run_from(&setup, 2, 3);
-    sample_read(path_of(INDEXES[0]), text, sizeof text);
+    sample_read(sample_at("%s", INDEXES[0]), text, sizeof text);
     ck_assert_str_eq(text, "{\n\"file-series-version\": \"1.0\",\n\"files\": [\n"
                            "{\"name\": \"hdf5/frame-000002.vtkhdf\", \"time\": "
                            "0.080000000000000002}]\n}\n");
@@ -337,7 +317,8 @@ static void refuse_to_go_on(const char *why)
     setup.n_frames = &stay;
     ck_assert_msg(output_hdf5_open(&frames, &setup, &error) == CLOTH_E_INPUT, "%s", why);
     unit_says(error.text, why);
-    ck_assert(is_there("hdf5/frame-000001.vtkhdf") && is_there("hdf5/frame-000002.vtkhdf"));
+    ck_assert(sample_has(sample_at("hdf5/frame-000001.vtkhdf")) &&
+              sample_has(sample_at("hdf5/frame-000002.vtkhdf")));
 }
 
 /* What is to stay, and does not: nothing is removed. */
@@ -346,44 +327,43 @@ UNIT_TEST(refuses_a_changed_folder)
     char text[TEXT];
     const struct output_hdf5_setup setup = setup_of(true, 1, 0);
     run(&setup, 4);
-    ck_assert_int_eq(unlink(path_of("hdf5/frame-000000.vtkhdf")), 0);
+    ck_assert_int_eq(unlink(sample_at("hdf5/frame-000000.vtkhdf")), 0);
     refuse_to_go_on("frame-000000.vtkhdf is gone: the folder was changed since the checkpoint");
     run(&setup, 4);
-    ck_assert_int_eq(unlink(path_of("cloth.xmf")), 0);
+    ck_assert_int_eq(unlink(sample_at("cloth.xmf")), 0);
     refuse_to_go_on("cloth.xmf is gone: the folder was changed since the checkpoint");
     for (int i = 0; i < 2; i++) {
         run(&setup, 4);
-        sample_read(path_of(INDEXES[i]), text, TEXT);
+        sample_read(sample_at("%s", INDEXES[i]), text, TEXT);
         const char *second = strstr(text, "000001"); /* the text is cut in its entry */
-        sample_write(path_of(INDEXES[i]), text, (size_t)(second - text));
+        sample_write(sample_at("%s", INDEXES[i]), text, (size_t)(second - text));
         refuse_to_go_on("is not whole: the folder was changed since the checkpoint");
     }
     run(&setup, 4);
-    sample_write(path_of("cloth.xmf"), "mine", 4);
+    sample_write(sample_at("cloth.xmf"), "mine", 4);
     refuse_to_go_on("cloth.xmf is in the way");
 }
 
 /* A folder in the place of frame 1: the others are written, and it is said once. */
 UNIT_TEST(goes_on_without_a_frame)
 {
-    struct cloth_error error = {0};
     struct output_hdf5 *frames;
     char text[512];
     const struct output_hdf5_setup setup = setup_of(true, 1, 0);
     UNIT_FINE(output_hdf5_open(&frames, &setup, &error));
-    ck_assert_int_eq(mkdir(path_of("hdf5/frame-000001.vtkhdf"), 0777), 0);
+    ck_assert_int_eq(mkdir(sample_at("hdf5/frame-000001.vtkhdf"), 0777), 0);
     for (uint64_t i = 0; i < 3; i++)
         give(frames, i);
     output_hdf5_wait(frames);
     ck_assert_uint_eq(warnings, 1);
     unit_says(warning, "hdf5/frame-000001.vtkhdf: Is a directory; the run goes "
                        "on without HDF5 frame 1");
-    ck_assert_int_eq(output_hdf5_close(&frames, &error), CLOTH_E_IO);
-    unit_says(error.text, "1 of 3 HDF5 frames were not written");
+    UNIT_REFUSED(output_hdf5_close(&frames, &error), CLOTH_E_IO,
+                 "1 of 3 HDF5 frames were not written");
     check_frame(0, true);
     check_frame(2, true);
-    ck_assert(!is_there("hdf5/frame-000001.vtkhdf.part"));
-    sample_read(path_of("cloth.vtkhdf.series"), text, sizeof text);
+    ck_assert(!sample_has(sample_at("hdf5/frame-000001.vtkhdf.part")));
+    sample_read(sample_at("cloth.vtkhdf.series"), text, sizeof text);
     ck_assert_ptr_null(strstr(text, "000001"));
     unit_says(text, "000002");
 }

@@ -12,20 +12,17 @@ UNIT_FIXTURE(sample_make, sample_free)
 
 UNIT_TEST(folder_in_the_way)
 {
-    struct cloth_error error = {0};
     struct output_frames *frames = NULL;
     char file[96], below[112];
     snprintf(file, sizeof file, "%s/file", sample.folder);
     snprintf(below, sizeof below, "%s/frames", file);
     sample_write(file, "mine", 4);
     sample.setup.folder = file;
-    ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-    unit_says(error.text, file);
-    unit_says(error.text, "Not a directory");
-    error.code = 0;
+    UNIT_CALL(output_open(&frames, &sample.setup, &error),
+              ck_assert_int_eq(unit_code, CLOTH_E_INPUT);
+              unit_says(error.text, file); unit_says(error.text, "Not a directory"));
     sample.setup.folder = below;
-    ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-    unit_says(error.text, "Not a directory");
+    UNIT_REFUSED(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT, "Not a directory");
     ck_assert_ptr_null(frames);
     char text[8];
     sample_read(file, text, sizeof text);
@@ -37,13 +34,12 @@ UNIT_TEST(file_in_the_way)
 {
     static const char *const name[] = {"cloth.obj", "cloth.pc2", "frames.csv.part"};
     for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
-        struct cloth_error error = {0};
         struct output_frames *frames = NULL;
         sample_run(1, 1);
         unlink(sample_path(name[i]));
         ck_assert_int_eq(mkdir(sample_path(name[i]), 0777), 0);
-        ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-        unit_says(error.text, sample_path(name[i]));
+        UNIT_REFUSED(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT,
+                     sample_path(name[i]));
         ck_assert_ptr_null(frames);
         ck_assert_int_eq(rmdir(sample_path(name[i])), 0);
     }
@@ -165,12 +161,11 @@ UNIT_TEST(folder_where_a_file_goes)
     sample.setup.n_obstacles = 1;
     for (int i = 0; i < 2; i++) {
         const char *name = i ? "body-0.obj" : "body-0.obj.part";
-        struct cloth_error error = {0};
         struct output_frames *frames = NULL;
         ck_assert_int_eq(mkdir(sample_path(name), 0777), 0);
-        ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-        unit_says(error.text, sample_path(name));
-        unit_says(error.text, "Is a directory");
+        UNIT_CALL(
+            output_open(&frames, &sample.setup, &error), ck_assert_int_eq(unit_code, CLOTH_E_INPUT);
+            unit_says(error.text, sample_path(name)); unit_says(error.text, "Is a directory"));
         ck_assert_int_eq(rmdir(sample_path(name)), 0);
         check_untouched(FILES, N_FILES, 3);
     }

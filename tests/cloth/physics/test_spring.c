@@ -1,12 +1,12 @@
-/* Springs against what they are derived from: the force is the slope of the energy, the matrix the
- * slope of the force, and the two sides of a cut spring are exact opposites. The energy is written
- * here again, in the test's own words. */
+/* Springs as elements (elements.h), whose energy is written here again, in the test's own words;
+ * and what they have beyond that: compression, and two sides of a cut spring that are exact
+ * opposites. */
 #include "cloth/physics/particle.h"
 #include "cloth/physics/spring.h"
+#include "tests/cloth/physics/elements.h"
 #include "tests/support/unit.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { N = 5, SPRINGS = 7 };
@@ -14,7 +14,6 @@ enum { N = 5, SPRINGS = 7 };
 static const uint32_t ends[SPRINGS][2] = {{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}, {3, 4}, {0, 4}};
 static const double stiffness[SPRINGS] = {50, 20, 35, 80, 10, 60, 25};
 static const double damping[SPRINGS] = {0.5, 0.2, 0.3, 0.9, 0.1, 0, 0.4};
-static const double slack[SPRINGS] = {0, 0, 0, 0, 0, 0, 0};
 
 /* A tangle of springs. Shorter: every rest length below the length, so that no term is dropped. */
 static const double shorter[SPRINGS] = {0.5, 0.7, 0.4, 0.3, 0.6, 0.55, 0.8};
@@ -27,53 +26,99 @@ static const phys_vec speeds[N] = {{0.3, -0.2, 0.1, 0},
                                    {0.2, 0.2, 0.7, 0},
                                    {-0.1, -0.4, 0.5, 0}};
 
-static struct phys_springs tangle(const double *c, const double *length)
+static struct phys_springs tangle(const double *length)
 {
-    return (struct phys_springs){SPRINGS, ends, stiffness, c, length, 0};
+    return (struct phys_springs){SPRINGS, ends, stiffness, damping, length, 0};
 }
 
 /* Sum of k (l - L)^2 / 2. */
-static double energy(const struct phys_springs *s, const phys_vec *x)
+static double tangle_energy(const void *of, const struct phys_sight *sight)
 {
+    const struct phys_springs *s = of;
     double sum = 0;
     for (size_t i = 0; i < s->n; i++) {
-        const phys_vec *a = x + s->end[i][0], *b = x + s->end[i][1];
+        const phys_vec *a = sight->x + s->end[i][0], *b = sight->x + s->end[i][1];
         const double l = hypot(hypot((*b)[0] - (*a)[0], (*b)[1] - (*a)[1]), (*b)[2] - (*a)[2]);
         sum += 0.5 * s->stiffness[i] * (l - s->length[i]) * (l - s->length[i]);
     }
     return sum;
 }
 
-/* Largest error of the forces against differences of the energy over 2 e. */
-static double force_error(double e)
+/* y -= h^2 K v. */
+static void take_stiffness(const struct phys_springs *s, double h, const phys_vec *x,
+                           const phys_vec *v, phys_vec *y)
 {
-    const struct phys_springs s = tangle(slack, shorter);
-    double max = 0;
-    phys_vec x[N], f[N] = {{0}};
-    memcpy(x, places, sizeof x);
-    phys_springs_force(&s, x, speeds, f);
-    for (int i = 0; i < N; i++)
-        for (int c = 0; c < 3; c++) {
-            x[i][c] = places[i][c] + e;
-            const double more = energy(&s, x);
-            x[i][c] = places[i][c] - e;
-            const double less = energy(&s, x);
-            x[i][c] = places[i][c];
-            max = fmax(max, fabs(f[i][c] + (more - less) / (2 * e)));
-        }
-    for (int i = 0; i < N; i++)
-        ck_assert_double_eq(f[i][3], 0);
-    return max;
+    phys_vec value[SPRINGS];
+    phys_springs_system(s, h, 0, x, v, y, value);
 }
 
-UNIT_TEST(force_is_the_slope_of_the_energy)
+static void tangle_force(const void *of, const struct phys_sight *sight, phys_vec *f)
 {
-    const double coarse = force_error(2e-3), fine = force_error(1e-3), least = force_error(1e-6);
-    printf("# forces of springs against differences of the energy over 4e-3, 2e-3 and 2e-6 m: off "
-           "by %.2e, %.2e, %.2e N: order %.2f\n",
-           coarse, fine, least, log2(coarse / fine));
-    ck_assert_double_eq_tol(log2(coarse / fine), 2, 0.1);
-    ck_assert_double_le(least, 1e-7);
+    phys_springs_force(of, sight->x, sight->v, f);
+}
+
+static struct phys_springs slope_of(const void *of, int full)
+{
+    struct phys_springs s = *(const struct phys_springs *)of;
+    s.full = full ? PHYS_FULL : 0;
+    return s;
+}
+
+static void tangle_stiffness(const void *of, int full, double scale, const struct phys_sight *sight,
+                             phys_vec *y)
+{
+    const struct phys_springs s = slope_of(of, full);
+    take_stiffness(&s, sqrt(scale), sight->x, sight->v, y);
+}
+
+/* A spring's value w, alpha stands for w w' + alpha I. */
+static void tangle_matrix(const void *of, const struct phys_step *step,
+                          const struct phys_sight *sight, struct phys_pair *pair)
+{
+    const struct phys_springs s = slope_of(of, step->full);
+    phys_vec value[SPRINGS];
+    phys_springs_matrix(&s, step->h, sight->x, sight->x, value);
+    for (int i = 0; i < SPRINGS; i++)
+        for (int k = 0; k < 3; k++) {
+            pair[i].cyclic[k] = (phys_vec){0};
+            for (int row = 0; row < 3; row++)
+                pair[i].cyclic[k][row] =
+                    value[i][row] * value[i][(row + k) % 3] + (k ? 0 : value[i][3]);
+        }
+}
+
+/* Lengths below all distances, above them, and just these. */
+UNIT_LOOP(are_elements, 0, 3)
+{
+    static const int pair[1][2] = {{0, 1}};
+    double distance[SPRINGS];
+    const double *const lengths[] = {shorter, longer, distance};
+    const struct phys_springs s = tangle(lengths[_i]);
+    uint32_t corner[SPRINGS][4];
+    struct elements_state state = {.n = N};
+    const struct elements model = {&s,
+                                   SPRINGS,
+                                   1,
+                                   (const uint32_t(*)[4])corner,
+                                   pair,
+                                   tangle_energy,
+                                   tangle_force,
+                                   tangle_stiffness,
+                                   tangle_matrix};
+    for (int i = 0; i < SPRINGS; i++) {
+        const phys_vec d = places[ends[i][1]] - places[ends[i][0]];
+        distance[i] = sqrt(phys_dot(&d, &d));
+        memcpy(corner[i], ends[i], sizeof ends[i]);
+    }
+    memcpy(state.x, places, sizeof places);
+    memcpy(state.v, speeds, sizeof speeds);
+    if (_i == 2) {
+        elements_check_rigid(&model, &state, 1e-12);
+        return;
+    }
+    elements_check_gradient(&model, &state, 1e-7);
+    elements_check_matrix(&model, &state, 1e-6);
+    elements_check_momentum(&model, &state, 1e-12);
 }
 
 UNIT_TEST(damping_acts_along_the_spring_only)
@@ -91,89 +136,11 @@ UNIT_TEST(damping_acts_along_the_spring_only)
         ck_assert_double_eq(f[1][i], -f[0][i]);
 }
 
-/* t = (alpha I + w w') d. */
-static void apply(const phys_vec *value, const phys_vec *d, phys_vec *t)
-{
-    const double along = (*value)[0] * (*d)[0] + (*value)[1] * (*d)[1] + (*value)[2] * (*d)[2];
-    const phys_vec w = {(*value)[0], (*value)[1], (*value)[2], 0};
-    *t = (*value)[3] * *d + along * w;
-}
-
-/* -dF/dx and -dF/dv of all springs by differences, against h c u u' + h^2 K by superposition of
- * unit moves; the full ones also under compression. */
-UNIT_LOOP(matrix_is_the_slope_of_the_force, 0, 2)
-{
-    const double h = 0.1, e = 1e-6;
-    struct phys_springs still = tangle(slack, shorter), s = tangle(damping, shorter);
-    if (_i) {
-        still.length = s.length = longer;
-        s.full = PHYS_FULL;
-    }
-    phys_vec value[SPRINGS];
-    phys_springs_matrix(&s, h, places, places, value);
-    for (int j = 0; j < N; j++)
-        for (int c = 0; c < 3; c++) {
-            phys_vec x[2][N], v[2][N], f[2][N] = {{{0}}}, g[2][N] = {{{0}}}, y[N] = {{0}};
-            for (int side = 0; side < 2; side++) {
-                memcpy(x[side], places, sizeof x[side]);
-                memcpy(v[side], speeds, sizeof v[side]);
-                x[side][j][c] += side ? e : -e;
-                v[side][j][c] += side ? e : -e;
-                phys_springs_force(&still, x[side], speeds, f[side]);
-                phys_springs_force(&s, places, v[side], g[side]);
-            }
-            for (int i = 0; i < SPRINGS; i++) {
-                phys_vec p[N] = {{0}};
-                p[j][c] = 1;
-                const phys_vec d = p[ends[i][0]] - p[ends[i][1]];
-                phys_vec t;
-                apply(value + i, &d, &t);
-                y[ends[i][0]] += t;
-                y[ends[i][1]] -= t;
-            }
-            for (int i = 0; i < N; i++)
-                for (int k = 0; k < 3; k++) {
-                    const double slope = (f[1][i][k] - f[0][i][k]) / (2 * e) * h * h +
-                                         (g[1][i][k] - g[0][i][k]) / (2 * e) * h;
-                    ck_assert_double_eq_tol(y[i][k], -slope, 1e-7);
-                }
-        }
-}
-
-/* y -= h^2 K v. */
-static void take_stiffness(const struct phys_springs *s, double h, const phys_vec *x,
-                           const phys_vec *v, phys_vec *y)
-{
-    phys_vec value[SPRINGS];
-    phys_springs_system(s, h, 0, x, v, y, value);
-}
-
-UNIT_LOOP(stiffness_times_velocity_is_the_slope_of_the_force, 0, 2)
-{
-    const double e = 1e-6;
-    struct phys_springs s = tangle(slack, shorter);
-    if (_i) {
-        s.length = longer;
-        s.full = PHYS_FULL;
-    }
-    phys_vec more[N], less[N], f[2][N] = {{{0}}}, y[N] = {{0}};
-    for (int i = 0; i < N; i++) {
-        more[i] = places[i] + e * speeds[i];
-        less[i] = places[i] - e * speeds[i];
-    }
-    phys_springs_force(&s, more, speeds, f[0]);
-    phys_springs_force(&s, less, speeds, f[1]);
-    take_stiffness(&s, 2, places, speeds, y);
-    for (int i = 0; i < N; i++)
-        for (int c = 0; c < 3; c++)
-            ck_assert_double_eq_tol(y[i][c], 4 * (f[0][i][c] - f[1][i][c]) / (2 * e), 1e-6);
-}
-
 /* All of it at once: the matrix to the bit, push times the force, h^2 K v. */
 UNIT_LOOP(system_is_force_stiffness_and_matrix, 0, 3)
 {
     const double h = 0.3, push = 0.7;
-    struct phys_springs s = tangle(damping, _i ? longer : shorter);
+    struct phys_springs s = tangle(_i ? longer : shorter);
     phys_vec f[N] = {{0}}, y[N] = {{0}}, b[N] = {{0}}, value[SPRINGS], both[SPRINGS];
     s.full = _i == 2;
     phys_springs_force(&s, places, speeds, f);
@@ -269,55 +236,10 @@ UNIT_TEST(cut_springs_are_exact_opposites)
     }
 }
 
-static void cross(const phys_vec *a, const phys_vec *b, phys_vec *y)
-{
-    *y = (phys_vec){(*a)[1] * (*b)[2] - (*a)[2] * (*b)[1], (*a)[2] * (*b)[0] - (*a)[0] * (*b)[2],
-                    (*a)[0] * (*b)[1] - (*a)[1] * (*b)[0], 0};
-}
-
-UNIT_LOOP(internal_forces_keep_momentum, 0, 2)
-{
-    const struct phys_springs s = tangle(damping, _i ? longer : shorter);
-    phys_vec f[N] = {{0}}, sum = {0}, torque = {0};
-    phys_springs_force(&s, places, speeds, f);
-    for (int i = 0; i < N; i++) {
-        phys_vec t;
-        cross(places + i, f + i, &t);
-        sum += f[i];
-        torque += t;
-    }
-    for (int c = 0; c < 3; c++) {
-        ck_assert_double_eq_tol(sum[c], 0, 1e-13);
-        ck_assert_double_eq_tol(torque[c], 0, 1e-13);
-    }
-    ck_assert_double_gt(phys_dot(f, f), 1);
-}
-
-/* Turned by a third of a turn about (1, 1, 1), which swaps the axes, moved, and spinning. */
-UNIT_TEST(rigid_motion_gives_no_force)
-{
-    double rest[SPRINGS];
-    phys_vec x[N], v[N], f[N] = {{0}};
-    const phys_vec spin = {3, -8, 5, 0}, away = {30, -20, 50, 0};
-    for (int i = 0; i < SPRINGS; i++) {
-        const phys_vec d = places[ends[i][1]] - places[ends[i][0]];
-        rest[i] = sqrt(phys_dot(&d, &d));
-    }
-    for (int i = 0; i < N; i++) {
-        x[i] = (phys_vec){places[i][2], places[i][0], places[i][1], 0} + away;
-        cross(&spin, x + i, v + i);
-    }
-    const struct phys_springs s = tangle(damping, rest);
-    phys_springs_force(&s, x, v, f);
-    for (int i = 0; i < N; i++)
-        for (int c = 0; c < 3; c++)
-            ck_assert_double_eq_tol(f[i][c], 0, 2e-12);
-}
-
 UNIT_TEST(stretch_is_the_largest_of_the_chosen)
 {
     unsigned char chosen[SPRINGS] = {1, 0, 1, 0, 0, 0, 0};
-    const struct phys_springs s = tangle(damping, shorter);
+    const struct phys_springs s = tangle(shorter);
     const double first = sqrt(1 + 0.01 + 0.04) / 0.5, third = sqrt(0.64 + 1 + 0.25) / 0.4;
     ck_assert_double_eq_tol(phys_springs_stretch(&s, chosen, places, places), third, 1e-14);
     chosen[2] = 0;

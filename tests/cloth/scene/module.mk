@@ -4,7 +4,7 @@ SCENE_TESTS = tests/cloth/scene/test_sentences tests/cloth/scene/test_errors tes
     tests/cloth/scene/test_seams
 ASAN_TESTS += $(SCENE_TESTS)
 SCENE_FILE = tests/cloth/scene/scene_file.c tests/cloth/scene/scene_file.h
-tests_cloth_scene_test_sentences_SOURCES = tests/cloth/scene/test_sentences.c cloth/app/run/phases_check.c $(SCENE_FILE)
+tests_cloth_scene_test_sentences_SOURCES = tests/cloth/scene/test_sentences.c cloth/app/run/phases_same.c $(SCENE_FILE)
 tests_cloth_scene_test_errors_SOURCES = tests/cloth/scene/test_errors.c $(SCENE_FILE)
 tests_cloth_scene_test_rules_SOURCES = tests/cloth/scene/test_rules.c $(SCENE_FILE)
 tests_cloth_scene_test_values_SOURCES = tests/cloth/scene/test_values.c $(SCENE_FILE)

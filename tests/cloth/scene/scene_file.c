@@ -88,16 +88,20 @@ int scene_read_text(struct model *model, const char *text, size_t n_sets,
     return scene_read(model, scene_path(), n_sets, sets, error);
 }
 
-struct model scene_read_right(const char *text, size_t n_sets, const struct scene_set *sets)
+struct model scene_read_right(const char *text, size_t n_sets, const char *const *sets)
 {
     struct model model;
-    UNIT_FINE(scene_read_text(&model, text, n_sets, sets, &error));
+    struct scene_set set[8] = {0};
+    ck_assert_uint_le(n_sets, sizeof set / sizeof *set);
+    for (size_t i = 0; i < n_sets; i++)
+        set[i].text = sets[i];
+    UNIT_FINE(scene_read_text(&model, text, n_sets, set, &error));
     return model;
 }
 
 struct model scene_read_set(const char *set)
 {
-    return scene_read_right(scene_right, 1, &(struct scene_set){.text = set});
+    return scene_read_right(scene_right, 1, &set);
 }
 
 struct model scene_read_changed(const char *from, const char *to)

@@ -17,8 +17,9 @@ char *scene_changed(const char *text, const char *from, const char *to);
 int scene_read_text(struct model *model, const char *text, size_t n_sets,
                     const struct scene_set *sets, struct cloth_error *error);
 
-/* Reads a text that is right; fails the test if it is not. The caller frees the model. */
-struct model scene_read_right(const char *text, size_t n_sets, const struct scene_set *sets);
+/* Reads a text that is right with sets, KEY=VALUE each; fails the test if it is not. The caller
+ * frees the model. */
+struct model scene_read_right(const char *text, size_t n_sets, const char *const *sets);
 /* The scene that is right, with a set. */
 struct model scene_read_set(const char *set);
 /* The scene that is right, with the first `from` replaced by `to`. */

@@ -53,14 +53,13 @@ UNIT_TEST(frames_that_are_wrong)
         {"whole.obj", "whole.obj: no PC2 file of version 1"},
         {"nowhere.pc2", "nowhere.pc2: cannot be read: No such file"}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        struct cloth_error error = {0};
         UNIT_OWNED(model_free) struct model model;
         char body[120];
         snprintf(body, sizeof body, FRAMES "{pc2: %s}}", wrong[i][0]);
         char *text = scene_changed(scene_right, PLANE, body);
-        ck_assert_int_eq(scene_read_text(&model, text, 0, NULL, &error), CLOTH_E_INPUT);
-        unit_says(error.text, ":11:51: frames: ");
-        unit_says(error.text, wrong[i][1]);
+        UNIT_CALL(scene_read_text(&model, text, 0, NULL, &error),
+                  ck_assert_int_eq(unit_code, CLOTH_E_INPUT);
+                  unit_says(error.text, ":11:51: frames: "); unit_says(error.text, wrong[i][1]));
         free(text);
     }
 }

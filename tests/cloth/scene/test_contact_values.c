@@ -86,10 +86,10 @@ static const struct {
 
 UNIT_LOOP(contact_modes, 0, sizeof modes / sizeof *modes)
 {
-    struct scene_set sets[4] = {{.text = "contact.thickness=0.01"}};
+    const char *sets[4] = {"contact.thickness=0.01"};
     size_t n = 1;
     for (; n < 4 && modes[_i].set[n - 1]; n++)
-        sets[n] = (struct scene_set){.text = modes[_i].set[n - 1]};
+        sets[n] = modes[_i].set[n - 1];
     UNIT_OWNED(model_free) struct model model = scene_read_right(scene_right, n, sets);
     ck_assert(model.contact.assumed);
     ck_assert_int_eq((int)model.contact.mode, (int)modes[_i].mode);
@@ -112,10 +112,10 @@ static const struct {
 
 UNIT_LOOP(contact_with_nothing, 0, sizeof idle_scenes / sizeof *idle_scenes)
 {
-    struct scene_set sets[3] = {{.text = "contact.mode=certified"}};
+    const char *sets[3] = {"contact.mode=certified"};
     size_t n = 1;
     for (; n < 3 && idle_scenes[_i].set[n - 1]; n++)
-        sets[n] = (struct scene_set){.text = idle_scenes[_i].set[n - 1]};
+        sets[n] = idle_scenes[_i].set[n - 1];
     UNIT_OWNED(model_free) struct model model = scene_read_right(scene_right, n, sets);
     ck_assert_int_eq(model_promise(&model).apart, idle_scenes[_i].certifies);
     ck_assert_int_eq((int)model.contact.mode, MODEL_CONTACT_CERTIFIED);

@@ -1,7 +1,6 @@
 /* Every rule fits the field that it fills: fields are found by offset, so no compiler looks. The
  * examples of the page of all keys are what the rules allow. */
 #include "cloth/scene/schema/check.h"
-#include "cloth/scene/schema/faults.h"
 #include "cloth/scene/schema/needs.h"
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
@@ -20,6 +19,8 @@ static unsigned n_fields, n_places;
 /* What a value takes. */
 static size_t width_of(const struct scene_rule *rule)
 {
+    if (rule->count.width)
+        return sizeof(void *);
     switch (rule->type) {
     case SCENE_NUMBER:
     case SCENE_NUMBER_OR_WORD:
@@ -166,12 +167,38 @@ static const struct scene_rule *rule_in(const struct scope *scope, const char *n
     return rule;
 }
 
-/* Whole scenes run in tests/whole/test_options.sh. */
-static void check_example(const struct scope *scope, const char *example)
+/* The section of a line of prose.md; NULL: it is no head. */
+static const char *head_of(const char *line)
 {
+    return *line == '#' ? strchr(line, ' ') + 1 : NULL;
+}
+
+/* The YAML of a section; empty: it has none. */
+static const char *example_of(const char *section, char *text, size_t size)
+{
+    const char *const *line = scene_prose;
+    bool inside = false;
+    while (*line && (!head_of(*line) || strcmp(head_of(*line), section) != 0))
+        line++;
+    ck_assert_msg(*line, "prose.md has no section %s", section);
+    *text = 0;
+    for (line++; *line && !head_of(*line); line++) {
+        const size_t n = strlen(text);
+        if (inside && **line != '`')
+            snprintf(text + n, size - n, "%s\n", *line);
+        inside = inside ? **line != '`' : !strcmp(*line, "```yaml");
+    }
+    return text;
+}
+
+/* Whole scenes run in tests/whole/test_options.sh. */
+static void check_example(const struct scope *scope, const char *section)
+{
+    char text[4000];
+    const char *example = example_of(section, text, sizeof text);
     struct cloth_error error = {0};
     struct scene_tree tree;
-    if (!example || !strncmp(example, "schema:", 7))
+    if (!*example || !strncmp(example, "schema:", 7))
         return;
     scene_write_file("scene.yaml", example, strlen(example));
     int code = scene_tree_load(&tree, scene_path(), &scene_words, &error);
@@ -179,7 +206,7 @@ static void check_example(const struct scope *scope, const char *example)
         const char *name = scene_tree_scalar(&tree, scene_tree_pair(&tree, 1, i).key);
         const struct scene_rule *rule = rule_in(scope, name);
         ck_assert_msg(rule, "%s is no key", name);
-        code = scene_fill(NULL, rule, &tree, scene_tree_pair(&tree, 1, i).value, &error);
+        code = scene_fill(NULL, rule, &tree, scene_tree_pair(&tree, 1, i).value);
     }
     ck_assert_msg(!code, "%s in the example\n%s", error.text, example);
     scene_tree_free(&tree);
@@ -192,7 +219,9 @@ static void check_examples(const struct scene_rule *map, const struct scope *up)
     for (const struct scene_rule *key = map->inside; key->key; key++) {
         const struct scene_rule *inside = key;
         if (key->section)
-            check_example(&scope, key->section->example);
+            check_example(&scope, key->section);
+        if (key->shared)
+            check_example(&scope, key->shared);
         while (inside->type == SCENE_LIST || inside->type == SCENE_NAMED)
             inside = inside->inside;
         if (inside->type == SCENE_MAP || inside->type == SCENE_ONE_OF)
@@ -204,6 +233,55 @@ UNIT_TEST(examples_are_allowed)
 {
     check_examples(&scene_root, NULL);
     ck_assert_uint_ge(n_examples, 25);
+}
+
+/* The map whose keys stand behind a rule; NULL: none. */
+static const struct scene_rule *map_inside(const struct scene_rule *rule)
+{
+    while (rule->type == SCENE_LIST || rule->type == SCENE_NAMED)
+        rule = rule->inside;
+    return rule->type == SCENE_MAP || rule->type == SCENE_ONE_OF ? rule : NULL;
+}
+
+/* The map whose keys are rows of a section's table, or its key where that has none; NULL: no key of
+ * the map has the section. */
+static const struct scene_rule *rows_of(const struct scene_rule *map, const char *head)
+{
+    const struct scene_rule *found = NULL;
+    for (const struct scene_rule *key = map->inside; key->key && !found; key++) {
+        const struct scene_rule *inside = map_inside(key);
+        if (key->shared && !strcmp(key->shared, head))
+            found = map;
+        else if (key->section && !strcmp(key->section, head))
+            found = inside ? inside : key;
+        else if (inside)
+            found = rows_of(inside, head);
+    }
+    return found;
+}
+
+static void check_note(const struct scene_rule *rows, const char *note)
+{
+    char text[200], *rest = text;
+    snprintf(text, sizeof text, "%.*s", (int)strcspn(note, "`"), note);
+    for (const char *word; (word = strsep(&rest, ".")); rows = map_inside(rows)) {
+        ck_assert_msg(rows && rows->inside, "the note on %s has no table", note);
+        rows = scene_rule_of(rows->inside, word);
+        ck_assert_msg(rows, "the note on %s is of no key", note);
+    }
+}
+
+/* Each section of prose.md is of a key, but for that of the whole scene; each note is of a row. */
+UNIT_TEST(prose_is_of_keys)
+{
+    const struct scene_rule *rows = NULL;
+    for (const char *const *line = scene_prose; *line; line++) {
+        if (head_of(*line))
+            rows = line == scene_prose ? &scene_root : rows_of(&scene_root, head_of(*line));
+        ck_assert_msg(rows, "no key has %s", *line);
+        if (!strncmp(*line, "- `", 3))
+            check_note(rows, *line + 3);
+    }
 }
 
 static unsigned n_terms;

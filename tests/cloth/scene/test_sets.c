@@ -68,10 +68,10 @@ UNIT_TEST(sets_make_and_append)
     ck_assert_uint_eq(model.cloths[0].pins[0].pick.n_vertices, 3);
     ck_assert_uint_eq(model.cloths[0].pins[0].pick.vertices[2], 5);
     model_free(&model);
-    const struct scene_set both[] = {{.text = "materials.wool={density: 1, stretch: 1}"},
-                                     {.text = "cloths[0].material=wool"},
-                                     {.text = "materials.wool.density=3"}};
-    model = scene_read_right(scene_right, 3, both);
+    model = scene_read_right(scene_right, 3,
+                             (const char *const[]){"materials.wool={density: 1, stretch: 1}",
+                                                   "cloths[0].material=wool",
+                                                   "materials.wool.density=3"});
     ck_assert_double_eq(model.materials[model.cloths[0].material].density, 3);
 }
 
@@ -79,9 +79,8 @@ UNIT_TEST(sets_make_and_append)
 UNIT_TEST(a_choice_replaces_a_choice)
 {
     char *text = scene_changed(scene_right, "time:", "solver: {stop: {relative: 0.1}}\ntime:");
-    const struct scene_set sets[] = {{.text = "solver.stop.mass_norm=0.2"},
-                                     {.text = "solver.stop.absolute=0.3"},
-                                     {.text = "solver.stop.relative=0.4"}};
+    static const char *const sets[] = {"solver.stop.mass_norm=0.2", "solver.stop.absolute=0.3",
+                                       "solver.stop.relative=0.4"};
     static const enum model_stop stop[] = {MODEL_STOP_MASS_NORM, MODEL_STOP_ABSOLUTE,
                                            MODEL_STOP_RELATIVE};
     static const double tolerance[] = {0.2, 0.3, 0.4};
@@ -94,8 +93,8 @@ UNIT_TEST(a_choice_replaces_a_choice)
     text = scene_changed(scene_right, "[{vertices: [0, 3]}]",
                          "[&p {vertices: [0, 3], motion: {times: [0]}}, *p]");
     UNIT_OWNED(model_free)
-    struct model model = scene_read_right(
-        text, 1, &(struct scene_set){.text = "cloths[0].pins[1].nearest=[1, 2, 3]"});
+    struct model model =
+        scene_read_right(text, 1, (const char *const[]){"cloths[0].pins[1].nearest=[1, 2, 3]"});
     ck_assert_int_eq(model.cloths[0].pins[0].pick.kind, MODEL_PICK_VERTICES);
     ck_assert_int_eq(model.cloths[0].pins[1].pick.kind, MODEL_PICK_NEAREST);
     ck_assert_ptr_null(model.cloths[0].pins[1].pick.vertices);
@@ -109,10 +108,9 @@ UNIT_TEST(the_last_choice_is_inside)
 {
     char *text = scene_changed(scene_right, "plane: {point: [0, -1, 0], normal: [0, 3, 4]}",
                                "sphere: {centre: [0, -1, 0], radius: 0.5}");
-    const struct scene_set sets[] = {
-        {.text = "obstacles[0].box={centre: [0, 0, 0], size: [1, 1, 1]}"},
-        {.text = "obstacles[0].sphere.radius=0.1"},
-        {.text = "obstacles[0].box.size[1]=2"}};
+    static const char *const sets[] = {"obstacles[0].box={centre: [0, 0, 0], size: [1, 1, 1]}",
+                                       "obstacles[0].sphere.radius=0.1",
+                                       "obstacles[0].box.size[1]=2"};
     static const char *const kind[] = {"box", "sphere", "box"};
     for (size_t n = 1; n <= 3; n++) {
         UNIT_OWNED(model_free) struct model model = scene_read_right(text, n, sets);
@@ -128,8 +126,8 @@ UNIT_TEST(sets_leave_aliases_alone)
         scene_changed(scene_right, "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}",
                       "  cotton: &c {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n"
                       "  other: *c");
-    const struct scene_set sets[] = {{.text = "materials.other.damping.mass=9"},
-                                     {.text = "materials.cotton.stretch=1"}};
+    static const char *const sets[] = {"materials.other.damping.mass=9",
+                                       "materials.cotton.stretch=1"};
     UNIT_OWNED(model_free) struct model model = scene_read_right(text, 2, sets);
     ck_assert_double_eq(model.materials[0].damping_mass, 0.1);
     ck_assert_double_eq(model.materials[0].stretch, 1);

@@ -102,27 +102,22 @@ UNIT_TEST(named_fabrics)
         "cloths[0].material=denim", "cloths[0].material=silk",
         "materials={linen: {like: rib_knit, density: 0.1, bending: {rigidity: 1}}}",
         "cloths[0].material=rib_knit", "materials={rib_knit: {density: 0.5, stretch: 1}}"};
-    const struct scene_set set[] = {{.text = sets[0]},
-                                    {.text = sets[1]},
-                                    {.text = sets[2]},
-                                    {.text = sets[3]},
-                                    {.text = sets[4]}};
-    UNIT_OWNED(model_free) struct model model = scene_read_right(scene_right, 1, set);
+    UNIT_OWNED(model_free) struct model model = scene_read_right(scene_right, 1, sets);
     ck_assert_uint_eq(model.n_materials, 2);
     ck_assert_str_eq(model.materials[1].name, "denim");
     ck_assert_uint_eq(model.cloths[0].material, 1);
     same_fabric(model.materials + 1, 0.324, 2026.8, 410.5, 53.4, 1.954e-5);
     ck_assert_double_eq(model.materials[1].poisson, 0.0498);
     model_free(&model);
-    model = scene_read_right(scene_right, 1, set + 1);
+    model = scene_read_right(scene_right, 1, sets + 1);
     same_fabric(model.materials + 1, 0.0347, 2000, 2000, 20, 9.8e-7);
     model_free(&model);
-    model = scene_read_right(scene_right, 2, set + 2);
+    model = scene_read_right(scene_right, 2, sets + 2);
     ck_assert_str_eq(model.materials[0].name, "linen");
     same_fabric(model.materials, 0.1, 130.3, 85.7, 83.2, 1);
     same_fabric(model.materials + 1, 0.276, 130.3, 85.7, 83.2, 9.04e-6);
     model_free(&model);
-    model = scene_read_right(scene_right, 2, set + 3); /* its own */
+    model = scene_read_right(scene_right, 2, sets + 3); /* its own */
     ck_assert_uint_eq(model.n_materials, 1);
     ck_assert_double_eq(model.materials[0].density, 0.5);
 }
@@ -130,9 +125,9 @@ UNIT_TEST(named_fabrics)
 /* A density is wanted only where it is needed. */
 UNIT_TEST(mass_without_density)
 {
-    const struct scene_set set[] = {{.text = "materials={cotton: {stretch: 50}}"},
-                                    {.text = "cloths[0].mass_per_vertex=0.1"}};
-    UNIT_OWNED(model_free) struct model model = scene_read_right(scene_right, 2, set);
+    static const char *const sets[] = {"materials={cotton: {stretch: 50}}",
+                                       "cloths[0].mass_per_vertex=0.1"};
+    UNIT_OWNED(model_free) struct model model = scene_read_right(scene_right, 2, sets);
     ck_assert_double_eq(model.materials[0].density, 0);
 }
 

@@ -107,11 +107,9 @@ UNIT_TEST(bounds)
     static const double wrong[] = {NAN, INFINITY, -INFINITY, 1e61};
     struct cloth_list list = {0};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        struct cloth_error error = {0};
         struct verify_soup *made = make(&soup, (const double[3]){1, 1, 1}, 0.1, 0, false);
         soup.x[77][1] = wrong[i];
-        ck_assert_int_eq(verify_pairs(made, &list, &error), CLOTH_E_RUN);
-        unit_says(error.text, "point 77");
+        UNIT_REFUSED(verify_pairs(made, &list, &error), CLOTH_E_RUN, "point 77");
     }
     struct cloth_error error = {0};
     struct verify_soup *made = make(&soup, (const double[3]){1, 1, 1}, 0.1, 0, false);

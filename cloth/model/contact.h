@@ -46,6 +46,7 @@ struct model_contact {
     bool untangle;    /* a start that is not free is made so */
     bool force;       /* frames have the force of contact on each vertex */
     double thickness; /* m, > 0: of cloth that touches something, half of it on each side */
+    double pressure;  /* Pa, >= 0: halves the thickness; 0: nothing is compressed */
     double friction;  /* coefficient, >= 0, of materials and obstacles that have none of their own;
                          sides a and b rub on each other by sqrt(a b), */
     uint32_t n_pairs; /* unless one of these is of them: the last counts */

@@ -342,13 +342,18 @@ static double release(const struct flow_particles *p, const struct model *model,
     return sum;
 }
 
+/* Rounding moves what is at rest by less, m/s, and nothing slower is seen. */
+static const double ROUNDS = 1e-6;
+
 double flow_source_release(const struct flow_source *source)
 {
     const struct model *model = source->model;
-    double sum = 0;
+    double sum = 0, mass = 0;
+    for (uint32_t v = 0; v < source->particles.n; v++)
+        mass += source->particles.mass[v];
     for (uint32_t c = 0; c < model->n_cloths; c++)
         sum += release(&source->particles, model, model->cloths + c, model_first(model, c));
-    return sum;
+    return fmax(sum, 0.5 * mass * ROUNDS * ROUNDS);
 }
 
 void flow_particles_free(struct flow_particles *particles)

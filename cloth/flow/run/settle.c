@@ -177,8 +177,9 @@ static int settle_step(struct flow_state *state)
     const bool gained =
         !refused && flow_energy_gained(state, is_disturbed(state, status)) && can_lose(state);
     flow_implicit_settle(state, !refused && !gained, status);
-    flow_contact_settled(state, !refused && !gained);
     state->attempt.forked = false;
+    if (flow_noted(state, flow_contact_settled(state, status, !refused && !gained)))
+        return state->code;
     if (!refused && !gained)
         return accept_step(state, status, &verdict);
     state->settled_forces = false;

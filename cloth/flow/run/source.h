@@ -290,7 +290,8 @@ struct flow_skins {
                             * contact_skin_source has it; */
     unsigned char *shared; /* and which of those edges others have, too */
     uint32_t
-        *joined; /* by place: one of those that pulled seams join it with; NULL: there are none */
+        *joined;  /* by place: one of those that pulled seams join it with; NULL: there are none */
+    double *area; /* by place: a third of its triangles' areas at rest, m^2 */
 };
 
 /* The sides of a block's springs, while its table is due. */
@@ -388,7 +389,7 @@ double flow_source_inertia(const struct flow_source *source);
 
 /* A scale of the energy, J: twice the sum of |force| times distance from the cloth's centre at the
  * start, over weights and constant loads of free vertices. These forces do no more work where each
- * vertex moves to the centre and as far on. 0 without weights and loads. Local. */
+ * vertex moves to the centre and as far on. At least that of a motion too slow to be seen. Local. */
 double flow_source_release(const struct flow_source *source);
 
 /* The scales of contacts (contact/scales.c): the stiffness of a contact, N/m; the mean mass of a

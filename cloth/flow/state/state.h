@@ -54,7 +54,8 @@ enum {
     FLOW_SLOPE,  /* of a Newton step: dv.b before it, */
     FLOW_CHANGE, /* dv.M dv, */
     FLOW_WHOLE,  /* (v - base_v).M (v - base_v) after it */
-    FLOW_DUE,    /* a checkpoint is due */
+    FLOW_PINCHES, /* contacts that have no room from this step on */
+    FLOW_DUE,     /* a checkpoint is due */
     FLOW_STATUS
 };
 /* Indices into the peaks of a watched state, F64. Each is the largest of any block: square of the

@@ -195,7 +195,8 @@ static uint64_t run_changed(int kind, enum flow_life life, int only, change *how
                 change_field(&s, field, how);
         ck_assert_int_eq(step_on(&s), 0);
         ck_assert_int_eq(duite_wait(s.rt), 0);
-        flow_contact_settled(&s.state, true);
+        const double status[FLOW_STATUS] = {0};
+        ck_assert_int_eq(flow_contact_settled(&s.state, status, true), 0);
         s.state.smooth = FLOW_TICKS; /* BDF2 goes on */
     }
     const uint64_t hash = hash_state(&s);

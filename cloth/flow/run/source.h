@@ -389,7 +389,8 @@ double flow_source_inertia(const struct flow_source *source);
 
 /* A scale of the energy, J: twice the sum of |force| times distance from the cloth's centre at the
  * start, over weights and constant loads of free vertices. These forces do no more work where each
- * vertex moves to the centre and as far on. At least that of a motion too slow to be seen. Local. */
+ * vertex moves to the centre and as far on. At least that of a motion too slow to be seen. Local.
+ */
 double flow_source_release(const struct flow_source *source);
 
 /* The scales of contacts (contact/scales.c): the stiffness of a contact, N/m; the mean mass of a

@@ -51,9 +51,9 @@ enum {
     FLOW_CORRECTION_UNMET,
     FLOW_CORRECTION_EXCESS,
     FLOW_CORRECTION_ENERGY,
-    FLOW_SLOPE,  /* of a Newton step: dv.b before it, */
-    FLOW_CHANGE, /* dv.M dv, */
-    FLOW_WHOLE,  /* (v - base_v).M (v - base_v) after it */
+    FLOW_SLOPE,   /* of a Newton step: dv.b before it, */
+    FLOW_CHANGE,  /* dv.M dv, */
+    FLOW_WHOLE,   /* (v - base_v).M (v - base_v) after it */
     FLOW_PINCHES, /* contacts that have no room from this step on */
     FLOW_DUE,     /* a checkpoint is due */
     FLOW_STATUS

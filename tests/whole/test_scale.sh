@@ -1,7 +1,7 @@
 #!/bin/sh
-# No number of contact is a length of its own: a scene 128 times as large, and one 128 times as small, with gravity and densities that fit, has
-# the same motion and the same counts. Sizes are powers of two, so all of it is equal to the last bit. Certificates try less for features that
-# are 2 m long (cloth/contact/certificate.c), so the edges of the large one are of 1 m.
+# No number of contact is a length of its own: a scene 128 times as large, and one 128 times as small, with gravity, densities and pressure
+# that fit, has the same motion and the same counts. Sizes are powers of two, so all of it is equal to the last bit. Certificates try less for
+# features that are 2 m long (cloth/contact/certificate.c), so the edges of the large one are of 1 m.
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
 plan_later
@@ -20,7 +20,7 @@ scene() {
             sheet("above", -0.015625, 0.09375)
             printf "materials: {m: {density: %.17g, stretch: 500, shear: 100, bend: 0.5, friction: 0.25, damping: {viscous: 2e-6, stiffness: 0.004}}}\n", 0.25 / s / s
             printf "obstacles: [{sphere: {centre: [0, 0, 0], radius: %.17g, friction: 0.25}}, {plane: {point: [0, %.17g, 0], normal: [0, 1, 0]}}]\n", s * 0.0625, s * -0.0625
-            printf "contact: {mode: %s, self: on, thickness: %.17g}\ngravity: [0, %.17g, 0]\n", mode, s * 0.001953125, s * -9.8125
+            printf "contact: {mode: %s, self: on, thickness: %.17g%s}\ngravity: [0, %.17g, 0]\n", mode, s * 0.001953125, mode == "certified" ? ", pressure: " 4096 / s : "", s * -9.8125
             print "probes: [{name: low, cloth: below, vertices: [0, 7, 480, 960], values: [position, velocity]},"
             print "         {name: high, cloth: above, vertices: [0, 7, 480, 960], values: [position, velocity]}]"
             print "time: {h: 0.0078125, end: 0.25, fps: 16}\nintegrator: implicit_euler"

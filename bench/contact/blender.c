@@ -34,9 +34,8 @@ static int look(const struct model *model, int frames, const char *path, double 
     struct intersections_found found = {0};
     double *position = calloc(n + 1, sizeof *position);
     FILE *file = fopen(path, "rb");
-    int code =
-        position ? intersections_of(&all, model, &model->contact.apart, NULL, false, &found, &error)
-                 : CLOTH_E_MEMORY;
+    const struct intersections_setup of = {.apart = &model->contact.apart, .found = &found};
+    int code = position ? intersections_of(&all, model, of, &error) : CLOTH_E_MEMORY;
     for (int i = 0; i < frames && !code; i++) {
         if (!file || fread(position, sizeof *position, n, file) != n)
             code = cloth_fail(&error, CLOTH_E_IO, "Blender's frames cannot be read");

@@ -102,7 +102,8 @@ static int look(const struct film *film, const struct model *model, double *most
     struct cloth_error error = {0};
     struct intersections *all = NULL;
     struct intersections_found found = {0};
-    int code = intersections_of(&all, model, &model->contact.apart, NULL, false, &found, &error);
+    const struct intersections_setup of = {.apart = &model->contact.apart, .found = &found};
+    int code = intersections_of(&all, model, of, &error);
     for (size_t i = 0; i < film->n && !code; i++)
         for (int written = 0; written < 2 && !code; written++)
             code = intersections_frame(all, i, film->frame[i].time, film->frame[i].position,

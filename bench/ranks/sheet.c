@@ -184,12 +184,12 @@ static void make_block(struct sheet *s, const struct flow_table *t, const phys_v
     phys_outside(t->n, t->load, t->drag, v, b);
     for (uint32_t i = 0; i < t->n; i++)
         b[i] = h * b[i];
-    phys_springs_system(&springs, h, h, x, v, b, value);
+    phys_springs_system(&springs, h, h, x, v, NULL, NULL, b, value);
     for (uint32_t i = 0; i < t->n_neighbours; i++) {
         const size_t at = s->halo_start[t->neighbour[i]];
         springs = flow_table_cut(t, i);
-        phys_springs_system_cut(&springs, h, h, x, v, halo_x + at, halo_v + at, b,
-                                value + t->n_inner + t->cut[i]);
+        phys_springs_system(&springs, h, h, x, v, halo_x + at, halo_v + at, b,
+                            value + t->n_inner + t->cut[i]);
     }
 }
 

@@ -16,6 +16,33 @@ static inline int cloth_compare_items_u32(const void *a, const void *b)
     return cloth_compare_u32(*(const uint32_t *)a, *(const uint32_t *)b);
 }
 
+/* The same of n numbers each: the first that differ count. */
+static inline int cloth_compare_numbers(const void *a, const void *b, size_t n)
+{
+    const uint32_t *one = a, *other = b;
+    int order = 0;
+    for (size_t i = 0; i < n && !order; i++)
+        order = cloth_compare_u32(one[i], other[i]);
+    return order;
+}
+
+/* The place of the first of n ascending numbers that is not below `least`; n: there is none. They
+ * lie `stride` numbers from each other. */
+static inline uint32_t cloth_first_from(const void *numbers, size_t stride, uint32_t n,
+                                        uint32_t least)
+{
+    const uint32_t *number = numbers;
+    uint32_t low = 0, high = n;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (number[stride * middle] < least)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 static inline size_t cloth_larger(size_t a, size_t b)
 {
     return a > b ? a : b;

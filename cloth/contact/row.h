@@ -17,8 +17,13 @@
  * the normal did on it so far. A spring of stiffness k that pushes with F holds F^2 / 2k. So a step
  * begins with a push of sqrt(2 k energy) at most. It starts from the load of the step before and,
  * if the gap is below the thickness, lifts towards it as far as the energy allows. A contact that
- * rests too deep without energy is lifted slowly, with lent energy (contact_row_lent). Pure
- * functions; N, m, N/m, J. */
+ * rests too deep without energy is lifted slowly, with lent energy (contact_row_lent).
+ *
+ * A contact without room is not lifted: its gap does not open for some steps, though it pushes.
+ * Then its load goes to the push of compressed cloth at its gap (contact_row_law), faster from step
+ * to step, so that what has room after all is not thrown. Once there it follows that law, as a
+ * spring of its slope, until its gap is the thickness. So the force is the same for any length of
+ * step, and bounded. Pure functions; N, m, N/m, J. */
 struct contact_row {
     phys_vec normal; /* out of the second side, of length 1 */
     phys_vec origin; /* the point where the step began */
@@ -27,6 +32,11 @@ struct contact_row {
     double gap;      /* at the origin, to the second side where it ends the step */
     double load;
     double thickness, friction;
+    double hard;           /* N: the area that it presses times the pressure that halves its gap;
+                            * 0: it has no law of compression */
+    double solid;          /* 1: the second side is an obstacle */
+    double held;           /* steps in a row, about, that did not open the gap, though it lacked;
+                            * CONTACT_ROW_PINCHED: it follows the law */
     double stiffness;      /* k */
     double slid;           /* the stretch of the spring at the end of the step before, uncut, and */
     double grows;          /* the factor by which it grew in that step; 0: as 1 */
@@ -45,6 +55,9 @@ struct contact_row {
 /* A contact with a load that opens by less beyond the thickness stays active in the step: what
  * rests would bounce else. */
 #define CONTACT_ROW_OPENS 0.1
+/* The same for a contact that follows the law: it springs open, and must not fall freely in the
+ * step in which it would come to rest. */
+#define CONTACT_ROW_SPRINGS 0.25
 /* Part of the lack of a gap to the thickness that a step makes up for. A mass resting on a contact
  * swings if this is more than k h^2 / mass, as in piles; it is so for less than m / 8 then. */
 #define CONTACT_ROW_RISES 0.125
@@ -66,30 +79,141 @@ struct contact_row {
 /* A new contact has this times the part of the thickness that is lacking: it stops an approach
  * within about half the thickness. */
 #define CONTACT_ROW_STOPS 2
+/* A gap was held in a step that opened it by less than this part of what the push aimed at. The
+ * second one is for a push beyond the law of compression: a belt that carries it gives, if only by
+ * its stretch. */
+#define CONTACT_ROW_GIVES   0.5
+#define CONTACT_ROW_CARRIES 0.02
+/* A contact counts such steps if its gap lacks a hundredth or it carries a hundredth of the
+ * pressure that halves it: fabrics are measured thick at a hundredth of that which compresses them
+ * (KES-C: 49 Pa, 4.9 kPa). So what rests on a floor counts none. */
+#define CONTACT_ROW_COUNTS 0.01
+/* With so many of them a contact has no room. What lands, or waits for others to rise, is held for
+ * fewer. */
+#define CONTACT_ROW_HOLDS   16
+#define CONTACT_ROW_PINCHED 64
+/* The part of the thickness that steps leave open: less of it presses no harder. */
+#define CONTACT_ROW_LEFT 0.1
 /* The stretch across the normal is expected to grow by this factor at most, or to shrink: what
  * begins to slide stretches the spring from 0. */
 #define CONTACT_ROW_GROWS 2
 
-/* A step begins, or is solved again, with a row that has the gap of its begin. stiffness: of rows
- * that are not firm; h: s, its length. */
-PHYS_INLINE void contact_row_begin(struct contact_row *row, double stiffness, double h)
+/* ---- Compression ---- */
+
+/* The push of cloth compressed to a gap. */
+PHYS_INLINE double contact_row_law(const struct contact_row *row, double gap)
+{
+    const double left = fmax(gap / row->thickness, CONTACT_ROW_LEFT);
+    return left < 1 ? row->hard * (1 / left - 1) : 0;
+}
+
+/* Its negative derivative by the gap. */
+PHYS_INLINE double contact_row_slope(const struct contact_row *row, double gap)
+{
+    const double left = fmax(gap / row->thickness, CONTACT_ROW_LEFT);
+    return row->hard / (row->thickness * left * left);
+}
+
+PHYS_INLINE bool contact_row_is_pinched(const struct contact_row *row)
+{
+    return row->held >= CONTACT_ROW_PINCHED;
+}
+
+/* The change of the load with which a step of a contact without room begins. It grows twofold a
+ * step, up to what ordinary contacts rise by. stiffness: of rows that are not firm. */
+PHYS_INLINE double contact_row_change(const struct contact_row *row, double stiffness)
+{
+    const double change = contact_row_law(row, row->start) - row->rested;
+    const double lacks = row->thickness - row->start;
+    const double grown = ldexp(CONTACT_ROW_LIFTS * stiffness, (int)row->held - CONTACT_ROW_HOLDS);
+    const double most = lacks * fmin(grown, CONTACT_ROW_RISES * contact_row_slope(row, row->start));
+    return contact_row_is_pinched(row) || fabs(change) < most ? change : copysign(most, change);
+}
+
+/* Begins a step of a contact without room. In a repeated solve one whose pair failed has its load
+ * from the solve before. */
+PHYS_INLINE void contact_row_compress(struct contact_row *row, double stiffness)
+{
+    const double firm = row->firm > 1 ? row->firm : 1;
+    const double grown = ldexp(stiffness, (int)row->held - CONTACT_ROW_HOLDS);
+    row->stiffness = fmax(stiffness * firm, fmin(contact_row_slope(row, row->gap), grown));
+    row->aim = row->gap;
+    if (row->pushed == 0 || !(firm > 1))
+        row->load = row->rested + contact_row_change(row, stiffness);
+    if (!contact_row_is_pinched(row))
+        row->energy = fmax(row->energy, 0.5 * row->load * row->load / stiffness);
+}
+
+/* The energy of a contact that followed the law, or does so from now on. It is at most that of a
+ * straight line, as the law bends upwards. One that leaves it has the energy of its load. */
+PHYS_INLINE double contact_row_stored(const struct contact_row *row, double gap, double load,
+                                      bool stays)
+{
+    return 0.5 *
+           (stays ? contact_row_law(row, gap) * (row->thickness - gap) : load * load / row->hold);
+}
+
+/* The count of held steps when one has ended with this gap and push. A contact leaves the law where
+ * it hardly lacks anything: what rests there then rests at the thickness. */
+PHYS_INLINE double contact_row_held(const struct contact_row *row, double gap, double push)
+{
+    const double lacked = row->thickness - row->start, law = contact_row_law(row, row->start);
+    const double lift =
+        fabs(row->aim - row->start) + fabs(row->load - row->rested) / row->stiffness;
+    const double aimed = fmax(lift, CONTACT_ROW_LIFTS * lacked);
+    if (!(row->hard > 0 && push > 0 && lacked > 0 && gap < row->thickness))
+        return 0;
+    if (contact_row_is_pinched(row) && !(gap < (1 - CONTACT_ROW_COUNTS) * row->thickness))
+        return 0;
+    if (row->held >= CONTACT_ROW_HOLDS)
+        return contact_row_change(row, row->hold) == law - row->rested ? CONTACT_ROW_PINCHED
+                                                                       : row->held + 1;
+    if (!(fmax(law, row->rested) > CONTACT_ROW_COUNTS * row->hard))
+        return 0;
+    const double gives = row->rested < law ? CONTACT_ROW_GIVES : CONTACT_ROW_CARRIES;
+    return gap - row->start < gives * aimed ? row->held + 1 : row->held / 2;
+}
+
+/* ---- A step ---- */
+
+/* The lift, m, that a contact of stiffness k is lent where its pair failed. An obstacle lends no
+ * more than the bound of the law: it does not give way, and in short steps would throw what has no
+ * room. */
+PHYS_INLINE double contact_row_yields(const struct contact_row *row, double lift, double k)
+{
+    return row->solid > 0 ? fmin(lift, contact_row_law(row, 0) / k) : lift;
+}
+
+/* Begins a step of a contact that may open. */
+PHYS_INLINE void contact_row_lift(struct contact_row *row, double stiffness)
 {
     const double firm = row->firm > 1 ? row->firm : 1, k = stiffness * firm;
     const double lacks = row->thickness - row->gap;
     const double rises = firm > 1 ? CONTACT_ROW_YIELDS : CONTACT_ROW_RISES;
     const double rise = lacks > 0 ? rises * lacks : lacks;
     const double most = (sqrt(2 * k * row->energy) - row->rested) / k;
-    const double softer = row->hold > 0 ? row->hold / stiffness : 1;
     const double lifts = lacks > 0 && row->rested > 0 && most * k > -CONTACT_ROW_EMPTY * row->rested
                              ? CONTACT_ROW_LIFTS * lacks
                              : most;
-    const double allowed = firm > 1 && lacks > 0 ? rise : (most > lifts ? most : lifts);
+    const double allowed =
+        firm > 1 && lacks > 0 ? contact_row_yields(row, rise, k) : (most > lifts ? most : lifts);
     const double push = row->rested + k * (rise < allowed ? rise : allowed);
     const double needs = push > 0 ? 0.5 * push * push / k : 0;
     row->energy = fmax(row->energy, needs);
-    row->start = row->gap;
     row->aim = row->gap + (rise < allowed ? rise : allowed);
     row->stiffness = k;
+}
+
+/* A step begins, or is solved again, with a row that has the gap of its begin. stiffness: of rows
+ * that are not firm; h: s, its length. */
+PHYS_INLINE void contact_row_begin(struct contact_row *row, double stiffness, double h)
+{
+    const double softer = row->hold > 0 ? row->hold / stiffness : 1;
+    row->start = row->gap;
+    if (row->held >= CONTACT_ROW_HOLDS && row->gap < row->thickness)
+        contact_row_compress(row, stiffness);
+    else
+        contact_row_lift(row, stiffness);
     row->hold = stiffness;
     row->slid *= row->span > 0 ? h / row->span : 1;
     row->span = h;
@@ -128,11 +252,12 @@ PHYS_INLINE double contact_row_across(const struct contact_row *row, const phys_
 }
 
 /* True if the contact is in the matrix when the step ends with this gap and push: it presses, or
- * has a load and hardly opens. If the step was solved before, that solve decides: an active set. */
+ * has a load and hardly opens. If the step was solved before, that solve decides:
+ * an active set. */
 PHYS_INLINE bool contact_row_acts(const struct contact_row *row, double gap, double push)
 {
-    const bool stays =
-        push > 0 || (row->load > 0 && gap < (1 + CONTACT_ROW_OPENS) * row->thickness);
+    const double opens = contact_row_is_pinched(row) ? CONTACT_ROW_SPRINGS : CONTACT_ROW_OPENS;
+    const bool stays = push > 0 || (row->load > 0 && gap < (1 + opens) * row->thickness);
     return row->pushed != 0 ? row->pushed > 0 : stays;
 }
 
@@ -231,6 +356,7 @@ PHYS_INLINE void contact_row_end(const struct contact_row *row, const phys_vec *
 {
     phys_vec stretch;
     contact_row_stretch(row, point, &stretch);
+    const double gap = contact_row_gap(row, point);
     const double push = contact_row_push(row, point), load = push > 0 ? push : 0;
     const double length = sqrt(phys_dot(&stretch, &stretch));
     const double most = row->friction * load, pull = row->hold * length;
@@ -241,7 +367,10 @@ PHYS_INLINE void contact_row_end(const struct contact_row *row, const phys_vec *
     next->slip = pull <= most ? stretch : most / pull * stretch;
     next->slip -= phys_dot(&next->normal, &next->slip) * next->normal;
     next->load = next->rested = load;
-    next->energy = contact_row_energy(row, point, load);
+    next->held = contact_row_held(row, gap, push);
+    next->energy = contact_row_is_pinched(row) || contact_row_is_pinched(next)
+                       ? contact_row_stored(row, gap, load, contact_row_is_pinched(next))
+                       : contact_row_energy(row, point, load);
     next->hold = row->hold;
     next->span = row->span;
     next->pushed = 0;

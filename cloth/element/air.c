@@ -39,22 +39,11 @@ static void air_warn(const struct element_sheet *sheet, char *text, size_t size)
                  model->h, max, sheet->cloth->name, speed * model->h, sheet->edge);
 }
 
-static void air_force(const struct element_list *list, const struct element_world *world,
-                      const struct phys_sight *sight, phys_vec *f)
-{
-    const struct model *model = world->model;
-    const double curve = model_curve_at(model, model->wind_curve, world->time);
-    struct phys_air air = model->air;
-    for (int i = 0; i < 3; i++)
-        air.wind[i] *= curve;
-    phys_air_force(&air, list->n, (const uint32_t(*)[4])list->corner, sight, f);
-}
-
 const struct element_kind element_air = {
     .name = "faces in the air",
     .part = ELEMENT_FACES,
     .corners = 4,
     .has = air_has,
     .warn = air_warn,
-    .force = air_force,
+    .force = phys_air_force,
 };

@@ -137,92 +137,7 @@ static void bend_make(const struct element_cloths *cloths, const struct element 
     }
 }
 
-static int bending_check(const struct element_cloths *cloths, uint32_t c, struct cloth_error *error)
-{
-    const struct model_cloth *cloth = cloths->model->cloths + c;
-    for (uint32_t e = 0; e < cloths->edges[c].n; e++) {
-        const struct mesh_edge *edge = cloths->edges[c].edge + e;
-        const uint32_t corner[4] = {edge->a, edge->b, edge->opposite[0], edge->opposite[1]};
-        struct phys_bend_rest rest;
-        if (element_is_hinge(edge) && bend_rest(cloths, c, edge->triangle, corner, &rest))
-            return model_fail(
-                cloth->mesh_place, error,
-                "mesh: a triangle at the edge between vertices %u and %u of cloth "
-                "'%.60s' (counted from 1) has no area at rest; an area above 0 is expected",
-                edge->a + 1, edge->b + 1, cloth->name);
-    }
-    return CLOTH_OK;
-}
-
-/* ---- Hinges: stiffness, damping and rest shape of each ---- */
-
-static bool hinges_has(const struct model *model, const struct model_cloth *cloth)
-{
-    const struct model_material *bends = element_bending_of(model, cloth);
-    return bends && (bends->bending == MODEL_HINGES || damps_bending(model, cloth));
-}
-
-static void hinges_pack(const struct element_cloths *cloths, const struct element *element,
-                        const struct element_list *list, uint32_t e)
-{
-    struct bend bend;
-    bend_make(cloths, element, MODEL_HINGES, &bend);
-    list->number[0][e] = bend.stiffness;
-    list->number[1][e] = bend.damping;
-    list->number[2][e] = bend.rest.s;
-}
-
-static struct phys_hinges hinges_of(const struct element_list *list)
-{
-    return (struct phys_hinges){list->n, (const uint32_t(*)[4])list->corner, list->number[0],
-                                list->number[1], list->number[2]};
-}
-
-static void hinges_force(const struct element_list *list, const struct element_world *world,
-                         const struct phys_sight *sight, phys_vec *f)
-{
-    const struct phys_hinges hinges = hinges_of(list);
-    (void)world;
-    phys_hinges_force(&hinges, sight, f);
-}
-
-static void hinges_matrix(const struct element_list *list, size_t from, size_t to,
-                          const struct phys_step *step, const struct phys_sight *sight,
-                          const uint32_t *at, struct phys_pair *pair)
-{
-    const struct phys_hinges hinges = hinges_of(list);
-    phys_hinges_matrix(&hinges, from, to, step, sight, at, pair);
-}
-
-static void hinges_stiffness(const struct element_list *list, int full, double scale,
-                             const struct phys_sight *sight, phys_vec *y)
-{
-    const struct phys_hinges hinges = hinges_of(list);
-    phys_hinges_stiffness(&hinges, full, scale, sight, y);
-}
-
-static double hinges_energy(const struct element_list *list, const struct phys_sight *sight)
-{
-    const struct phys_hinges hinges = hinges_of(list);
-    return phys_hinges_energy(&hinges, sight);
-}
-
-const struct element_kind element_hinges = {
-    .name = "hinges",
-    .part = ELEMENT_HINGES,
-    .corners = 4,
-    .pairs = PHYS_BEND_PAIRS,
-    .numbers = 3,
-    .has = hinges_has,
-    .check = bending_check,
-    .pack = hinges_pack,
-    .force = hinges_force,
-    .matrix = hinges_matrix,
-    .stiffness = hinges_stiffness,
-    .energy = hinges_energy,
-};
-
-/* ---- Quadratic energies: the weights of each ---- */
+/* ---- Checks ---- */
 
 static bool quadratic_has(const struct model *model, const struct model_cloth *cloth)
 {
@@ -230,19 +145,30 @@ static bool quadratic_has(const struct model *model, const struct model_cloth *c
     return bends && bends->bending == MODEL_QUADRATIC;
 }
 
-static int quadratic_check(const struct element_cloths *cloths, uint32_t c,
-                           struct cloth_error *error)
+/* True if s is not that of a flat edge. */
+static bool is_bent(double s)
 {
     const double flat = 1e-6;
+    return !(fabs(s) <= flat);
+}
+
+static int bending_check(const struct element_cloths *cloths, uint32_t c, struct cloth_error *error)
+{
     const struct model_cloth *cloth = cloths->model->cloths + c;
-    const int code = bending_check(cloths, c, error);
-    for (uint32_t e = 0; e < cloths->edges[c].n && !code; e++) {
+    const bool flat = quadratic_has(cloths->model, cloth);
+    for (uint32_t e = 0; e < cloths->edges[c].n; e++) {
         const struct mesh_edge *edge = cloths->edges[c].edge + e;
         const uint32_t corner[4] = {edge->a, edge->b, edge->opposite[0], edge->opposite[1]};
         struct phys_bend_rest rest;
-        if (!element_is_hinge(edge) || bend_rest(cloths, c, edge->triangle, corner, &rest))
+        if (!element_is_hinge(edge))
             continue;
-        if (!(fabs(rest.s) <= flat))
+        if (bend_rest(cloths, c, edge->triangle, corner, &rest))
+            return model_fail(
+                cloth->mesh_place, error,
+                "mesh: a triangle at the edge between vertices %u and %u of cloth "
+                "'%.60s' (counted from 1) has no area at rest; an area above 0 is expected",
+                edge->a + 1, edge->b + 1, cloth->name);
+        if (flat && is_bent(rest.s))
             return model_fail(
                 cloth->mesh_place, error,
                 "mesh: cloth '%.60s' is not flat at the edge between vertices %u and %u "
@@ -251,12 +177,11 @@ static int quadratic_check(const struct element_cloths *cloths, uint32_t c,
                 cloth->name, edge->a + 1, edge->b + 1,
                 element_bending_of(cloths->model, cloth)->name);
     }
-    return code;
+    return CLOTH_OK;
 }
 
 int element_seams_check(const struct element_cloths *cloths, struct cloth_error *error)
 {
-    const double flat = 1e-6;
     const struct model *model = cloths->model;
     int code = CLOTH_OK;
     for (uint32_t s = 0; s < cloths->n_seams && !code; s++) {
@@ -265,8 +190,7 @@ int element_seams_check(const struct element_cloths *cloths, struct cloth_error 
         struct phys_bend_rest rest;
         const bool failed = seam_rest(cloths, cloths->seam + s, &rest);
         const bool bent = quadratic_has(model, cloth) &&
-                          quadratic_has(model, model->cloths + two->cloth) &&
-                          !(fabs(rest.s) <= flat);
+                          quadratic_has(model, model->cloths + two->cloth) && is_bent(rest.s);
         if (failed || bent)
             code = model_fail(cloth->mesh_place, error,
                               "mesh: where welds bring cloth '%.60s' to cloth '%.60s', at the edge "
@@ -280,50 +204,48 @@ int element_seams_check(const struct element_cloths *cloths, struct cloth_error 
     return code;
 }
 
+/* ---- Hinges: stiffness, damping and rest shape of each ---- */
+
+static bool hinges_has(const struct model *model, const struct model_cloth *cloth)
+{
+    const struct model_material *bends = element_bending_of(model, cloth);
+    return bends && (bends->bending == MODEL_HINGES || damps_bending(model, cloth));
+}
+
+static void hinges_pack(const struct element_cloths *cloths, const struct element *element,
+                        const struct phys_elements *list, uint32_t e)
+{
+    struct bend bend;
+    bend_make(cloths, element, MODEL_HINGES, &bend);
+    list->number[PHYS_HINGE_STIFFNESS][e] = bend.stiffness;
+    list->number[PHYS_HINGE_DAMPING][e] = bend.damping;
+    list->number[PHYS_HINGE_REST][e] = bend.rest.s;
+}
+
+const struct element_kind element_hinges = {
+    .name = "hinges",
+    .part = ELEMENT_HINGES,
+    .corners = 4,
+    .pairs = PHYS_BEND_PAIRS,
+    .numbers = 3,
+    .has = hinges_has,
+    .check = bending_check,
+    .pack = hinges_pack,
+    .force = phys_hinges_force,
+    .matrix = phys_hinges_matrix,
+    .stiffness = phys_hinges_stiffness,
+    .energy = phys_hinges_energy,
+};
+
+/* ---- Quadratic energies: the weights of each ---- */
+
 static void quadratic_pack(const struct element_cloths *cloths, const struct element *element,
-                           const struct element_list *list, uint32_t e)
+                           const struct phys_elements *list, uint32_t e)
 {
     struct bend bend;
     bend_make(cloths, element, MODEL_QUADRATIC, &bend);
     for (int i = 0; i < 4; i++)
         list->vector[e][i] = sqrt(bend.stiffness) * bend.rest.weight[i];
-}
-
-static struct phys_quadratic quadratic_of(const struct element_list *list)
-{
-    return (struct phys_quadratic){list->n, (const uint32_t(*)[4])list->corner, list->vector};
-}
-
-static void quadratic_force(const struct element_list *list, const struct element_world *world,
-                            const struct phys_sight *sight, phys_vec *f)
-{
-    const struct phys_quadratic quadratic = quadratic_of(list);
-    (void)world;
-    phys_quadratic_force(&quadratic, sight, f);
-}
-
-static void quadratic_matrix(const struct element_list *list, size_t from, size_t to,
-                             const struct phys_step *step, const struct phys_sight *sight,
-                             const uint32_t *at, struct phys_pair *pair)
-{
-    const struct phys_quadratic quadratic = quadratic_of(list);
-    (void)sight;
-    (void)at; /* blocks are symmetric */
-    phys_quadratic_matrix(&quadratic, from, to, step->h, pair);
-}
-
-static void quadratic_stiffness(const struct element_list *list, int full, double scale,
-                                const struct phys_sight *sight, phys_vec *y)
-{
-    const struct phys_quadratic quadratic = quadratic_of(list);
-    (void)full;
-    phys_quadratic_stiffness(&quadratic, scale, sight, y);
-}
-
-static double quadratic_energy(const struct element_list *list, const struct phys_sight *sight)
-{
-    const struct phys_quadratic quadratic = quadratic_of(list);
-    return phys_quadratic_energy(&quadratic, sight);
 }
 
 const struct element_kind element_quadratic = {
@@ -333,10 +255,10 @@ const struct element_kind element_quadratic = {
     .pairs = PHYS_BEND_PAIRS,
     .vectors = 1,
     .has = quadratic_has,
-    .check = quadratic_check,
+    .check = bending_check,
     .pack = quadratic_pack,
-    .force = quadratic_force,
-    .matrix = quadratic_matrix,
-    .stiffness = quadratic_stiffness,
-    .energy = quadratic_energy,
+    .force = phys_quadratic_force,
+    .matrix = phys_quadratic_matrix,
+    .stiffness = phys_quadratic_stiffness,
+    .energy = phys_quadratic_energy,
 };

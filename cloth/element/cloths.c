@@ -182,12 +182,12 @@ void element_each(const struct element_cloths *cloths,
     const struct model *model = cloths->model;
     for (uint32_t kind = 0; kind < ELEMENT_KINDS; kind++) {
         struct walk walk = {.visit = visit, .to = to, .cloths = cloths};
-        for (uint32_t c = 0, first = 0; c < model->n_cloths; c++) {
+        for (uint32_t c = 0; c < model->n_cloths; c++) {
             walk.cloth = model->cloths + c;
-            walk.element = (struct element){.cloth = c, .first = first, .kind = kind};
+            walk.element =
+                (struct element){.cloth = c, .first = model_first(model, c), .kind = kind};
             if (element_kinds[kind]->has(model, walk.cloth))
                 walks[element_kinds[kind]->part](&walk);
-            first += walk.cloth->mesh.n_vertices;
         }
         walk.element.kind = kind;
         walk_seams(&walk);

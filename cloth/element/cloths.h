@@ -63,10 +63,10 @@ void element_each(const struct element_cloths *cloths,
 /* The list of one element by itself, whose corners are the first rows. It points into itself.
  * material: of its kind, as element_materials fills it; not owned. */
 struct element_one {
-    struct element_list list;
+    struct phys_elements list;
     uint32_t corner[1][4];
     phys_vec vector;
-    double number[ELEMENT_NUMBERS];
+    double number[PHYS_NUMBERS];
 };
 void element_alone(const struct element_cloths *cloths, const struct element *element,
                    void *material, struct element_one *one);

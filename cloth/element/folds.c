@@ -15,13 +15,9 @@ struct element_fold {
     const struct model_fold *of; /* where the scene says it */
 };
 
-static int compare_folds(const void *va, const void *vb)
+static int compare_folds(const void *a, const void *b)
 {
-    const struct element_fold *a = va, *b = vb;
-    int order = cloth_compare_u32(a->cloth, b->cloth);
-    if (!order)
-        order = cloth_compare_u32(a->a, b->a);
-    return order ? order : cloth_compare_u32(a->b, b->b);
+    return cloth_compare_numbers(a, b, 3);
 }
 
 static const struct element_fold *folds_find(const struct element_cloths *cloths, uint32_t cloth,

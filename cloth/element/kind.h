@@ -21,25 +21,8 @@ enum element_part {
 };
 
 enum {
-    ELEMENT_CORNERS = 4, /* an element has at most; */
-    ELEMENT_PAIRS = 6,   /* of its corners; */
-    ELEMENT_NUMBERS = 3  /* numbers in its list */
-};
-
-/* The elements of one kind in a block, all that have a corner there, in the order of the mesh. */
-struct element_list {
-    uint32_t n;
-    uint32_t (*corner)[4]; /* n: rows, then ghosts; spare ones: see pack */
-    uint32_t *at;          /* n x pairs: the entry of each, as solve_assemble_pairs wants it */
-    phys_vec *vector;      /* n, or none */
-    double *number[ELEMENT_NUMBERS]; /* n each; those of the kind come first */
-    void *material;                  /* the elements' data of a material; or none */
-};
-
-/* The time and the world of forces. The model has no cloths and no materials. */
-struct element_world {
-    const struct model *model;
-    double time; /* s */
+    ELEMENT_CORNERS = 4, /* an element has at most, */
+    ELEMENT_PAIRS = 6    /* and so many pairs of them */
 };
 
 /* A cloth, to limit steps. */
@@ -53,9 +36,9 @@ struct element_sheet {
 struct element;
 struct element_cloths;
 
-/* A descriptor. Functions are local and pure, except for their sums and outputs. Functions on lists
- * work on elements in order, and an element's numbers depend on its corners alone
- * (cloth/physics/element.h). A part that a kind lacks is NULL or 0;
+/* A descriptor. Functions are local and pure, except for their sums and outputs; those on lists are
+ * of cloth/physics, as that says (struct phys_elements). A list of a block has all elements that
+ * have a corner there, in the order of the mesh. A part that a kind lacks is NULL or 0;
  * tests/cloth/element/test_kinds.c says which go together. */
 struct element_kind {
     const char *name; /* in the plural, as sentences have it */
@@ -79,7 +62,7 @@ struct element_kind {
     /* For kinds with vectors or numbers: writes those of entry e of a list, whose corners are
      * there. Corners that it lacks are PHYS_NO_CORNER until it uses them. */
     void (*pack)(const struct element_cloths *cloths, const struct element *element,
-                 const struct element_list *list, uint32_t e);
+                 const struct phys_elements *list, uint32_t e);
     /* For kinds with material_bytes: writes the elements' data of a material of any kind. */
     void (*material)(const struct model_material *material, void *to);
     /* For kinds without pairs: writes why steps of the model are too long for their force on a
@@ -88,31 +71,31 @@ struct element_kind {
 
     /* ---- On the lists of blocks, in a step ---- */
 
-    /* Adds the forces (N) to f, the block's rows. */
-    void (*force)(const struct element_list *list, const struct element_world *world,
+    /* Adds the forces (N) to f, the block's rows, in the air as it blows then. */
+    void (*force)(const struct phys_elements *list, const struct phys_air *air,
                   const struct phys_sight *sight, phys_vec *f);
     /* All below are of kinds with pairs. The pairs of elements from .. to - 1; at, of each of
      * these: with bit 0 set where N' is wanted in place of N; NULL: nowhere. */
-    void (*matrix)(const struct element_list *list, size_t from, size_t to,
+    void (*matrix)(const struct phys_elements *list, size_t from, size_t to,
                    const struct phys_step *step, const struct phys_sight *sight, const uint32_t *at,
                    struct phys_pair *pair);
     /* Optional: the same, and the right side of that step: b += push f - h^2 K v, with push h (s),
      * or 0 where the forces are in b. */
-    void (*system)(const struct element_list *list, size_t from, size_t to,
+    void (*system)(const struct phys_elements *list, size_t from, size_t to,
                    const struct phys_step *step, double push, const struct phys_sight *sight,
                    const uint32_t *at, phys_vec *b, struct phys_pair *pair);
     /* For kinds without system: y -= scale K v. */
-    void (*stiffness)(const struct element_list *list, int full, double scale,
+    void (*stiffness)(const struct phys_elements *list, int full, double scale,
                       const struct phys_sight *sight, phys_vec *y);
     /* Energy (J) of the elements that count here: those whose corner 0 is one of the block's rows.
      */
-    double (*energy)(const struct element_list *list, const struct phys_sight *sight);
+    double (*energy)(const struct phys_elements *list, const struct phys_sight *sight);
     /* Optional: adds the torques (N m) that the forces of elements that count here leave. */
-    void (*torque)(const struct element_list *list, const struct phys_sight *sight,
+    void (*torque)(const struct phys_elements *list, const struct phys_sight *sight,
                    double torque[3]);
     /* Optional: as matrix, but of elements at their stiffest, where that is not at the start: for
      * the longest step. */
-    void (*stiffest)(const struct element_list *list, size_t from, size_t to,
+    void (*stiffest)(const struct phys_elements *list, size_t from, size_t to,
                      const struct phys_step *step, const struct phys_sight *sight,
                      const uint32_t *at, struct phys_pair *pair);
 };

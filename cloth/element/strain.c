@@ -9,22 +9,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-int element_strains_room(struct element_strains *strains, uint32_t n_materials,
-                         struct cloth_error *error)
+int element_strains_room(struct element_strains *strains, struct cloth_error *error)
 {
-    const size_t n = strains->n_triangles, vector = sizeof(phys_vec);
+    const size_t vector = sizeof(phys_vec), n = strains->n_triangles;
+    const size_t membranes = ((size_t)strains->n_materials + 1) * sizeof *strains->membrane;
     strains->corner = cloth_alloc(n, sizeof *strains->corner, error);
     strains->gradient = aligned_alloc(vector, (n + 1) * vector);
     strains->area = cloth_alloc(n, sizeof *strains->area, error);
     strains->edge = cloth_alloc(strains->n_edges, sizeof *strains->edge, error);
     strains->length = cloth_alloc(strains->n_edges, sizeof *strains->length, error);
-    strains->membrane =
-        aligned_alloc(vector, ((size_t)n_materials + 1) * sizeof *strains->membrane);
-    strains->has_stress = cloth_alloc(n_materials, sizeof *strains->has_stress, error);
+    strains->membrane = aligned_alloc(vector, membranes);
+    strains->has_stress = cloth_alloc(strains->n_materials, sizeof *strains->has_stress, error);
     strains->x = aligned_alloc(vector, ((size_t)strains->n_vertices + 1) * vector);
-    if (!strains->gradient || !strains->membrane || !strains->x)
-        cloth_fail(error, CLOTH_E_MEMORY, "out of memory for the strains of %zu triangles", n);
-    return error->code;
+    if (strains->membrane)
+        memset(strains->membrane, 0, membranes);
+    if (strains->corner && strains->gradient && strains->area && strains->edge && strains->length &&
+        strains->membrane && strains->has_stress && strains->x)
+        return CLOTH_OK;
+    return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for the strains of %zu triangles", n);
 }
 
 static void add_triangle(struct element_strains *strains, const struct element_cloths *cloths,
@@ -81,7 +83,8 @@ int element_strains_make(struct element_strains *strains, const struct model *mo
         strains->n_triangles += mesh->n_triangles;
         strains->n_edges += mesh->n_bare_edges;
     }
-    int code = element_strains_room(strains, model->n_materials, error);
+    strains->n_materials = model->n_materials;
+    int code = element_strains_room(strains, error);
     if (code)
         return code;
     code = element_cloths_make(&cloths, model, error);
@@ -122,11 +125,11 @@ static void strain_find_edges(const struct element_strains *strains, double *str
 void element_strains_find(const struct element_strains *strains, const double *position,
                           double *strain, double (*stress)[3])
 {
-    const struct phys_triangles triangles = {.n = strains->n_triangles,
-                                             .corner = (const uint32_t(*)[4])strains->corner,
-                                             .gradient = strains->gradient,
-                                             .area = strains->area,
-                                             .membrane = strains->membrane};
+    const struct phys_elements triangles = {.n = strains->n_triangles,
+                                            .corner = strains->corner,
+                                            .vector = strains->gradient,
+                                            .number = {[PHYS_TRIANGLE_AREA] = strains->area},
+                                            .material = strains->membrane};
     const struct phys_sight sight = {.n = strains->n_vertices, .x = strains->x};
     for (size_t v = 0; v < strains->n_vertices; v++)
         strains->x[v] = (phys_vec){position[3 * v], position[3 * v + 1], position[3 * v + 2], 0};

@@ -9,10 +9,10 @@
  * meshes, then in the same order the edges without triangles. Vertices are numbered cloth after
  * cloth, too. */
 struct element_strains {
-    uint32_t n_vertices, n_triangles, n_edges;
+    uint32_t n_vertices, n_triangles, n_edges, n_materials;
     uint32_t (*corner)[4]; /* n_triangles: vertices, then the number of the material */
     phys_vec *gradient;    /* n_triangles, */
-    double *area;          /* and as struct phys_triangles has them; 0: of no area at rest */
+    double *area;          /* and as cloth/physics/triangle.h has them; 0: of no area at rest */
     uint32_t (*edge)[2];   /* n_edges: vertices */
     double *length;        /* n_edges: at rest, m */
     struct phys_membrane *membrane; /* of each material; of springs all 0 */
@@ -20,12 +20,12 @@ struct element_strains {
     phys_vec *x;                    /* n_vertices: room */
 };
 
+/* Room for what is counted, for shapes that come from elsewhere; membranes are all 0. In any case
+ * element_strains_free follows. Error: CLOTH_E_MEMORY. Local. */
+int element_strains_room(struct element_strains *strains, struct cloth_error *error);
 /* Needs the meshes. In any case element_strains_free follows. Error: CLOTH_E_MEMORY, and as of
  * element_cloths_make. Local. */
 int element_strains_make(struct element_strains *strains, const struct model *model,
-                         struct cloth_error *error);
-/* Room alone, for what *strains counts; otherwise as above. */
-int element_strains_room(struct element_strains *strains, uint32_t n_materials,
                          struct cloth_error *error);
 void element_strains_free(struct element_strains *strains);
 

@@ -34,11 +34,11 @@ static int triangles_check(const struct element_cloths *cloths, uint32_t c,
 }
 
 static void triangles_pack(const struct element_cloths *cloths, const struct element *element,
-                           const struct element_list *list, uint32_t e)
+                           const struct phys_elements *list, uint32_t e)
 {
     double gradient[4];
     triangle_rest(cloths, element->cloth, element->triangle[0], element->corner, gradient,
-                  list->number[0] + e);
+                  list->number[PHYS_TRIANGLE_AREA] + e);
     list->vector[e] = (phys_vec){gradient[0], gradient[1], gradient[2], gradient[3]};
     list->corner[e][3] = element_material(cloths, element, 3);
 }
@@ -54,50 +54,6 @@ static void triangles_material(const struct model_material *material, void *to)
     membrane->uncorrected = material->uncorrected;
 }
 
-static struct phys_triangles triangles_of(const struct element_list *list)
-{
-    return (struct phys_triangles){list->n, (const uint32_t(*)[4])list->corner, list->vector,
-                                   list->number[0], list->material};
-}
-
-static void triangles_force(const struct element_list *list, const struct element_world *world,
-                            const struct phys_sight *sight, phys_vec *f)
-{
-    const struct phys_triangles triangles = triangles_of(list);
-    (void)world;
-    phys_triangles_force(&triangles, sight, f);
-}
-
-static void triangles_matrix(const struct element_list *list, size_t from, size_t to,
-                             const struct phys_step *step, const struct phys_sight *sight,
-                             const uint32_t *at, struct phys_pair *pair)
-{
-    const struct phys_triangles triangles = triangles_of(list);
-    phys_triangles_matrix(&triangles, from, to, step, sight, at, pair);
-}
-
-static void triangles_system(const struct element_list *list, size_t from, size_t to,
-                             const struct phys_step *step, double push,
-                             const struct phys_sight *sight, const uint32_t *at, phys_vec *b,
-                             struct phys_pair *pair)
-{
-    const struct phys_triangles triangles = triangles_of(list);
-    phys_triangles_system(&triangles, from, to, step, push, sight, at, b, pair);
-}
-
-static double triangles_energy(const struct element_list *list, const struct phys_sight *sight)
-{
-    const struct phys_triangles triangles = triangles_of(list);
-    return phys_triangles_energy(&triangles, sight);
-}
-
-static void triangles_torque(const struct element_list *list, const struct phys_sight *sight,
-                             double torque[3])
-{
-    const struct phys_triangles triangles = triangles_of(list);
-    phys_triangles_torque(&triangles, sight, torque);
-}
-
 const struct element_kind element_triangles = {
     .name = "triangles",
     .part = ELEMENT_TRIANGLES,
@@ -110,9 +66,9 @@ const struct element_kind element_triangles = {
     .check = triangles_check,
     .pack = triangles_pack,
     .material = triangles_material,
-    .force = triangles_force,
-    .matrix = triangles_matrix,
-    .system = triangles_system,
-    .energy = triangles_energy,
-    .torque = triangles_torque,
+    .force = phys_triangles_force,
+    .matrix = phys_triangles_matrix,
+    .system = phys_triangles_system,
+    .energy = phys_triangles_energy,
+    .torque = phys_triangles_torque,
 };

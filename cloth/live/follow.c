@@ -3,8 +3,10 @@
  * monitor tells of both. */
 #include "cloth/live/live.h"
 #include "cloth/live/scene.h"
+#include "cloth/live/socket.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/thread.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -12,14 +14,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <zmq.h>
 
 enum { PATH = 300, STATE = 500 };
 static const double END_OLD = 2; /* s: a run that ends is gone by then */
 
 struct live_follower {
-    void *zmq, *socket, *monitor;
+    struct live_socket link;
     char host[PATH];
     bool connected, asked; /* asked: an answer is due */
     double ended;          /* s: when the run said so; 0: it has not */
@@ -32,64 +32,24 @@ struct live_follower {
     char state[STATE];
 };
 
-static double live_follow_now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 /* ---- Opening ---- */
 
-static int live_follow_fail_zmq(const char *what, struct cloth_error *error)
-{
-    return cloth_fail(error, CLOTH_E_LIBRARY, "--connect: ZeroMQ cannot %s: %s", what,
-                      zmq_strerror(errno));
-}
-
-/* ZMQ_IMMEDIATE would drop messages received before a connection ended, such as the last frame. By
- * ZMQ_IPV6 `localhost' would be ::1 alone, where a run does not listen. */
-static int live_follow_set_options(void *socket, const char *host, struct cloth_error *error)
-{
-    const int none = 0, yes = 1, again = 250, six = *host == '[';
-    const int64_t most = LIVE_MAX_BYTES;
-    if (zmq_setsockopt(socket, ZMQ_LINGER, &none, sizeof none) ||
-        zmq_setsockopt(socket, ZMQ_RECONNECT_IVL, &again, sizeof again) ||
-        zmq_setsockopt(socket, ZMQ_MAXMSGSIZE, &most, sizeof most) ||
-        zmq_setsockopt(socket, ZMQ_IPV6, &six, sizeof six) ||
-        zmq_setsockopt(socket, ZMQ_TCP_KEEPALIVE, &yes, sizeof yes))
-        return live_follow_fail_zmq("set up its socket", error);
-    return 0;
-}
-
-static int watch_connection(struct live_follower *follower, struct cloth_error *error)
-{
-    static const char endpoint[] = "inproc://connection";
-    const int none = 0;
-    if (zmq_socket_monitor(follower->socket, endpoint,
-                           ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED))
-        return live_follow_fail_zmq("watch its socket", error);
-    follower->monitor = zmq_socket(follower->zmq, ZMQ_PAIR);
-    if (!follower->monitor || zmq_setsockopt(follower->monitor, ZMQ_LINGER, &none, sizeof none) ||
-        zmq_connect(follower->monitor, endpoint))
-        return live_follow_fail_zmq("watch its socket", error);
-    return 0;
-}
-
+/* ZMQ_IMMEDIATE would drop messages received before a connection ended, such as the last frame. */
 static int live_follow_start(struct live_follower *follower, struct cloth_error *error)
 {
+    const int again = 250; /* ms between two attempts to connect */
     char endpoint[PATH + 10];
+    struct live_socket *link = &follower->link;
     snprintf(endpoint, sizeof endpoint, "tcp://%s", follower->host);
-    follower->zmq = zmq_ctx_new();
-    follower->socket = follower->zmq ? zmq_socket(follower->zmq, ZMQ_DEALER) : NULL;
-    if (!follower->socket)
-        return live_follow_fail_zmq("start", error);
-    int code = live_follow_set_options(follower->socket, follower->host, error);
-    code = code ? code : watch_connection(follower, error);
-    if (!code && zmq_connect(follower->socket, endpoint))
-        code = cloth_fail(error, CLOTH_E_INPUT, "--connect %s: %s", follower->host,
-                          zmq_strerror(errno));
-    return code;
+    if (live_socket_open(link, "--connect", ZMQ_DEALER, follower->host, LIVE_MAX_BYTES,
+                         ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED, error))
+        return CLOTH_E_LIBRARY;
+    if (zmq_setsockopt(link->socket, ZMQ_RECONNECT_IVL, &again, sizeof again))
+        return live_socket_fail(link, "set up its socket", error);
+    return zmq_connect(link->socket, endpoint)
+               ? cloth_fail(error, CLOTH_E_INPUT, "--connect %s: %s", follower->host,
+                            zmq_strerror(errno))
+               : 0;
 }
 
 int live_follow_open(struct live_follower **follower, const char *host, struct cloth_error *error)
@@ -103,22 +63,13 @@ int live_follow_open(struct live_follower **follower, const char *host, struct c
 
 /* ---- What comes ---- */
 
-/* The monitor's events: a number, and a part with the address, which is not needed. */
 static void take_events(struct live_follower *follower)
 {
-    zmq_msg_t part;
-    zmq_msg_init(&part);
-    while (zmq_msg_recv(&part, follower->monitor, ZMQ_DONTWAIT) >= 0) {
-        uint16_t event = 0;
-        if (zmq_msg_size(&part) >= sizeof event)
-            memcpy(&event, zmq_msg_data(&part), sizeof event);
+    for (uint16_t event; live_socket_event(&follower->link, &event);) {
         follower->connected = event == ZMQ_EVENT_HANDSHAKE_SUCCEEDED;
         follower->asked = false;
         follower->ended = follower->connected ? 0 : follower->ended;
-        while (zmq_msg_more(&part) && zmq_msg_recv(&part, follower->monitor, 0) >= 0)
-            continue;
     }
-    zmq_msg_close(&part);
 }
 
 /* A run that has ended is not asked, unless the end is older than END_OLD: then it was that of an
@@ -126,7 +77,7 @@ static void take_events(struct live_follower *follower)
 static bool may_ask(const struct live_follower *follower)
 {
     return follower->connected && !follower->asked &&
-           (!(follower->ended > 0) || live_follow_now() - follower->ended > END_OLD);
+           (!(follower->ended > 0) || cloth_seconds() - follower->ended > END_OLD);
 }
 
 static void ask(struct live_follower *follower)
@@ -138,7 +89,7 @@ static void ask(struct live_follower *follower)
                                          .number = follower->next};
     unsigned char bytes[LIVE_REQUEST_BYTES];
     const size_t n = live_message_write(bytes, &request);
-    follower->asked = zmq_send(follower->socket, bytes, n, ZMQ_DONTWAIT) >= 0;
+    follower->asked = zmq_send(follower->link.socket, bytes, n, ZMQ_DONTWAIT) >= 0;
 }
 
 static int take_scene(struct live_follower *follower, const struct live_message *scene,
@@ -185,7 +136,7 @@ static int take_message(struct live_follower *follower, zmq_msg_t *message, enum
     else if (!code && said.kind == LIVE_FRAME)
         code = live_follow_take_frame(follower, &said, news, &inner);
     else if (!code && said.kind == LIVE_END)
-        follower->ended = live_follow_now();
+        follower->ended = cloth_seconds();
     return code ? cloth_fail(error, code, "--connect %s: %s", follower->host, inner.text) : 0;
 }
 
@@ -197,7 +148,7 @@ static int take_messages(struct live_follower *follower, enum live_news *news,
     int code = 0;
     zmq_msg_init(&message);
     while (!code && *news == LIVE_NOTHING &&
-           zmq_msg_recv(&message, follower->socket, ZMQ_DONTWAIT) >= 0)
+           zmq_msg_recv(&message, follower->link.socket, ZMQ_DONTWAIT) >= 0)
         code = take_message(follower, &message, news, error);
     zmq_msg_close(&message);
     return code;
@@ -206,21 +157,21 @@ static int take_messages(struct live_follower *follower, enum live_news *news,
 int live_follow(struct live_follower *follower, double seconds, enum live_news *news,
                 struct cloth_error *error)
 {
-    const double end = live_follow_now() + seconds;
+    const double end = cloth_seconds() + seconds;
     int code = 0;
     for (*news = LIVE_NOTHING; !code && *news == LIVE_NOTHING;) {
-        zmq_pollitem_t item[2] = {{.socket = follower->socket, .events = ZMQ_POLLIN},
-                                  {.socket = follower->monitor, .events = ZMQ_POLLIN}};
+        zmq_pollitem_t item[2] = {{.socket = follower->link.socket, .events = ZMQ_POLLIN},
+                                  {.socket = follower->link.monitor, .events = ZMQ_POLLIN}};
         code = take_messages(follower, news, error); /* messages received precede the events */
         take_events(follower);
-        const double left = end - live_follow_now();
+        const double left = end - cloth_seconds();
         if (!code && may_ask(follower) && *news == LIVE_NOTHING)
             ask(follower);
         if (!(left > 0) || code || *news != LIVE_NOTHING)
             break;
         const double nap = follower->ended > 0 ? fmin(left, END_OLD) : left;
         if (zmq_poll(item, 2, (long)ceil(1e3 * nap)) < 0 && errno != EINTR)
-            code = live_follow_fail_zmq("wait", error);
+            code = live_socket_fail(&follower->link, "wait", error);
     }
     return code;
 }
@@ -268,12 +219,7 @@ void live_follow_close(struct live_follower **follower)
     *follower = NULL;
     if (!gone)
         return;
-    if (gone->socket)
-        zmq_close(gone->socket);
-    if (gone->monitor)
-        zmq_close(gone->monitor);
-    if (gone->zmq)
-        zmq_ctx_term(gone->zmq);
+    live_socket_close(&gone->link);
     output_cache_close(&gone->cache);
     if (gone->is_coming)
         output_cache_close(&gone->coming);

@@ -39,7 +39,8 @@ const char *live_publish_address(const struct live_publisher *publisher);
  * first frame; later with the same meshes only. Error: CLOTH_E_MEMORY. */
 int live_publish_scene(struct live_publisher *publisher, const struct output_setup *setup,
                        double begin, struct cloth_error *error);
-/* Replaces the newest frame; a frame with a vertex that is not finite is left out. position:
+/* Replaces the newest frame; one with a vertex that is not finite, or without memory for it, is
+ * left out. position:
  * n_vertices x 3, m, is copied. */
 void live_publish_frame(struct live_publisher *publisher, uint64_t frame, double time,
                         const double *position);

@@ -2,9 +2,9 @@
  * they are read. */
 #include "cloth/live/message.h"
 
-#include <float.h>
+#include "cloth/base/bytes.h"
+
 #include <math.h>
-#include <string.h>
 #include <xxhash.h>
 
 enum {
@@ -21,61 +21,6 @@ enum {
 };
 static const char MAGIC[8] = {'D', 'U', 'I', 'T', 'E', 'L', 'V', '\n'};
 
-/* ---- Numbers ---- */
-
-void live_put_u32(unsigned char *bytes, uint32_t value)
-{
-    for (int i = 0; i < 4; i++)
-        bytes[i] = (unsigned char)(value >> (8 * i) & 0xff);
-}
-
-void live_put_u64(unsigned char *bytes, uint64_t value)
-{
-    live_put_u32(bytes, (uint32_t)value);
-    live_put_u32(bytes + 4, (uint32_t)(value >> 32));
-}
-
-void live_put_double(unsigned char *bytes, double value)
-{
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    live_put_u64(bytes, bits);
-}
-
-void live_put_float(unsigned char *bytes, float value)
-{
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    live_put_u32(bytes, bits);
-}
-
-uint32_t live_get_u32(const unsigned char *bytes)
-{
-    return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
-           (uint32_t)bytes[3] << 24;
-}
-
-static uint64_t get_u64(const unsigned char *bytes)
-{
-    return live_get_u32(bytes) | (uint64_t)live_get_u32(bytes + 4) << 32;
-}
-
-float live_get_float(const unsigned char *bytes)
-{
-    const uint32_t bits = live_get_u32(bytes);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-double live_get_double(const unsigned char *bytes)
-{
-    const uint64_t bits = get_u64(bytes);
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
 /* ---- Reading ---- */
 
 static int message_fail(struct cloth_error *error, const char *what)
@@ -88,19 +33,19 @@ static int message_read_header(const unsigned char *bytes, size_t n, struct live
 {
     if (n < LIVE_HEADER || memcmp(bytes, MAGIC, sizeof MAGIC) != 0)
         return message_fail(error, "this is no message of a live view");
-    message->version = live_get_u32(bytes + VERSION_AT);
+    message->version = cloth_get_u32(bytes + VERSION_AT);
     if (message->version != LIVE_VERSION)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "version %u of the live view is spoken there, version %d here: take "
                           "duite-cloth and duite-view from the same release",
                           message->version, LIVE_VERSION);
-    const uint32_t kind = live_get_u32(bytes + KIND_AT);
+    const uint32_t kind = cloth_get_u32(bytes + KIND_AT);
     if (kind < LIVE_REQUEST || kind > LIVE_END)
         return message_fail(error, "a message of the live view has a kind that there is not");
     message->kind = (enum live_kind)kind;
-    if (get_u64(bytes + SIZE_AT) != n - LIVE_HEADER)
+    if (cloth_get_u64(bytes + SIZE_AT) != n - LIVE_HEADER)
         return message_fail(error, "a message of the live view is cut off, or too long");
-    if (XXH64(bytes + LIVE_HEADER, n - LIVE_HEADER, kind) != get_u64(bytes + HASH_AT))
+    if (XXH64(bytes + LIVE_HEADER, n - LIVE_HEADER, kind) != cloth_get_u64(bytes + HASH_AT))
         return message_fail(error,
                             "a message of the live view is damaged: its hash is another one");
     return 0;
@@ -112,8 +57,8 @@ static bool has_bodies(const unsigned char *bytes, uint64_t n, uint64_t at, uint
     for (uint32_t i = 0; i < n_bodies; i++) {
         if (n - at < FIXED_BODY)
             return false;
-        const uint64_t size = FIXED_BODY + UINT64_C(24) * live_get_u32(bytes + at) +
-                              UINT64_C(12) * live_get_u32(bytes + at + 4);
+        const uint64_t size = FIXED_BODY + UINT64_C(24) * cloth_get_u32(bytes + at) +
+                              UINT64_C(12) * cloth_get_u32(bytes + at + 4);
         if (n - at < size)
             return false;
         at += size;
@@ -126,10 +71,10 @@ static int message_read_scene(const unsigned char *bytes, size_t n, struct live_
 {
     if (n < FIXED_SCENE)
         return message_fail(error, "a scene of the live view is too short");
-    scene->n_vertices = live_get_u32(bytes + OWN_AT);
-    scene->n_edges = live_get_u32(bytes + OWN_AT + 4);
-    scene->n_triangles = live_get_u32(bytes + OWN_AT + 8);
-    scene->n_bodies = live_get_u32(bytes + OWN_AT + 12);
+    scene->n_vertices = cloth_get_u32(bytes + OWN_AT);
+    scene->n_edges = cloth_get_u32(bytes + OWN_AT + 4);
+    scene->n_triangles = cloth_get_u32(bytes + OWN_AT + 8);
+    scene->n_bodies = cloth_get_u32(bytes + OWN_AT + 12);
     const uint64_t arrays = UINT64_C(12) * scene->n_vertices + UINT64_C(8) * scene->n_edges +
                             UINT64_C(12) * scene->n_triangles;
     if (!scene->n_vertices || n - FIXED_SCENE < arrays ||
@@ -145,17 +90,17 @@ static int message_read_frame(const unsigned char *bytes, size_t n, struct live_
 {
     if (n < FIXED_FRAME)
         return message_fail(error, "a frame of the live view is too short");
-    frame->number = get_u64(bytes + OWN_AT);
-    frame->time = live_get_double(bytes + OWN_AT + 8);
-    frame->n_vertices = live_get_u32(bytes + OWN_AT + 16);
-    frame->n_body_vertices = live_get_u32(bytes + OWN_AT + 20);
+    frame->number = cloth_get_u64(bytes + OWN_AT);
+    frame->time = cloth_get_double(bytes + OWN_AT + 8);
+    frame->n_vertices = cloth_get_u32(bytes + OWN_AT + 16);
+    frame->n_body_vertices = cloth_get_u32(bytes + OWN_AT + 20);
     const uint64_t points = (uint64_t)frame->n_vertices + frame->n_body_vertices;
     if (n - FIXED_FRAME != 12 * points)
         return message_fail(error, "a frame of the live view has not the vertices that it counts");
     if (!isfinite(frame->time))
         return message_fail(error, "a frame of the live view has a time that is not finite");
     for (uint64_t i = 0; i < 3 * points; i++)
-        if (!isfinite(live_get_float(bytes + FIXED_FRAME + 4 * i)))
+        if (!isfinite(cloth_get_float(bytes + FIXED_FRAME + 4 * i)))
             return message_fail(error, "a frame of the live view has a vertex that is not finite");
     frame->rest = bytes + FIXED_FRAME;
     frame->n_rest = n - FIXED_FRAME;
@@ -171,15 +116,15 @@ int live_message_read(const void *bytes, size_t n, struct live_message *message,
         return CLOTH_E_INPUT;
     if (n < OWN_AT)
         return message_fail(error, "a message of the live view is too short");
-    message->run = get_u64(from + RUN_AT);
-    message->scene = get_u64(from + SCENE_AT);
+    message->run = cloth_get_u64(from + RUN_AT);
+    message->scene = cloth_get_u64(from + SCENE_AT);
     if (message->kind == LIVE_SCENE)
         return message_read_scene(from, n, message, error);
     if (message->kind == LIVE_FRAME)
         return message_read_frame(from, n, message, error);
     if (n != LIVE_REQUEST_BYTES)
         return message_fail(error, "a message of the live view has a size that it cannot have");
-    message->number = get_u64(from + OWN_AT);
+    message->number = cloth_get_u64(from + OWN_AT);
     return 0;
 }
 
@@ -188,18 +133,18 @@ int live_message_read(const void *bytes, size_t n, struct live_message *message,
 void live_message_seal(unsigned char *bytes, size_t n, enum live_kind kind)
 {
     memcpy(bytes, MAGIC, sizeof MAGIC);
-    live_put_u32(bytes + VERSION_AT, LIVE_VERSION);
-    live_put_u32(bytes + KIND_AT, (uint32_t)kind);
-    live_put_u64(bytes + SIZE_AT, n - LIVE_HEADER);
-    live_put_u64(bytes + HASH_AT, XXH64(bytes + LIVE_HEADER, n - LIVE_HEADER, (uint64_t)kind));
+    cloth_put_u32(bytes + VERSION_AT, LIVE_VERSION);
+    cloth_put_u32(bytes + KIND_AT, (uint32_t)kind);
+    cloth_put_u64(bytes + SIZE_AT, n - LIVE_HEADER);
+    cloth_put_u64(bytes + HASH_AT, XXH64(bytes + LIVE_HEADER, n - LIVE_HEADER, (uint64_t)kind));
 }
 
 size_t live_message_write(unsigned char bytes[LIVE_REQUEST_BYTES],
                           const struct live_message *message)
 {
-    live_put_u64(bytes + RUN_AT, message->run);
-    live_put_u64(bytes + SCENE_AT, message->scene);
-    live_put_u64(bytes + OWN_AT, message->number);
+    cloth_put_u64(bytes + RUN_AT, message->run);
+    cloth_put_u64(bytes + SCENE_AT, message->scene);
+    cloth_put_u64(bytes + OWN_AT, message->number);
     live_message_seal(bytes, LIVE_REQUEST_BYTES, message->kind);
     return LIVE_REQUEST_BYTES;
 }
@@ -211,25 +156,17 @@ size_t live_frame_bytes(uint32_t n_vertices, uint32_t n_body_vertices)
 
 bool live_frame_put(unsigned char *bytes, size_t at, size_t n, const double *x, size_t stride)
 {
-    unsigned char *to = bytes + FIXED_FRAME + 12 * at;
-    bool finite = true;
-    for (size_t i = 0; i < n; i++, x += stride)
-        for (size_t c = 0; c < 3; c++, to += 4) {
-            const bool fits = fabs(x[c]) <= (double)FLT_MAX;
-            finite = finite && fits;
-            live_put_float(to, fits ? (float)x[c] : 0);
-        }
-    return finite;
+    return cloth_put_points(bytes + FIXED_FRAME + 12 * at, n, x, stride) == n;
 }
 
 bool live_frame_write(unsigned char *bytes, const struct live_message *frame,
                       const double *position)
 {
-    live_put_u64(bytes + RUN_AT, frame->run);
-    live_put_u64(bytes + SCENE_AT, frame->scene);
-    live_put_u64(bytes + OWN_AT, frame->number);
-    live_put_double(bytes + OWN_AT + 8, frame->time);
-    live_put_u32(bytes + OWN_AT + 16, frame->n_vertices);
-    live_put_u32(bytes + OWN_AT + 20, frame->n_body_vertices);
+    cloth_put_u64(bytes + RUN_AT, frame->run);
+    cloth_put_u64(bytes + SCENE_AT, frame->scene);
+    cloth_put_u64(bytes + OWN_AT, frame->number);
+    cloth_put_double(bytes + OWN_AT + 8, frame->time);
+    cloth_put_u32(bytes + OWN_AT + 16, frame->n_vertices);
+    cloth_put_u32(bytes + OWN_AT + 20, frame->n_body_vertices);
     return live_frame_put(bytes, 0, frame->n_vertices, position, 3);
 }

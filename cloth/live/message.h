@@ -70,13 +70,4 @@ bool live_frame_put(unsigned char *bytes, size_t at, size_t n, const double *x, 
 /* Writes the header of a message of n bytes, in front of its payload. */
 void live_message_seal(unsigned char *bytes, size_t n, enum live_kind kind);
 
-/* Numbers in bytes. */
-void live_put_u32(unsigned char *bytes, uint32_t value);
-void live_put_u64(unsigned char *bytes, uint64_t value);
-void live_put_float(unsigned char *bytes, float value);
-void live_put_double(unsigned char *bytes, double value);
-uint32_t live_get_u32(const unsigned char *bytes);
-float live_get_float(const unsigned char *bytes);
-double live_get_double(const unsigned char *bytes);
-
 #endif

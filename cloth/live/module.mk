@@ -7,7 +7,7 @@ libduite_cloth_a_SOURCES += \
 if HAVE_ZMQ
 libduite_cloth_a_SOURCES += \
 	cloth/live/publisher.h cloth/live/publish.c \
-	cloth/live/serve.c cloth/live/connections.c \
+	cloth/live/serve.c cloth/live/connections.c cloth/live/socket.c cloth/live/socket.h \
 	cloth/live/follow.c
 else
 libduite_cloth_a_SOURCES += cloth/live/absent.c

@@ -1,12 +1,11 @@
-/* Three rooms for frames: the run fills `spare`, the newest whole frame waits in `frame`, and the
- * thread sends from its own. They are exchanged under the lock, so that the run copies a frame
- * once, and waits for no viewer: for an exchange, or for the copy of a scene. */
+/* The run makes a message of a frame; the newest one waits under the lock until the thread takes
+ * it, or the next one replaces it. So the run copies a frame once, and waits for no viewer. */
 #include "cloth/base/memory.h"
+#include "cloth/base/thread.h"
 #include "cloth/live/publisher.h"
 #include "cloth/live/scene.h"
 
 #include <errno.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,12 +20,6 @@ const char *live_lacks(void)
 
 /* ---- Opening ---- */
 
-static int publish_fail_zmq(const char *what, struct cloth_error *error)
-{
-    return cloth_fail(error, CLOTH_E_LIBRARY, "--live: ZeroMQ cannot %s: %s", what,
-                      zmq_strerror(errno));
-}
-
 static int fail_bind(const char *address, struct cloth_error *error)
 {
     const char *why = zmq_strerror(errno);
@@ -38,21 +31,6 @@ static int fail_bind(const char *address, struct cloth_error *error)
     else if (errno == EACCES)
         why = "ports below 1024 are root's: give another one";
     return cloth_fail(error, CLOTH_E_INPUT, "--live %s: %s", address, why);
-}
-
-/* Messages to a viewer beyond four are dropped; viewers' messages are short. */
-static int publish_set_options(void *socket, const char *address, struct cloth_error *error)
-{
-    const int none = 0, yes = 1, few = 4, many = 16, six = *address == '[';
-    const int64_t most = 256;
-    if (zmq_setsockopt(socket, ZMQ_LINGER, &none, sizeof none) ||
-        zmq_setsockopt(socket, ZMQ_SNDHWM, &few, sizeof few) ||
-        zmq_setsockopt(socket, ZMQ_RCVHWM, &many, sizeof many) ||
-        zmq_setsockopt(socket, ZMQ_MAXMSGSIZE, &most, sizeof most) ||
-        zmq_setsockopt(socket, ZMQ_IPV6, &six, sizeof six) ||
-        zmq_setsockopt(socket, ZMQ_TCP_KEEPALIVE, &yes, sizeof yes))
-        return publish_fail_zmq("set up its socket", error);
-    return 0;
 }
 
 static int listen_on(struct live_publisher *publisher, const char *address,
@@ -69,36 +47,35 @@ static int listen_on(struct live_publisher *publisher, const char *address,
         snprintf(endpoint, sizeof endpoint, "%s%s%s", scheme, whole ? "" : "127.0.0.1:", address);
     if (length >= (int)sizeof endpoint)
         return cloth_fail(error, CLOTH_E_INPUT, "--live %.40s...: no address is so long", address);
-    if (zmq_bind(publisher->socket, endpoint))
+    if (zmq_bind(publisher->link.socket, endpoint))
         return fail_bind(address, error);
-    if (zmq_getsockopt(publisher->socket, ZMQ_LAST_ENDPOINT, endpoint, &n))
-        return publish_fail_zmq("tell its port", error);
+    if (zmq_getsockopt(publisher->link.socket, ZMQ_LAST_ENDPOINT, endpoint, &n))
+        return live_socket_fail(&publisher->link, "tell its port", error);
     memcpy(publisher->address, endpoint + strlen(scheme), n - strlen(scheme));
     return 0;
 }
 
+/* Messages to a viewer beyond a few are dropped; viewers' messages are short. */
 static int publish_start(struct live_publisher *publisher, const char *address,
                          struct cloth_error *error)
 {
-    publisher->zmq = zmq_ctx_new();
-    publisher->socket = publisher->zmq ? zmq_socket(publisher->zmq, ZMQ_ROUTER) : NULL;
-    if (!publisher->socket)
-        return publish_fail_zmq("start", error);
+    enum { LONGEST = 256 }; /* bytes */
+    const int few = 4, many = 16;
+    struct live_socket *link = &publisher->link;
     publisher->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (publisher->wake < 0 || getrandom(&publisher->run, sizeof publisher->run, 0) < 0)
         return cloth_fail(error, CLOTH_E_LIBRARY, "--live: %s", strerror(errno));
     publisher->run |= 1; /* not 0 */
-    if (live_connections_open(publisher))
-        return publish_fail_zmq("count connections", error);
-    int code = publish_set_options(publisher->socket, address, error);
-    code = code ? code : listen_on(publisher, address, error);
+    publisher->door.most = live_connections_most();
+    if (live_socket_open(link, "--live", ZMQ_ROUTER, address, LONGEST, LIVE_CONNECTIONS, error))
+        return CLOTH_E_LIBRARY;
+    if (zmq_setsockopt(link->socket, ZMQ_SNDHWM, &few, sizeof few) ||
+        zmq_setsockopt(link->socket, ZMQ_RCVHWM, &many, sizeof many))
+        return live_socket_fail(link, "set up its socket", error);
+    const int code = listen_on(publisher, address, error);
     if (code)
         return code;
-    sigset_t all, before; /* signals are for the run's threads */
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    const int failed = pthread_create(&publisher->thread, NULL, live_serve, publisher);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    const int failed = cloth_thread_start(&publisher->thread, live_serve, publisher);
     publisher->has_thread = !failed;
     return failed ? cloth_fail(error, CLOTH_E_LIBRARY, "--live: no thread: %s", strerror(failed))
                   : 0;
@@ -113,6 +90,8 @@ int live_publish_open(struct live_publisher **publisher, const char *address,
     made->wake = -1;
     made->warn = warn;
     pthread_mutex_init(&made->lock, NULL);
+    zmq_msg_init(&made->scene.message);
+    zmq_msg_init(&made->frame.message);
     zmq_msg_init(&made->scene_message);
     zmq_msg_init(&made->frame_message);
     const int code = publish_start(made, address, error);
@@ -149,55 +128,68 @@ static int publish_make_room(struct live_publisher *publisher, const struct outp
         publisher->n_body_vertices += setup->posed[i] ? n : 0;
         most = setup->posed[i] && n > most ? n : most;
     }
-    const size_t bytes = live_frame_bytes(publisher->n_vertices, publisher->n_body_vertices);
     publisher->place =
         aligned_alloc(CONTACT_ALIGN, (most + most % 2 + 2) * sizeof *publisher->place);
-    publisher->spare = cloth_alloc(bytes, 1, error);
-    publisher->own = cloth_alloc(bytes, 1, error);
-    publisher->frame.data = cloth_alloc(bytes, 1, error);
-    publisher->frame.n = bytes;
-    if (!publisher->place)
-        cloth_fail(error, CLOTH_E_MEMORY, "no memory for the bodies of --live");
-    return error->code;
+    return publisher->posed && publisher->place
+               ? 0
+               : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the bodies of --live");
+}
+
+/* Replaces what waits for the thread. */
+static void hand_over(struct live_publisher *publisher, struct live_newest *newest,
+                      zmq_msg_t *message, uint64_t number)
+{
+    pthread_mutex_lock(&publisher->lock);
+    zmq_msg_move(&newest->message, message);
+    newest->number = number;
+    pthread_mutex_unlock(&publisher->lock);
+    zmq_msg_close(message);
+    wake(publisher);
+}
+
+static void free_bytes(void *bytes, void *hint)
+{
+    (void)hint;
+    free(bytes);
 }
 
 int live_publish_scene(struct live_publisher *publisher, const struct output_setup *setup,
                        double begin, struct cloth_error *error)
 {
-    struct live_bytes scene = {.number = publisher->scenes + 1, .fresh = true};
+    const uint64_t number = publisher->scenes + 1;
+    unsigned char *bytes = NULL;
+    size_t n = 0;
+    zmq_msg_t message;
     int code = publisher->scenes ? 0 : publish_make_room(publisher, setup, error);
     if (!code)
-        code = live_scene_write(setup, publisher->run, scene.number, &scene.data, &scene.n, error);
+        code = live_scene_write(setup, publisher->run, number, &bytes, &n, error);
+    if (!code && zmq_msg_init_data(&message, bytes, n, free_bytes, NULL))
+        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for the scene of --live");
     if (code) {
-        free(scene.data);
+        free(bytes);
         return code;
     }
-    publisher->scenes = scene.number;
+    publisher->scenes = number;
     publisher->bodies = setup->bodies;
     publisher->begin = begin;
-    pthread_mutex_lock(&publisher->lock);
-    free(publisher->scene.data);
-    publisher->scene = scene;
-    pthread_mutex_unlock(&publisher->lock);
-    wake(publisher);
+    hand_over(publisher, &publisher->scene, &message, number);
     return 0;
 }
 
 /* The bodies that change their shape, without the motion of the obstacle. */
-static bool put_bodies(const struct live_publisher *publisher, double time)
+static bool put_bodies(const struct live_publisher *publisher, unsigned char *bytes, double time)
 {
     size_t at = publisher->n_vertices;
     bool finite = true;
-    for (uint32_t i = 0; i < publisher->n_bodies; i++) {
+    for (uint32_t i = 0; i < publisher->n_bodies && finite; i++) {
         if (!publisher->posed[i])
             continue;
         const struct contact_body *body = contact_bodies_at(publisher->bodies, i + 1);
         const phys_vec *x = body->n_frames ? publisher->place : contact_body_vertices(body);
         if (body->n_frames)
             contact_body_places(body, time - publisher->begin, publisher->place);
-        finite = live_frame_put(publisher->spare, at, body->n_vertices, (const double *)x,
-                                sizeof *x / sizeof(double)) &&
-                 finite;
+        finite = live_frame_put(bytes, at, body->n_vertices, (const double *)x,
+                                sizeof *x / sizeof(double));
         at += body->n_vertices;
     }
     return finite;
@@ -213,16 +205,14 @@ void live_publish_frame(struct live_publisher *publisher, uint64_t frame, double
                                          .time = time,
                                          .n_vertices = publisher->n_vertices,
                                          .n_body_vertices = publisher->n_body_vertices};
-    if (!live_frame_write(publisher->spare, &message, position) || !put_bodies(publisher, time))
+    zmq_msg_t made;
+    if (zmq_msg_init_size(&made, live_frame_bytes(message.n_vertices, message.n_body_vertices)))
         return;
-    pthread_mutex_lock(&publisher->lock);
-    unsigned char *older = publisher->frame.data;
-    publisher->frame.data = publisher->spare;
-    publisher->frame.number = frame;
-    publisher->frame.fresh = true;
-    publisher->spare = older;
-    pthread_mutex_unlock(&publisher->lock);
-    wake(publisher);
+    unsigned char *bytes = zmq_msg_data(&made);
+    if (live_frame_write(bytes, &message, position) && put_bodies(publisher, bytes, time))
+        hand_over(publisher, &publisher->frame, &made, frame);
+    else
+        zmq_msg_close(&made);
 }
 
 void live_publish_close(struct live_publisher **publisher)
@@ -238,21 +228,15 @@ void live_publish_close(struct live_publisher **publisher)
         wake(gone);
         pthread_join(gone->thread, NULL);
     }
-    zmq_msg_close(&gone->scene_message);
-    zmq_msg_close(&gone->frame_message);
-    live_connections_close(gone);
-    if (gone->socket)
-        zmq_close(gone->socket);
-    if (gone->zmq)
-        zmq_ctx_term(gone->zmq);
+    zmq_msg_t *const messages[] = {&gone->scene.message, &gone->frame.message, &gone->scene_message,
+                                   &gone->frame_message};
+    for (size_t i = 0; i < sizeof messages / sizeof *messages; i++)
+        zmq_msg_close(messages[i]);
+    live_socket_close(&gone->link);
     if (gone->wake >= 0)
         close(gone->wake);
     pthread_mutex_destroy(&gone->lock);
     free(gone->posed);
     free(gone->place);
-    free(gone->spare);
-    free(gone->own);
-    free(gone->scene.data);
-    free(gone->frame.data);
     free(gone);
 }

@@ -2,20 +2,18 @@
 #define CLOTH_LIVE_PUBLISHER_H
 
 #include "cloth/live/live.h"
+#include "cloth/live/socket.h"
 
 #include <pthread.h>
-#include <zmq.h>
 
 /* Shared by publish.c, for the run, and serve.c, for the thread. */
 
 enum { LIVE_VIEWERS = 64, LIVE_ID = 255, LIVE_ADDRESS = 300 };
 
-/* Bytes on their way from the run to the thread. */
-struct live_bytes {
-    unsigned char *data;
-    size_t n;
+/* A message on its way from the run to the thread; of no bytes: there is none. */
+struct live_newest {
+    zmq_msg_t message;
     uint64_t number; /* of the scene, from 1, or frame, from 0 */
-    bool fresh;      /* the thread has not taken them */
 };
 
 /* A viewer that asked, and the scene and frames that it has. */
@@ -31,14 +29,13 @@ struct live_viewer {
 
 /* The number of connections, as ZeroMQ reports it. */
 struct live_door {
-    void *monitor; /* a socket that events come from */
     int n, most;
     bool is_shut, warned;
     double opens; /* s: when it is shut */
 };
 
 struct live_publisher {
-    void *zmq, *socket;
+    struct live_socket link;
     int wake; /* an eventfd; the run writes to it when there is something new; -1: none */
     char address[LIVE_ADDRESS];
     void (*warn)(const char *text);
@@ -52,24 +49,27 @@ struct live_publisher {
     uint32_t n_bodies, n_vertices, n_body_vertices;
     double begin;
     phys_vec *place;      /* room for the vertices of the largest body that changes its shape */
-    unsigned char *spare; /* room for a frame */
     pthread_mutex_t lock; /* of what follows */
-    struct live_bytes scene, frame;
+    struct live_newest scene, frame;
     bool ends;
-    /* the thread's; messages of no bytes: there is none */
-    unsigned char *own; /* room for a frame */
+    /* the thread's */
     zmq_msg_t scene_message, frame_message;
+    bool is_sealed;                /* the frame's message has its header */
     uint64_t scene_number, frames; /* the scene's number; the newest frame's number + 1 */
     struct live_viewer viewer[LIVE_VIEWERS];
     bool warned_version, warned_bytes;
     struct live_door door;
 };
 
-/* Opened before the socket is bound; the thread looks at each event, and while the door is shut.
- * Returns 0, or -1 with errno set. */
-int live_connections_open(struct live_publisher *publisher);
+/* The events that the monitor tells of. */
+enum {
+    LIVE_CONNECTIONS =
+        ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_ACCEPT_FAILED | ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_CLOSED
+};
+/* How many may be open at once. */
+int live_connections_most(void);
+/* The thread looks at each event, and while the door is shut. */
 void live_connections_look(struct live_publisher *publisher, double now);
-void live_connections_close(struct live_publisher *publisher);
 
 /* The thread. context: the publisher. */
 void *live_serve(void *context);

@@ -2,209 +2,161 @@
  * that it was made of. Scenes received are checked like files, by the same functions. */
 #include "cloth/live/scene.h"
 
+#include "cloth/base/bytes.h"
 #include "cloth/base/memory.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-enum { COUNTS = LIVE_HEADER + 16, ARRAYS = COUNTS + 16, BODY_COUNTS = 8 };
+enum { BODY_COUNTS = 8 };
 
 /* ---- Writing ---- */
 
-/* The meshes and bodies of a run's message. */
-struct parts {
-    uint32_t n_vertices, n_edges, n_triangles, n_bodies;
-    size_t body_bytes;
-    char *text;
-    size_t n_text;
-};
-
-static void count_parts(const struct output_setup *setup, struct parts *parts)
+static void put_u32(FILE *to, uint32_t value)
 {
-    for (size_t i = 0; i < setup->n_meshes; i++) {
-        parts->n_vertices += setup->meshes[i]->n_vertices;
-        parts->n_edges += setup->meshes[i]->n_lone_edges;
-        parts->n_triangles += setup->meshes[i]->n_triangles;
-    }
-    parts->n_bodies = setup->bodies ? setup->bodies->n : 0;
-    for (uint32_t i = 1; i <= parts->n_bodies; i++) {
-        const struct contact_body *body = contact_bodies_at(setup->bodies, i);
-        parts->body_bytes +=
-            BODY_COUNTS + 24 * (size_t)body->n_vertices + 12 * (size_t)body->n_triangles;
+    unsigned char bytes[4];
+    cloth_put_u32(bytes, value);
+    fwrite(bytes, sizeof bytes, 1, to);
+}
+
+static void put_start(FILE *to, const struct mesh *mesh)
+{
+    unsigned char bytes[4];
+    for (size_t i = 0; i < 3 * (size_t)mesh->n_vertices; i++) {
+        cloth_put_float(bytes, (float)mesh->position[i]);
+        fwrite(bytes, sizeof bytes, 1, to);
     }
 }
 
-static int write_text(const struct output_setup *setup, struct parts *parts,
-                      struct cloth_error *error)
+/* Counts, then arrays, each of them cloth after cloth. */
+static void put_meshes(FILE *to, const struct output_setup *setup)
 {
-    FILE *file = open_memstream(&parts->text, &parts->n_text);
-    if (file)
-        output_scene_text(file, setup);
-    const bool failed = !file || ferror(file);
-    return (file && fclose(file) != 0) || failed
-               ? cloth_fail(error, CLOTH_E_MEMORY, "no memory for the scene of --live")
-               : 0;
-}
-
-static unsigned char *put_start(unsigned char *to, const struct output_setup *setup)
-{
-    for (size_t i = 0; i < setup->n_meshes; i++)
-        for (size_t k = 0; k < 3 * (size_t)setup->meshes[i]->n_vertices; k++, to += 4)
-            live_put_float(to, (float)setup->meshes[i]->position[k]);
-    return to;
-}
-
-static unsigned char *put_edges(unsigned char *to, const struct output_setup *setup)
-{
-    uint32_t first = 0;
-    for (size_t i = 0; i < setup->n_meshes; first += setup->meshes[i++]->n_vertices)
-        for (size_t k = 0; k < 2 * (size_t)setup->meshes[i]->n_lone_edges; k++, to += 4)
-            live_put_u32(to, first + setup->meshes[i]->lone_edge[k]);
-    return to;
-}
-
-static unsigned char *put_triangles(unsigned char *to, const struct output_setup *setup)
-{
-    uint32_t first = 0, corner[3];
-    for (size_t i = 0; i < setup->n_meshes; first += setup->meshes[i++]->n_vertices)
-        for (uint32_t t = 0; t < setup->meshes[i]->n_triangles; t++) {
-            mesh_corners(setup->meshes[i], t, corner);
-            for (int k = 0; k < 3; k++, to += 4)
-                live_put_u32(to, first + corner[k]);
+    const struct mesh *const *mesh = setup->meshes, *const *end = mesh + setup->n_meshes;
+    uint32_t n_vertices = 0, n_edges = 0, n_triangles = 0, first = 0, corner[3];
+    for (; mesh < end; mesh++) {
+        n_vertices += (*mesh)->n_vertices;
+        n_edges += (*mesh)->n_lone_edges;
+        n_triangles += (*mesh)->n_triangles;
+    }
+    put_u32(to, n_vertices);
+    put_u32(to, n_edges);
+    put_u32(to, n_triangles);
+    put_u32(to, setup->bodies ? setup->bodies->n : 0);
+    for (mesh = setup->meshes; mesh < end; mesh++)
+        put_start(to, *mesh);
+    for (mesh = setup->meshes; mesh < end; first += (*mesh++)->n_vertices)
+        for (size_t k = 0; k < 2 * (size_t)(*mesh)->n_lone_edges; k++)
+            put_u32(to, first + (*mesh)->lone_edge[k]);
+    first = 0;
+    for (mesh = setup->meshes; mesh < end; first += (*mesh++)->n_vertices)
+        for (uint32_t t = 0; t < (*mesh)->n_triangles; t++) {
+            mesh_corners(*mesh, t, corner);
+            for (int k = 0; k < 3; k++)
+                put_u32(to, first + corner[k]);
         }
-    return to;
 }
 
-static int live_scene_put_body(unsigned char **to, const struct contact_body *body,
-                               struct cloth_error *error)
+static int put_body(FILE *to, const struct contact_body *body, struct cloth_error *error)
 {
     struct mesh mesh = {0};
+    unsigned char bytes[8];
     const int code = contact_body_mesh(body, &mesh, error);
-    if (!code) {
-        live_put_u32(*to, mesh.n_vertices);
-        live_put_u32(*to + 4, mesh.n_triangles);
-        *to += BODY_COUNTS;
-        for (size_t i = 0; i < 3 * (size_t)mesh.n_vertices; i++, *to += 8)
-            live_put_double(*to, mesh.position[i]);
-        for (size_t i = 0; i < 3 * (size_t)mesh.n_triangles; i++, *to += 4)
-            live_put_u32(*to, mesh.triangle[i]);
+    put_u32(to, mesh.n_vertices);
+    put_u32(to, mesh.n_triangles);
+    for (size_t i = 0; i < 3 * (size_t)mesh.n_vertices; i++) {
+        cloth_put_double(bytes, mesh.position[i]);
+        fwrite(bytes, sizeof bytes, 1, to);
     }
+    for (size_t i = 0; i < 3 * (size_t)mesh.n_triangles; i++)
+        put_u32(to, mesh.triangle[i]);
     mesh_free(&mesh);
-    return code;
-}
-
-static int put_parts(unsigned char *bytes, const struct output_setup *setup,
-                     const struct parts *parts, struct cloth_error *error)
-{
-    const uint32_t count[4] = {parts->n_vertices, parts->n_edges, parts->n_triangles,
-                               parts->n_bodies};
-    for (int i = 0; i < 4; i++)
-        live_put_u32(bytes + COUNTS + 4 * i, count[i]);
-    unsigned char *to = put_start(bytes + ARRAYS, setup);
-    to = put_triangles(put_edges(to, setup), setup);
-    int code = 0;
-    for (uint32_t i = 1; i <= parts->n_bodies && !code; i++)
-        code = live_scene_put_body(&to, contact_bodies_at(setup->bodies, i), error);
-    if (!code)
-        memcpy(to, parts->text, parts->n_text);
     return code;
 }
 
 int live_scene_write(const struct output_setup *setup, uint64_t run, uint64_t scene,
                      unsigned char **bytes, size_t *n, struct cloth_error *error)
 {
-    struct parts parts = {0};
-    count_parts(setup, &parts);
-    int code = write_text(setup, &parts, error);
-    *n = ARRAYS + 12 * (size_t)parts.n_vertices + 8 * (size_t)parts.n_edges +
-         12 * (size_t)parts.n_triangles + parts.body_bytes + parts.n_text;
-    *bytes = code ? NULL : cloth_alloc(*n, 1, error);
-    code = code || *bytes ? code : CLOTH_E_MEMORY;
+    unsigned char begin[LIVE_HEADER + 16] = {0}; /* the header is written when all is there */
+    char *text = NULL;
+    int code = CLOTH_OK;
+    FILE *to = open_memstream(&text, n);
+    *bytes = NULL;
+    if (!to)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the scene of --live");
+    cloth_put_u64(begin + LIVE_HEADER, run);
+    cloth_put_u64(begin + LIVE_HEADER + 8, scene);
+    fwrite(begin, sizeof begin, 1, to);
+    put_meshes(to, setup);
+    for (uint32_t i = 1; setup->bodies && i <= setup->bodies->n && !code; i++)
+        code = put_body(to, contact_bodies_at(setup->bodies, i), error);
+    output_scene_text(to, setup);
+    const bool failed = ferror(to);
+    if (fclose(to) != 0 || failed)
+        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for the scene of --live");
+    *bytes = (unsigned char *)text;
     if (!code)
-        code = put_parts(*bytes, setup, &parts, error);
-    if (!code) {
-        live_put_u64(*bytes + LIVE_HEADER, run);
-        live_put_u64(*bytes + LIVE_HEADER + 8, scene);
         live_message_seal(*bytes, *n, LIVE_SCENE);
-    }
-    free(parts.text);
     return code;
 }
 
-/* ---- Reading ---- */
+/* ---- Reading: each function takes what it reads off `from` ---- */
 
-static uint32_t *live_scene_take_numbers(const unsigned char **from, size_t n,
-                                         struct cloth_error *error)
+static uint32_t *take_numbers(const unsigned char **from, size_t n, struct cloth_error *error)
 {
     uint32_t *number = cloth_alloc(n, sizeof *number, error);
     for (size_t i = 0; number && i < n; i++)
-        number[i] = live_get_u32(*from + 4 * i);
+        number[i] = cloth_get_u32(*from + 4 * i);
     *from += 4 * n;
     return number;
 }
 
-static double *take_floats(const unsigned char **from, uint32_t n, struct cloth_error *error)
+/* size: bytes of a number, float or double. */
+static double *take_points(const unsigned char **from, size_t n, size_t size,
+                           struct cloth_error *error)
 {
-    double *x = cloth_alloc(3 * (size_t)n, sizeof *x, error);
-    for (size_t i = 0; x && i < 3 * (size_t)n; i++)
-        x[i] = (double)live_get_float(*from + 4 * i);
-    *from += 12 * (size_t)n;
+    double *x = cloth_alloc(3 * n, sizeof *x, error);
+    for (size_t i = 0; x && i < 3 * n; i++)
+        x[i] = size == sizeof(float) ? (double)cloth_get_float(*from + size * i)
+                                     : cloth_get_double(*from + size * i);
+    *from += 3 * size * n;
     return x;
 }
 
-static double *take_doubles(const unsigned char **from, uint32_t n, struct cloth_error *error)
+/* size: of the numbers of places. */
+static int take_mesh(const unsigned char **from, uint32_t n_vertices, size_t size, uint32_t n_edges,
+                     uint32_t n_triangles, struct mesh *mesh, struct cloth_error *error)
 {
-    double *x = cloth_alloc(3 * (size_t)n, sizeof *x, error);
-    for (size_t i = 0; x && i < 3 * (size_t)n; i++)
-        x[i] = live_get_double(*from + 8 * i);
-    *from += 24 * (size_t)n;
-    return x;
-}
-
-static int live_scene_take_mesh(const struct live_message *scene, const unsigned char **from,
-                                struct mesh *mesh, struct cloth_error *error)
-{
-    double *place = take_floats(from, scene->n_vertices, error);
-    uint32_t *edge = live_scene_take_numbers(from, 2 * (size_t)scene->n_edges, error);
-    uint32_t *triangle = live_scene_take_numbers(from, 3 * (size_t)scene->n_triangles, error);
-    int code = edge && triangle && place ? 0 : CLOTH_E_MEMORY;
-    if (!code)
-        code = mesh_inline(mesh, scene->n_vertices, place, scene->n_edges, edge, scene->n_triangles,
-                           triangle, error);
+    double *place = take_points(from, n_vertices, size, error);
+    uint32_t *edge = take_numbers(from, 2 * (size_t)n_edges, error);
+    uint32_t *triangle = take_numbers(from, 3 * (size_t)n_triangles, error);
+    const int code = place && edge && triangle ? mesh_inline(mesh, n_vertices, place, n_edges, edge,
+                                                             n_triangles, triangle, error)
+                                               : CLOTH_E_MEMORY;
+    free(place);
     free(edge);
     free(triangle);
-    free(place);
     return code;
 }
 
-static int live_scene_take_body(const unsigned char **from, struct contact_bodies *bodies,
-                                struct cloth_error *error)
+static int take_body(const unsigned char **from, struct contact_bodies *bodies,
+                     struct cloth_error *error)
 {
-    const uint32_t n = live_get_u32(*from), n_triangles = live_get_u32(*from + 4);
+    const uint32_t n = cloth_get_u32(*from), n_triangles = cloth_get_u32(*from + 4);
     struct mesh mesh = {0};
     bool turned;
     *from += BODY_COUNTS;
-    double *place = take_doubles(from, n, error);
-    uint32_t *triangle = live_scene_take_numbers(from, 3 * (size_t)n_triangles, error);
-    int code = place && triangle ? 0 : CLOTH_E_MEMORY;
-    if (!code)
-        code = mesh_inline(&mesh, n, place, 0, NULL, n_triangles, triangle, error);
+    int code = take_mesh(from, n, sizeof(double), 0, n_triangles, &mesh, error);
     if (!code)
         code = contact_bodies_add(bodies, &mesh, &turned, error);
     mesh_free(&mesh);
-    free(place);
-    free(triangle);
     return code;
 }
 
 static int take_text(const unsigned char *from, size_t n, struct output_cache *cache,
                      struct cloth_error *error)
 {
-    char *text = cloth_alloc(n + 1, 1, error);
-    if (!text)
-        return CLOTH_E_MEMORY;
-    memcpy(text, from, n);
-    const int code = output_cache_scene(cache, text, "the scene of the live view", error);
+    char *text = strndup((const char *)from, n);
+    const int code = text ? output_cache_scene(cache, text, "the scene of the live view", error)
+                          : cloth_fail(error, CLOTH_E_MEMORY, "no memory for a scene's text");
     free(text);
     return code;
 }
@@ -213,23 +165,16 @@ static int live_scene_take_parts(const struct live_message *scene, struct output
                                  struct cloth_error *error)
 {
     const unsigned char *from = scene->rest;
-    int code = live_scene_take_mesh(scene, &from, &cache->mesh, error);
+    int code = take_mesh(&from, scene->n_vertices, sizeof(float), scene->n_edges,
+                         scene->n_triangles, &cache->mesh, error);
     for (uint32_t i = 0; i < scene->n_bodies && !code; i++)
-        code = live_scene_take_body(&from, &cache->bodies, error);
+        code = take_body(&from, &cache->bodies, error);
     if (!code)
         code = take_text(from, scene->n_rest - (size_t)(from - scene->rest), cache, error);
     if (!code && cache->n_bodies != scene->n_bodies)
         code = cloth_fail(error, CLOTH_E_INPUT, "%u bodies came, but the scene has %u",
                           scene->n_bodies, cache->n_bodies);
     return code;
-}
-
-/* Says first where an error comes from. */
-static int name_error(int code, const struct cloth_error *inner, struct cloth_error *error)
-{
-    return code
-               ? cloth_fail(error, code, "a scene of the live view cannot be used: %s", inner->text)
-               : 0;
 }
 
 int live_scene_open(const struct live_message *scene, struct output_cache *cache,
@@ -246,7 +191,8 @@ int live_scene_open(const struct live_message *scene, struct output_cache *cache
     }
     if (code)
         output_cache_close(cache);
-    return name_error(code, &inner, error);
+    return code ? cloth_fail(error, code, "a scene of the live view cannot be used: %s", inner.text)
+                : 0;
 }
 
 /* Counts vertices of the bodies that change their shape. */
@@ -261,7 +207,7 @@ static uint64_t count_posed(const struct output_cache *cache)
 static int place_bodies(const unsigned char *from, struct output_cache *cache, uint32_t n,
                         struct cloth_error *error)
 {
-    double *x = take_floats(&from, n, error);
+    double *x = take_points(&from, n, sizeof(float), error);
     const double(*at)[3] = (const double(*)[3])x;
     if (!x)
         return CLOTH_E_MEMORY;
@@ -284,7 +230,7 @@ int live_frame_show(const struct live_message *frame, struct output_cache *cache
                           frame->n_vertices, frame->n_body_vertices, cache->mesh.n_vertices,
                           (uintmax_t)n_posed);
     for (size_t i = 0; i < 3 * (size_t)frame->n_vertices; i++)
-        cache->held[i] = (double)live_get_float(frame->rest + 4 * i);
+        cache->held[i] = (double)cloth_get_float(frame->rest + 4 * i);
     cache->time[0] = frame->time;
     return place_bodies(frame->rest + 12 * (size_t)frame->n_vertices, cache, frame->n_body_vertices,
                         error);

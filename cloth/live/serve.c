@@ -1,13 +1,12 @@
 /* The thread that has the socket. A viewer is answered when it asks and there is something that it
- * lacks; only the end of the run is sent unasked. Messages are made once for all viewers, when the
- * first one asks. */
+ * lacks; only the end of the run is sent unasked. All viewers share the bytes of a message. */
+#include "cloth/base/thread.h"
 #include "cloth/live/publisher.h"
 #include "cloth/live/scene.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 static const double LATELY = 2; /* s: a viewer that asked or was answered within it is awake */
@@ -15,56 +14,38 @@ static const double GRACE = 1;  /* s that viewers have at the end */
 enum { LINGER = 2000 };         /* ms that ZeroMQ then has to send its messages */
 enum { SHUT = 100 };            /* ms between two looks while the door is shut */
 
-static double serve_now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 /* ---- News of the run ---- */
 
-/* Fills a message with a copy of the bytes; it stays empty without memory. */
-static void serve_fill(zmq_msg_t *message, const unsigned char *bytes, size_t n)
-{
-    zmq_msg_close(message);
-    if (zmq_msg_init_size(message, n))
-        zmq_msg_init(message);
-    else
-        memcpy(zmq_msg_data(message), bytes, n);
-}
-
-/* Takes over the frame's bytes; they are sealed and sent when a viewer asks. */
-static void take_news(struct live_publisher *p)
+/* Takes over messages of the run. True: it has ended. */
+static bool take_news(struct live_publisher *p)
 {
     uint64_t wakes;
     const bool woken = read(p->wake, &wakes, sizeof wakes) > 0;
     if (!woken)
-        return;
+        return false;
     pthread_mutex_lock(&p->lock);
-    if (p->scene.fresh) {
-        serve_fill(&p->scene_message, p->scene.data, p->scene.n);
+    if (zmq_msg_size(&p->scene.message)) {
+        zmq_msg_move(&p->scene_message, &p->scene.message);
         p->scene_number = p->scene.number;
     }
-    if (p->frame.fresh) {
-        unsigned char *older = p->own;
-        p->own = p->frame.data;
-        p->frame.data = older;
-        zmq_msg_close(&p->frame_message);
-        zmq_msg_init(&p->frame_message);
+    if (zmq_msg_size(&p->frame.message)) {
+        zmq_msg_move(&p->frame_message, &p->frame.message);
         p->frames = p->frame.number + 1;
+        p->is_sealed = false;
     }
-    p->scene.fresh = p->frame.fresh = false;
+    const bool ends = p->ends;
     pthread_mutex_unlock(&p->lock);
+    return ends;
 }
 
-static zmq_msg_t *frame_message(struct live_publisher *p)
+/* The frame's message gets its header when the first viewer asks. */
+static zmq_msg_t *sealed_frame(struct live_publisher *p)
 {
-    if (!zmq_msg_size(&p->frame_message)) {
-        live_message_seal(p->own, p->frame.n, LIVE_FRAME);
-        serve_fill(&p->frame_message, p->own, p->frame.n);
-    }
-    return &p->frame_message;
+    zmq_msg_t *frame = &p->frame_message;
+    if (!p->is_sealed)
+        live_message_seal(zmq_msg_data(frame), zmq_msg_size(frame), LIVE_FRAME);
+    p->is_sealed = true;
+    return frame;
 }
 
 /* ---- Answers ---- */
@@ -73,22 +54,22 @@ static zmq_msg_t *frame_message(struct live_publisher *p)
 static void send_message(struct live_publisher *p, const struct live_viewer *to, zmq_msg_t *message)
 {
     zmq_msg_t copy;
-    zmq_send(p->socket, to->id, to->n_id, ZMQ_SNDMORE | ZMQ_DONTWAIT);
+    zmq_send(p->link.socket, to->id, to->n_id, ZMQ_SNDMORE | ZMQ_DONTWAIT);
     if (to->delimited)
-        zmq_send(p->socket, "", 0, ZMQ_SNDMORE | ZMQ_DONTWAIT);
+        zmq_send(p->link.socket, "", 0, ZMQ_SNDMORE | ZMQ_DONTWAIT);
     zmq_msg_init(&copy);
     zmq_msg_copy(&copy, message);
-    if (zmq_msg_send(&copy, p->socket, ZMQ_DONTWAIT) < 0)
+    if (zmq_msg_send(&copy, p->link.socket, ZMQ_DONTWAIT) < 0)
         zmq_msg_close(&copy);
 }
 
 static void send_end(struct live_publisher *p, const struct live_viewer *to)
 {
     const struct live_message end = {.kind = LIVE_END, .run = p->run, .number = p->frames};
-    unsigned char bytes[LIVE_REQUEST_BYTES];
     zmq_msg_t message;
-    zmq_msg_init(&message);
-    serve_fill(&message, bytes, live_message_write(bytes, &end));
+    if (zmq_msg_init_size(&message, LIVE_REQUEST_BYTES))
+        return;
+    live_message_write(zmq_msg_data(&message), &end);
     send_message(p, to, &message);
     zmq_msg_close(&message);
 }
@@ -99,9 +80,9 @@ static void answer_viewer(struct live_publisher *p, struct live_viewer *viewer)
     const bool lacks_scene = viewer->scene != p->scene_number;
     if (!viewer->waits || !p->scene_number || (!lacks_scene && p->frames <= viewer->next))
         return;
-    send_message(p, viewer, lacks_scene ? &p->scene_message : frame_message(p));
+    send_message(p, viewer, lacks_scene ? &p->scene_message : sealed_frame(p));
     viewer->waits = false;
-    viewer->seen = serve_now();
+    viewer->seen = cloth_seconds();
     if (!lacks_scene)
         viewer->next = p->frames;
 }
@@ -145,7 +126,7 @@ static void take_request(struct live_publisher *p, struct live_viewer *who, zmq_
     }
     struct live_viewer *viewer = find_viewer(p, who);
     *viewer = *who;
-    viewer->seen = serve_now();
+    viewer->seen = cloth_seconds();
     viewer->scene = request.run == p->run ? request.scene : 0;
     viewer->next = request.run == p->run ? request.number : 0;
     viewer->waits = true;
@@ -163,7 +144,7 @@ static bool receive(struct live_publisher *p, struct live_viewer *who, zmq_msg_t
     for (; more; parts++) {
         if (parts == 2)
             who->delimited = !zmq_msg_size(part);
-        if (zmq_msg_recv(part, p->socket, ZMQ_DONTWAIT) < 0)
+        if (zmq_msg_recv(part, p->link.socket, ZMQ_DONTWAIT) < 0)
             return false;
         more = zmq_msg_more(part);
         if (parts == 0 && zmq_msg_size(part) <= LIVE_ID) {
@@ -205,22 +186,14 @@ static bool is_behind(const struct live_publisher *p, double at)
 static void end_all(struct live_publisher *p)
 {
     const int linger = LINGER;
-    const double at = serve_now();
+    const double at = cloth_seconds();
     for (int i = 0; i < LIVE_VIEWERS; i++) {
         const struct live_viewer *viewer = p->viewer + i;
         if (!viewer->waits && !(viewer->n_id && at - viewer->seen < LATELY))
             continue;
         send_end(p, viewer);
-        zmq_setsockopt(p->socket, ZMQ_LINGER, &linger, sizeof linger);
+        zmq_setsockopt(p->link.socket, ZMQ_LINGER, &linger, sizeof linger);
     }
-}
-
-static bool has_ended(struct live_publisher *p)
-{
-    pthread_mutex_lock(&p->lock);
-    const bool ends = p->ends;
-    pthread_mutex_unlock(&p->lock);
-    return ends;
 }
 
 void *live_serve(void *context)
@@ -228,20 +201,20 @@ void *live_serve(void *context)
     struct live_publisher *p = context;
     double ended = 0;
     for (;;) {
-        zmq_pollitem_t item[3] = {{.socket = p->socket, .events = ZMQ_POLLIN},
+        zmq_pollitem_t item[3] = {{.socket = p->link.socket, .events = ZMQ_POLLIN},
                                   {.fd = p->wake, .events = ZMQ_POLLIN},
-                                  {.socket = p->door.monitor, .events = ZMQ_POLLIN}};
+                                  {.socket = p->link.monitor, .events = ZMQ_POLLIN}};
         const bool ending = ended > 0;
         if (zmq_poll(item, 3, ending ? 10 : p->door.is_shut ? SHUT : -1) < 0 && errno != EINTR)
             break;
-        live_connections_look(p, serve_now());
-        take_news(p);
+        live_connections_look(p, cloth_seconds());
+        const bool ends = take_news(p);
         take_requests(p);
         for (int i = 0; i < LIVE_VIEWERS; i++)
             answer_viewer(p, p->viewer + i);
-        if (!ending && has_ended(p))
-            ended = serve_now();
-        if (ended > 0 && (!is_behind(p, ended) || serve_now() - ended > GRACE))
+        if (!ending && ends)
+            ended = cloth_seconds();
+        if (ended > 0 && (!is_behind(p, ended) || cloth_seconds() - ended > GRACE))
             break;
     }
     end_all(p);

@@ -19,18 +19,14 @@ const struct model_word model_contact_modes[] = {{"certified", MODEL_CONTACT_CER
                                                  {"project", MODEL_CONTACT_PROJECT},
                                                  {0}};
 
-struct model_promise model_promise_of_mode(const struct model *model)
-{
-    const struct model_contact_is *is = model_contact_is + model->contact.mode;
-    const struct model_promise nothing = {0};
-    return is->solves && !model_is_implicit(model) ? nothing : is->promise;
-}
-
 /* Springs look even where nothing can touch. */
 struct model_promise model_promise(const struct model *model)
 {
-    const struct model_promise of = model_promise_of_mode(model), nothing = {0};
-    return of.apart && model->contact.idle ? nothing : of;
+    const struct model_contact_is *is = model_contact_is + model->contact.mode;
+    const struct model_promise nothing = {0};
+    if ((is->solves && !model_is_implicit(model)) || (is->promise.apart && model->contact.idle))
+        return nothing;
+    return is->promise;
 }
 
 bool model_shows_contact(const struct model *model)

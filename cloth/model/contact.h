@@ -46,6 +46,7 @@ struct model_contact {
     bool untangle;    /* a start that is not free is made so */
     bool force;       /* frames have the force of contact on each vertex */
     double thickness; /* m, > 0: of cloth that touches something, half of it on each side */
+    double pressure;  /* Pa, >= 0: halves the thickness; 0: nothing is compressed */
     double friction;  /* coefficient, >= 0, of materials and obstacles that have none of their own;
                          sides a and b rub on each other by sqrt(a b), */
     uint32_t n_pairs; /* unless one of these is of them: the last counts */
@@ -57,9 +58,8 @@ struct model_contact {
 
 struct model;
 
-/* What the steps of a model promise. The second does not ask if there is anything to touch. */
+/* What the steps of a model promise. */
 struct model_promise model_promise(const struct model *model);
-struct model_promise model_promise_of_mode(const struct model *model);
 /* True if frames have the force of contact. True if a probe reports it; on the rank that has the
  * probes. */
 bool model_shows_contact(const struct model *model);

@@ -282,7 +282,7 @@ uint32_t model_patches(const struct model *model, uint32_t n_blocks)
     enum { LEAST_VERTICES = 100 };
     const uint64_t all = n_blocks;
     uint32_t n = model->patches ? model->patches : SOLVE_MAX_PATCHES;
-    if (!model_is_coarse(model))
+    if (!model_conditioners[model->preconditioner].coarse)
         return 1;
     while (!model->patches && n > 1 && model->grain / n < LEAST_VERTICES)
         n /= 2;
@@ -298,6 +298,15 @@ double model_curve_at(const struct model *model, uint32_t curve, double time)
     const struct model_curve *c = model->curves + curve - 1;
     return c->n ? phys_curve_at(c->n, model->curve_keys + c->first, time)
                 : phys_sine(c->frequency * time + c->phase);
+}
+
+struct phys_air model_air_at(const struct model *model, double time)
+{
+    const double curve = model_curve_at(model, model->wind_curve, time);
+    struct phys_air air = model->air;
+    for (int i = 0; i < 3; i++)
+        air.wind[i] *= curve;
+    return air;
 }
 
 double model_curve_max(const struct model *model, uint32_t curve)

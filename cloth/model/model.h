@@ -7,7 +7,6 @@
 #include "cloth/mesh/lattice.h"
 #include "cloth/model/cloth.h"
 #include "cloth/model/contact.h"
-#include "cloth/model/hdf5.h"
 #include "cloth/physics/air.h"
 #include "cloth/physics/curve.h"
 #include "cloth/physics/motion.h"
@@ -21,6 +20,20 @@
 /* A simulation as a scene file or a program gives it: SI units, right-handed, +y up. The model owns
  * everything; model_free frees it. Only rank 0 holds one. cloth.h has the materials of cloths and
  * what acts on them. */
+
+/* Fields of scientific frames beside the positions. */
+struct model_hdf5 {
+    bool velocity, block, rank; /* of vertices, */
+    bool contact_force;         /* as these; */
+    bool strain, stress;        /* of triangles */
+    bool is_double;             /* numbers on the disk; else float */
+    uint32_t every;             /* of all frames each k-th; 0: there are no such frames */
+    uint32_t level;             /* of gzip; 0: none */
+};
+static inline bool model_hdf5_takes(const struct model_hdf5 *hdf5, uint64_t frame)
+{
+    return hdf5->every && frame % hdf5->every == 0;
+}
 
 /* A run ends when no vertex was faster than `speed` for `hold` seconds. */
 struct model_rest {
@@ -247,13 +260,8 @@ static inline int model_stops_by_norms(const struct model *model)
     return model->stop == MODEL_STOP_MASS_NORM || model->stop == MODEL_STOP_NORMALISED;
 }
 
-/* True if its solves have a coarse space; the number of its patches in a block. The default is
- * four, or two if one factor can then take all patches: one task solves with it after those of the
- * blocks. */
-static inline bool model_is_coarse(const struct model *model)
-{
-    return model_conditioners[model->preconditioner].coarse;
-}
+/* The number of patches of a block for the coarse space; 1 without one. The default is four, or two
+ * if one factor can then take all patches: one task solves with it after those of the blocks. */
 enum { MODEL_ONE_FACTOR = 256 }; /* more patches are solved by groups (cloth/solve/levels.h) */
 uint32_t model_patches(const struct model *model, uint32_t n_blocks);
 
@@ -352,6 +360,8 @@ static inline bool model_in_box(const double *x, const double box[2][3])
 double model_curve_at(const struct model *model, uint32_t curve, double time);
 double model_curve_max(const struct model *model, uint32_t curve);
 double model_curve_end(const struct model *model, uint32_t curve);
+/* The air as it blows at a time, s. */
+struct phys_air model_air_at(const struct model *model, double time);
 
 /* The first vertex of a cloth, of those of all cloths. */
 static inline uint32_t model_first(const struct model *model, uint32_t cloth)

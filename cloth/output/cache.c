@@ -1,114 +1,28 @@
 /* A folder is believed as far as PC2's count goes: frames beyond it were never finished. All that
  * is counted must be there, or the folder is refused. */
 #include "cloth/base/file.h"
-#include "cloth/output/files/files.h"
-#include "cloth/output/files/json.h"
-#include "cloth/output/files/obstacles.h"
+#include "cloth/base/memory.h"
+#include "cloth/output/files/pc2.h"
+#include "cloth/output/files/scene.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-/* Our own scene.json and index are small; a larger file is not ours. */
-enum { MAX_TEXT = 1 << 30 };
 
 static int open_fail(struct cloth_error *error, const char *path)
 {
     return cloth_fail(error, CLOTH_E_INPUT, "cannot read %s: %s", path, cloth_file_why());
 }
 
-/* The whole of a text file, ended by '\0'. */
-static int read_text(const char *path, char **text, struct cloth_error *error)
+static int read_scene(struct output_cache *cache, const char *path, struct cloth_error *error)
 {
-    FILE *file = cloth_file_open(path);
-    if (!file)
-        return open_fail(error, path);
-    int code = 0;
-    struct stat status;
-    size_t size = fstat(fileno(file), &status) == 0 ? (size_t)status.st_size : 0;
-    *text = size < MAX_TEXT ? malloc(size + 1) : NULL;
-    if (!*text) {
-        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory to read %s", path);
-    } else {
-        size_t n = fread(*text, 1, size, file);
-        (*text)[n] = '\0';
-        if (ferror(file))
-            code = open_fail(error, path);
-    }
-    fclose(file);
-    return code;
-}
-
-static void cache_parse_scene(struct output_cache *cache, struct output_json *json)
-{
-    output_json_expect(json, '{');
-    if (!output_json_key(json, "fps"))
-        output_json_fail(json, "\"fps\"");
-    cache->fps = output_json_double(json);
-    output_json_expect(json, ',');
-    if (!output_json_key(json, "obstacles"))
-        output_json_fail(json, output_json_key(json, "planes")
-                                   ? "\"obstacles\" in place of \"planes\", which an earlier "
-                                     "duite-cloth wrote: run the scene again"
-                                   : "\"obstacles\"");
-    output_obstacles_read(cache, json);
-    while (!json->failed && output_json_take(json, ',')) {
-        if (!cache->apart.apart && output_json_key(json, "apart"))
-            output_apart_read(cache, json);
-        else if (!cache->attached && output_json_key(json, "attached"))
-            output_attached_read(cache, json);
-        else if (!cache->apart.joined && output_json_key(json, "sewn"))
-            output_sewn_read(cache, json);
-        else
-            output_json_fail(json, "\"apart\", \"attached\" or \"sewn\", or the end");
-    }
-    output_json_expect(json, '}');
-    output_json_expect(json, '\0');
-}
-
-/* Checks that the cloths of "apart" have the vertices of the mesh. */
-static int cache_check_apart(const struct output_cache *cache, const char *name,
-                             struct cloth_error *error)
-{
-    const struct contact_apart *apart = &cache->apart;
-    if (!apart->n_cloths || !cache->mesh.n_vertices ||
-        apart->end[apart->n_cloths - 1] == cache->mesh.n_vertices)
-        return 0;
-    return cloth_fail(error, CLOTH_E_INPUT, "%s has cloths of %u vertices, cloth.obj beside it %u",
-                      name, apart->end[apart->n_cloths - 1], cache->mesh.n_vertices);
-}
-
-int output_cache_scene(struct output_cache *cache, const char *text, const char *name,
-                       struct cloth_error *error)
-{
-    struct output_json json = {.path = name, .text = text, .next = text, .error = error};
-    cache_parse_scene(cache, &json);
-    if (json.failed)
-        return error ? error->code : CLOTH_E_INPUT;
-    return cache_check_apart(cache, name, error);
-}
-
-static int cache_read_scene(struct output_cache *cache, const char *path, struct cloth_error *error)
-{
-    char *text = NULL;
-    int code = read_text(path, &text, error);
-    code = code ? code : output_cache_scene(cache, text, path, error);
+    size_t size;
+    unsigned char *text = output_read_file(path, &size);
+    const int code =
+        text ? output_cache_scene(cache, (const char *)text, path, error) : open_fail(error, path);
     free(text);
     return code;
-}
-
-uint32_t output_bodies_before(const char *folder)
-{
-    struct cloth_error ignored = {0};
-    struct output_cache cache = {0};
-    char *path = output_path(folder, "scene.json", "");
-    const int code = path ? cache_read_scene(&cache, path, &ignored) : CLOTH_E_MEMORY;
-    const uint32_t n = code ? 0 : cache.n_bodies;
-    output_cache_close(&cache);
-    free(path);
-    return n;
 }
 
 /* Opens a point cache, which has as many points as the mesh beside it, and at least `least`
@@ -116,13 +30,12 @@ uint32_t output_bodies_before(const char *folder)
 static int open_points(const char *path, uint32_t n_vertices, const char *mesh, uint64_t least,
                        FILE **pc2, uint64_t *n_frames, struct cloth_error *error)
 {
-    unsigned char header[OUTPUT_PC2_HEADER];
     uint32_t n_points, n;
     struct stat status;
     *pc2 = cloth_file_open(path);
     if (!*pc2)
         return open_fail(error, path);
-    if (fread(header, sizeof header, 1, *pc2) != 1 || !output_pc2_parse(header, &n_points, &n))
+    if (!output_pc2_read_header(*pc2, &n_points, &n))
         return cloth_fail(error, CLOTH_E_INPUT, "%s is not a point cache (PC2, version 1)", path);
     if (n_points != n_vertices)
         return cloth_fail(error, CLOTH_E_INPUT, "%s has %u points, %s beside it %u", path, n_points,
@@ -141,12 +54,6 @@ static int open_points(const char *path, uint32_t n_vertices, const char *mesh, 
     return 0;
 }
 
-static int read_cache(struct output_cache *cache, const char *path, struct cloth_error *error)
-{
-    return open_points(path, cache->mesh.n_vertices, "cloth.obj", 0, &cache->pc2, &cache->n_frames,
-                       error);
-}
-
 /* One line "frame,time" of the index; the frames count up from 0. */
 static bool parse_line(const char **next, uint64_t frame, double *time)
 {
@@ -163,135 +70,87 @@ static bool parse_line(const char **next, uint64_t frame, double *time)
 
 static int read_index(struct output_cache *cache, const char *path, struct cloth_error *error)
 {
-    static const char TITLE[] = "frame,time\n";
-    char *text = NULL;
-    int code = read_text(path, &text, error);
-    if (code)
-        goto out;
-    cache->time = calloc(cache->n_frames + 1, sizeof *cache->time);
-    if (!cache->time) {
-        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory to read %s", path);
-        goto out;
-    }
-    const char *next = text + strlen(TITLE);
-    if (strncmp(text, TITLE, strlen(TITLE)) != 0)
+    const size_t n_header = strlen(OUTPUT_INDEX_HEADER);
+    size_t size;
+    unsigned char *text = output_read_file(path, &size);
+    if (!text)
+        return open_fail(error, path);
+    cache->time = cloth_alloc(cache->n_frames, sizeof *cache->time, error);
+    int code = cache->time ? 0 : CLOTH_E_MEMORY;
+    const char *next = (const char *)text + n_header;
+    if (!code && strncmp((const char *)text, OUTPUT_INDEX_HEADER, n_header) != 0)
         code = cloth_fail(error, CLOTH_E_INPUT, "%s:1: expected \"frame,time\"", path);
     for (uint64_t i = 0; i < cache->n_frames && !code; i++)
         if (!parse_line(&next, i, &cache->time[i]))
             code = cloth_fail(error, CLOTH_E_INPUT, "%s:%ju: expected frame %ju and its time", path,
                               (uintmax_t)(i + 2), (uintmax_t)i);
-out:
     free(text);
     return code;
 }
 
-static int read_mesh(struct output_cache *cache, const char *path, struct cloth_error *error)
+/* A mesh that cannot be read is a mistake, as of the other files. */
+static int read_obj(struct mesh *mesh, const char *path, struct cloth_error *error)
 {
-    const int code = mesh_read_obj(&cache->mesh, path, error);
-    if (code == CLOTH_E_IO) /* as of the other files */
+    const int code = mesh_read_obj(mesh, path, error);
+    if (code == CLOTH_E_IO)
         error->code = CLOTH_E_INPUT;
     return code ? error->code : CLOTH_OK;
 }
 
-static int read_body(struct output_cache *cache, const char *path, struct cloth_error *error)
+/* A body that scene.json names, and its shapes. */
+static int read_body(struct output_cache *cache, const char *folder, uint32_t number,
+                     struct cloth_error *error)
 {
+    char name[40];
     struct cloth_error inner = {0};
     struct mesh mesh = {0};
-    bool turned;
-    int code = mesh_read_obj(&mesh, path, error);
-    if (code == CLOTH_E_IO)
-        code = error->code = CLOTH_E_INPUT;
-    if (!code && contact_bodies_add(&cache->bodies, &mesh, &turned, &inner))
-        code = cloth_fail(error, inner.code, "%s: %s", path, inner.text);
-    mesh_free(&mesh);
-    return code;
-}
-
-static int open_poses(struct output_cache *cache, const char *folder, uint32_t number,
-                      struct cloth_error *error)
-{
-    char mesh[OUTPUT_BODY_NAME], name[OUTPUT_BODY_NAME];
     uint64_t n_frames;
-    output_body_name(mesh, number, "");
-    output_pose_name(name, number);
-    char *path = output_path(folder, name, "");
-    const int code =
-        path ? open_points(path, contact_bodies_at(&cache->bodies, number)->n_vertices, mesh,
-                           cache->n_frames, &cache->poses[number - 1], &n_frames, error)
-             : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
-    free(path);
-    return code;
-}
-
-/* Reads the bodies that scene.json names. */
-static int read_bodies(struct output_cache *cache, const char *folder, struct cloth_error *error)
-{
-    int code = 0;
-    for (uint32_t i = 1; i <= cache->n_bodies && !code; i++) {
-        char name[OUTPUT_BODY_NAME];
-        output_body_name(name, i, "");
-        char *path = output_path(folder, name, "");
-        code = path ? read_body(cache, path, error)
-                    : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
-        free(path);
-    }
-    cache->poses = calloc((size_t)cache->n_bodies + 1, sizeof *cache->poses);
-    if (!code && !cache->poses)
-        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for the shapes of bodies");
-    for (uint32_t i = 1; i <= cache->n_bodies && !code; i++)
-        if (cache->posed[i - 1])
-            code = open_poses(cache, folder, i, error);
+    bool turned;
+    snprintf(name, sizeof name, OUTPUT_BODY_OBJ, number - 1);
+    const struct output_path path = output_path(folder, "%s", name);
+    int code = read_obj(&mesh, path.text, error);
+    if (!code && contact_bodies_add(&cache->bodies, &mesh, &turned, &inner))
+        code = cloth_fail(error, inner.code, "%s: %s", path.text, inner.text);
+    if (!code && cache->posed[number - 1])
+        code = open_points(output_path(folder, OUTPUT_BODY_PC2, number - 1).text,
+                           contact_bodies_at(&cache->bodies, number)->n_vertices, name,
+                           cache->n_frames, &cache->poses[number - 1], &n_frames, error);
+    mesh_free(&mesh);
     return code;
 }
 
 int output_cache_open(struct output_cache *cache, const char *folder, struct cloth_error *error)
 {
-    static const struct {
-        const char *name;
-        int (*read)(struct output_cache *, const char *, struct cloth_error *);
-    } part[] = {{"cloth.obj", read_mesh},
-                {"cloth.pc2", read_cache},
-                {"frames.csv", read_index},
-                {"scene.json", cache_read_scene}};
-    memset(cache, 0, sizeof *cache);
     struct stat status;
+    memset(cache, 0, sizeof *cache);
     if (stat(folder, &status) != 0)
         return open_fail(error, folder);
-    int code = 0;
-    for (size_t i = 0; i < sizeof part / sizeof *part && !code; i++) {
-        char *path = output_path(folder, part[i].name, "");
-        code = path ? part[i].read(cache, path, error)
-                    : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
-        free(path);
-    }
-    code = code ? code : read_bodies(cache, folder, error);
+    int code = read_obj(&cache->mesh, output_path(folder, "cloth.obj").text, error);
+    if (!code)
+        code = open_points(output_path(folder, "cloth.pc2").text, cache->mesh.n_vertices,
+                           "cloth.obj", 0, &cache->pc2, &cache->n_frames, error);
+    code = code ? code : read_index(cache, output_path(folder, "frames.csv").text, error);
+    code = code ? code : read_scene(cache, output_path(folder, "scene.json").text, error);
+    if (!code && !(cache->poses = cloth_alloc(cache->n_bodies, sizeof *cache->poses, error)))
+        code = CLOTH_E_MEMORY;
+    for (uint32_t i = 1; i <= cache->n_bodies && !code; i++)
+        code = read_body(cache, folder, i, error);
     if (code)
         output_cache_close(cache);
     return code;
 }
 
-/* Floats come in lumps, so that a frame of any size needs little memory besides the caller's. */
 static int read_points(FILE *pc2, uint32_t n_points, uint64_t frame, double *position,
                        struct cloth_error *error)
 {
-    const size_t n = (size_t)3 * n_points;
-    if (fseeko(pc2, (off_t)(OUTPUT_PC2_HEADER + 4 * (uint64_t)n * frame), SEEK_SET) != 0)
-        return cloth_fail(error, CLOTH_E_IO, "cannot read frame %ju: %s", (uintmax_t)frame,
-                          strerror(errno));
-    unsigned char lump[4 * 1024];
-    for (size_t done = 0; done < n;) {
-        size_t some = n - done < 1024 ? n - done : 1024;
-        if (fread(lump, 4, some, pc2) != some)
-            return cloth_fail(error, CLOTH_E_IO, "cannot read frame %ju: %s", (uintmax_t)frame,
-                              ferror(pc2) ? strerror(errno) : "the file ends early");
-        for (size_t i = 0; i < some; i++, done++) {
-            position[done] = (double)output_get_float(lump + 4 * i);
-            if (!isfinite(position[done]))
-                return cloth_fail(error, CLOTH_E_INPUT,
-                                  "frame %ju: vertex %zu is not finite (vertices count from 1)",
-                                  (uintmax_t)frame, done / 3 + 1);
-        }
-    }
+    const char *why = output_pc2_read(pc2, n_points, frame, position);
+    if (why)
+        return cloth_fail(error, CLOTH_E_IO, "cannot read frame %ju: %s", (uintmax_t)frame, why);
+    for (size_t i = 0; i < (size_t)3 * n_points; i++)
+        if (!isfinite(position[i]))
+            return cloth_fail(error, CLOTH_E_INPUT,
+                              "frame %ju: vertex %zu is not finite (vertices count from 1)",
+                              (uintmax_t)frame, i / 3 + 1);
     return 0;
 }
 

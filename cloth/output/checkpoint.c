@@ -15,11 +15,11 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-static const char MAGIC[8] = "duiteCP", FOLDER[] = "checkpoints", SUFFIX[] = ".checkpoint";
-enum { VERSION = 1, DIGITS = 6, NAME = 64 };
+static const char MAGIC[8] = "duiteCP", FOLDER[] = "checkpoints";
+enum { VERSION = 1, NAME = 64 };
 static const uint64_t LAST = UINT64_MAX / 2; /* no run comes from there to the end of numbers */
 static const uint64_t ORDER = 0x0102030405060708; /* of bytes */
-enum { FOUND = OUTPUT_CHECKPOINTS_KEPT + 1 };     /* a run that is killed may leave one more */
+enum { FOUND = OUTPUT_CHECKPOINTS_KEPT + 2 }; /* the newest; one more of a run that was killed */
 
 struct header {
     char magic[8];
@@ -28,10 +28,9 @@ struct header {
 };
 
 struct output_checkpoints {
-    char *folder;
-    char *last;           /* the path of the newest; NULL: none was written */
-    uint64_t next;        /* the number of the next one */
-    uint64_t kept[FOUND]; /* numbers, the newest first; 0: none */
+    struct output_path folder, last; /* last: the path of the newest; empty: none was written */
+    uint64_t next;                   /* the number of the next one */
+    uint64_t kept[FOUND];            /* numbers, the newest first; 0: none */
 };
 
 static size_t padded(size_t n)
@@ -41,36 +40,20 @@ static size_t padded(size_t n)
 
 /* ---- Names ---- */
 
-static void checkpoint_put_name(char name[NAME], uint64_t number)
-{
-    snprintf(name, NAME, "%0*ju%s", DIGITS, (uintmax_t)number, SUFFIX);
-}
+#define CHECKPOINT_NAME "%06ju.checkpoint%s" /* the number, and what is behind the name */
 
-/* The number of a file, or 0: no checkpoint has that name. */
-static uint64_t checkpoint_number_of(const char *name)
+/* The number of a file, or 0: no checkpoint has that name, with this behind it. */
+static uint64_t checkpoint_number_of(const char *name, const char *behind)
 {
     char own[NAME];
     const uint64_t number = strtoull(name, NULL, 10);
-    checkpoint_put_name(own, number);
+    snprintf(own, sizeof own, CHECKPOINT_NAME, (uintmax_t)number, behind);
     return strcmp(name, own) == 0 ? number : 0;
 }
 
-static char *checkpoint_path_of(const char *folder, uint64_t number, const char *suffix)
+static struct output_path checkpoint_path(const char *folder, uint64_t number, const char *behind)
 {
-    char name[NAME];
-    checkpoint_put_name(name, number);
-    return output_path(folder, name, suffix);
-}
-
-static bool is_half(const char *name)
-{
-    char whole[NAME];
-    const size_t n = strlen(name), part = strlen(".part");
-    if (n <= part || n >= sizeof whole || strcmp(name + n - part, ".part") != 0)
-        return false;
-    memcpy(whole, name, n - part);
-    whole[n - part] = 0;
-    return checkpoint_number_of(whole) > 0;
+    return output_path(folder, CHECKPOINT_NAME, (uintmax_t)number, behind);
 }
 
 /* Puts a number among the largest, which descend. */
@@ -84,7 +67,7 @@ static void insert(uint64_t *kept, size_t n, uint64_t number)
         }
 }
 
-/* Finds the n largest numbers. half, all: removes half checkpoints, or all, on the way. */
+/* Finds the n largest numbers. half, all: removes half checkpoints, or whole ones, on the way. */
 static int scan(const char *folder, bool half, bool all, size_t n, uint64_t *kept)
 {
     DIR *handle = opendir(folder);
@@ -93,11 +76,11 @@ static int scan(const char *folder, bool half, bool all, size_t n, uint64_t *kep
     if (!handle)
         return errno == ENOENT ? 0 : -1;
     for (const struct dirent *entry; (entry = readdir(handle));) {
-        const uint64_t number = checkpoint_number_of(entry->d_name);
-        const bool is = number > 0;
-        if (((half || all) && is_half(entry->d_name)) || (all && is))
+        const uint64_t number = checkpoint_number_of(entry->d_name, "");
+        const bool is_half = checkpoint_number_of(entry->d_name, ".part") > 0;
+        if ((half && is_half) || (all && number))
             failed = unlinkat(dirfd(handle), entry->d_name, 0) != 0 || failed;
-        else if (is)
+        else if (number)
             insert(kept, n, number);
     }
     const int reason = errno;
@@ -112,23 +95,23 @@ int output_checkpoints_open(struct output_checkpoints **checkpoints, const char 
                             struct cloth_error *error)
 {
     struct output_checkpoints *made = *checkpoints = calloc(1, sizeof *made);
-    if (made)
-        made->folder = output_path(folder, FOLDER, "");
-    int code = made && made->folder
-                   ? output_make_folder(made->folder, error)
-                   : cloth_fail(error, CLOTH_E_MEMORY, "no memory for checkpoints");
-    if (!code && access(made->folder, W_OK | X_OK) != 0)
-        code = output_refuse(error, "write checkpoints into", made->folder);
-    if (!code && scan(made->folder, true, false, FOUND, made->kept) != 0)
-        code = output_refuse(error, "remove half a checkpoint in", made->folder);
+    if (!made)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for checkpoints");
+    made->folder = output_path(folder, FOLDER);
+    const char *path = made->folder.text;
+    int code = output_make_folder(path, error);
+    if (!code && access(path, W_OK | X_OK) != 0)
+        code = output_refuse(error, "write checkpoints into", path);
+    if (!code && scan(path, true, false, FOUND, made->kept) != 0)
+        code = output_refuse(error, "remove half a checkpoint in", path);
     if (!code && made->kept[0] > LAST)
         code = cloth_fail(error, CLOTH_E_INPUT,
-                          "%s/%ju%s: no number is left for a checkpoint after it; move it away",
-                          made->folder, (uintmax_t)made->kept[0], SUFFIX);
+                          "%s/%ju.checkpoint: no number is left for a checkpoint after it; move it "
+                          "away",
+                          path, (uintmax_t)made->kept[0]);
+    made->next = made->kept[0] + 1;
     if (code)
         output_checkpoints_close(checkpoints);
-    else
-        made->next = made->kept[0] + 1;
     return code;
 }
 
@@ -198,85 +181,63 @@ static int checkpoint_write_file(const char *path,
 static void checkpoint_pass_on(const struct output_checkpoints *checkpoints, uint64_t number)
 {
     struct stat status;
-    char *gone = checkpoint_path_of(checkpoints->folder, number, "");
-    char *next = checkpoint_path_of(checkpoints->folder, checkpoints->next, ".part");
-    if (gone && next && lstat(gone, &status) == 0 &&
-        !(S_ISREG(status.st_mode) && status.st_nlink == 1 && rename(gone, next) == 0))
-        unlink(gone);
-    free(gone);
-    free(next);
+    const char *folder = checkpoints->folder.text;
+    const struct output_path gone = checkpoint_path(folder, number, "");
+    const struct output_path next = checkpoint_path(folder, checkpoints->next, ".part");
+    if (lstat(gone.text, &status) == 0 &&
+        !(S_ISREG(status.st_mode) && status.st_nlink == 1 && rename(gone.text, next.text) == 0))
+        unlink(gone.text);
 }
 
-/* The newest is complete: the oldest goes, and before it one that should have gone earlier. */
-static void checkpoint_keep(struct output_checkpoints *checkpoints, char *path)
+/* The newest is complete: older ones go, the oldest first. */
+static void checkpoint_keep(struct output_checkpoints *checkpoints)
 {
     uint64_t *kept = checkpoints->kept;
-    const uint64_t oldest = kept[OUTPUT_CHECKPOINTS_KEPT - 1], left = kept[FOUND - 1];
-    memmove(kept + 1, kept, (OUTPUT_CHECKPOINTS_KEPT - 1) * sizeof *kept);
-    kept[0] = checkpoints->next++;
-    kept[FOUND - 1] = 0;
-    if (left)
-        checkpoint_pass_on(checkpoints, left);
-    if (oldest)
-        checkpoint_pass_on(checkpoints, oldest);
-    free(checkpoints->last);
-    checkpoints->last = path;
+    insert(kept, FOUND, checkpoints->next++);
+    for (int i = FOUND - 1; i >= OUTPUT_CHECKPOINTS_KEPT; i--) {
+        if (kept[i])
+            checkpoint_pass_on(checkpoints, kept[i]);
+        kept[i] = 0;
+    }
 }
 
 int output_checkpoints_write(struct output_checkpoints *checkpoints,
                              const struct output_part part[OUTPUT_CHECKPOINT_PARTS],
                              struct cloth_error *error)
 {
-    char *path = checkpoint_path_of(checkpoints->folder, checkpoints->next, "");
-    char *fresh = checkpoint_path_of(checkpoints->folder, checkpoints->next, ".part");
-    int code = CLOTH_OK;
-    if (!path || !fresh)
-        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory to write a checkpoint");
-    else if (checkpoint_write_file(fresh, part) != 0 || rename(fresh, path) != 0)
-        code = output_fail(error, "write the checkpoint", path);
-    free(fresh);
-    if (code) {
-        free(path);
-        return code;
-    }
-    output_sync_folder(checkpoints->folder);
-    checkpoint_keep(checkpoints, path);
+    const char *folder = checkpoints->folder.text;
+    const struct output_path path = checkpoint_path(folder, checkpoints->next, "");
+    const struct output_path fresh = checkpoint_path(folder, checkpoints->next, ".part");
+    if (checkpoint_write_file(fresh.text, part) != 0 || rename(fresh.text, path.text) != 0)
+        return output_fail(error, "write the checkpoint", path.text);
+    output_sync_folder(folder);
+    checkpoint_keep(checkpoints);
+    checkpoints->last = path;
     return CLOTH_OK;
 }
 
 const char *output_checkpoints_last(const struct output_checkpoints *checkpoints)
 {
-    return checkpoints->last;
+    return *checkpoints->last.text ? checkpoints->last.text : NULL;
 }
 
 void output_checkpoints_close(struct output_checkpoints **checkpoints)
 {
     struct output_checkpoints *gone = *checkpoints;
     *checkpoints = NULL;
-    if (!gone)
-        return;
-    char *room = gone->folder ? checkpoint_path_of(gone->folder, gone->next, ".part") : NULL;
-    if (room)
-        unlink(room);
-    free(room);
-    free(gone->folder);
-    free(gone->last);
+    if (gone)
+        unlink(checkpoint_path(gone->folder.text, gone->next, ".part").text);
     free(gone);
 }
 
 int output_checkpoints_forget(const char *folder, struct cloth_error *error)
 {
     uint64_t none[1];
-    char *path = output_path(folder, FOLDER, "");
-    if (!path)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of checkpoints");
-    const int code = scan(path, true, true, 1, none) != 0
-                         ? output_refuse(error, "remove the checkpoints of an earlier run in", path)
-                         : CLOTH_OK;
-    if (!code)
-        rmdir(path); /* unless somebody else has files there */
-    free(path);
-    return code;
+    const struct output_path path = output_path(folder, FOLDER);
+    if (scan(path.text, true, true, 1, none) != 0)
+        return output_refuse(error, "remove the checkpoints of an earlier run in", path.text);
+    rmdir(path.text); /* unless somebody else has files there */
+    return CLOTH_OK;
 }
 
 /* ---- Reading ---- */
@@ -284,31 +245,6 @@ int output_checkpoints_forget(const char *folder, struct cloth_error *error)
 static int damaged(struct cloth_error *error, const char *path, const char *how)
 {
     return cloth_fail(error, CLOTH_E_IO, "%s is damaged: %s", path, how);
-}
-
-/* All of a file, and n: how many bytes. */
-static int checkpoint_read_bytes(const char *path, unsigned char **bytes, size_t *n,
-                                 struct cloth_error *error)
-{
-    struct stat status;
-    FILE *file = cloth_file_open(path);
-    if (!file || fstat(fileno(file), &status) != 0) {
-        const int code =
-            cloth_fail(error, CLOTH_E_IO, "cannot read %s: %s", path, cloth_file_why());
-        if (file)
-            fclose(file);
-        return code;
-    }
-    *n = (size_t)status.st_size;
-    *bytes = malloc(*n + 8);
-    int code = CLOTH_OK;
-    if (!*bytes)
-        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for %s, of %zu bytes", path, *n);
-    else if (fread(*bytes, 1, *n, file) != *n)
-        code = ferror(file) ? output_fail(error, "read", path)
-                            : damaged(error, path, "it was cut off while it was read");
-    fclose(file);
-    return code;
 }
 
 static int checkpoint_check(const char *path, const unsigned char *bytes, size_t n,
@@ -346,8 +282,10 @@ int output_checkpoint_read(struct output_checkpoint *checkpoint, const char *pat
     *checkpoint = (struct output_checkpoint){.path = strdup(path)};
     if (!checkpoint->path)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of a checkpoint");
-    int code = checkpoint_read_bytes(path, &checkpoint->bytes, &n, error);
-    code = code ? code : checkpoint_check(path, checkpoint->bytes, n, error);
+    checkpoint->bytes = output_read_file(path, &n);
+    const int code = checkpoint->bytes ? checkpoint_check(path, checkpoint->bytes, n, error)
+                                       : cloth_fail(error, CLOTH_E_IO, "cannot read %s: %s", path,
+                                                    cloth_file_why());
     if (code) {
         output_checkpoint_free(checkpoint);
         return code;
@@ -360,11 +298,13 @@ int output_checkpoint_read(struct output_checkpoint *checkpoint, const char *pat
     return CLOTH_OK;
 }
 
-static int read_newest(struct output_checkpoint *checkpoint, const char *path,
-                       struct cloth_error *note, struct cloth_error *error)
+int output_checkpoint_newest(struct output_checkpoint *checkpoint, const char *folder,
+                             struct cloth_error *note, struct cloth_error *error)
 {
     enum { TRIED = 64 };
     uint64_t number[TRIED];
+    const struct output_path within = output_path(folder, FOLDER);
+    const char *path = within.text;
     if (scan(path, false, false, TRIED, number) != 0)
         return output_refuse(error, "read", path);
     if (!number[0])
@@ -373,10 +313,8 @@ static int read_newest(struct output_checkpoint *checkpoint, const char *path,
                           path);
     for (int i = 0; i < TRIED && number[i]; i++) {
         struct cloth_error why = {0};
-        char *file = checkpoint_path_of(path, number[i], "");
-        const int code = file ? output_checkpoint_read(checkpoint, file, &why)
-                              : cloth_fail(&why, CLOTH_E_MEMORY, "no memory for paths");
-        free(file);
+        const int code =
+            output_checkpoint_read(checkpoint, checkpoint_path(path, number[i], "").text, &why);
         if (code && code != CLOTH_E_IO)
             *error = why;
         if (code != CLOTH_E_IO)
@@ -386,17 +324,6 @@ static int read_newest(struct output_checkpoint *checkpoint, const char *path,
     }
     return cloth_fail(error, CLOTH_E_INPUT, "%s holds no checkpoint that is whole: %s", path,
                       note->text);
-}
-
-int output_checkpoint_newest(struct output_checkpoint *checkpoint, const char *folder,
-                             struct cloth_error *note, struct cloth_error *error)
-{
-    char *path = output_path(folder, FOLDER, "");
-    const int code =
-        path ? read_newest(checkpoint, path, note, error)
-             : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of checkpoints");
-    free(path);
-    return code;
 }
 
 void output_checkpoint_free(struct output_checkpoint *checkpoint)

@@ -1,7 +1,7 @@
 #ifndef CLOTH_OUTPUT_COLOURS_H
 #define CLOTH_OUTPUT_COLOURS_H
 
-#include "cloth/base/error.h"
+#include "cloth/element/strain.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -22,24 +22,9 @@
  *           angle), u32 whether stress follows from them
  * An incomplete last record was never finished. Local functions. */
 
-/* Shapes at rest; cloth/element/strain.h computes strain and stress from them. */
-struct output_rest {
-    uint32_t n_triangles, n_edges, n_materials;
-    uint32_t (*corner)[4]; /* n_triangles: vertices, material */
-    double (*gradient)[4]; /* n_triangles, 1/m */
-    double *area;          /* n_triangles, m^2 */
-    uint32_t (*edge)[2];   /* n_edges: vertices */
-    double *length;        /* n_edges, m */
-    double (*modulus)[4];  /* n_materials, N/m */
-    bool *has_stress;      /* n_materials */
-};
-/* Room for what is counted. To be freed in any case. Error: CLOTH_E_MEMORY. */
-int output_rest_make(struct output_rest *rest, struct cloth_error *error);
-void output_rest_free(struct output_rest *rest);
-
 /* Bytes of the file of a run whose places do not change: with shapes of these counts. Pure. */
 uint64_t output_colours_bytes(uint32_t n_vertices, uint32_t n_blocks,
-                              const struct output_rest *rest);
+                              const struct element_strains *rest);
 
 /* --- Writing, on rank 0 --- */
 
@@ -52,7 +37,7 @@ int output_colours_open(struct output_colours **colours, const char *folder, uin
                         const uint64_t *n_frames, struct cloth_error *error);
 /* Shapes at rest from this frame on. Error: CLOTH_E_IO, also of output_colours_places. */
 int output_colours_rest(struct output_colours *colours, uint64_t frame,
-                        const struct output_rest *rest, struct cloth_error *error);
+                        const struct element_strains *rest, struct cloth_error *error);
 /* Blocks of vertices (n_vertices) and ranks of blocks; written if they changed. */
 int output_colours_places(struct output_colours *colours, uint64_t frame, const int32_t *block,
                           uint32_t n_blocks, const int32_t *rank, struct cloth_error *error);
@@ -75,9 +60,9 @@ int output_colours_ranks(const struct output_colours_read *colours, uint64_t fra
                          struct cloth_error *error);
 /* The first frame from which on the shapes of a frame count; UINT64_MAX: there are none. */
 uint64_t output_colours_rest_since(const struct output_colours_read *colours, uint64_t frame);
-/* These shapes; to be freed in any case. */
+/* These shapes; element_strains_free follows in any case. */
 int output_colours_rest_at(const struct output_colours_read *colours, uint64_t frame,
-                           struct output_rest *rest, struct cloth_error *error);
+                           struct element_strains *rest, struct cloth_error *error);
 void output_colours_unload(struct output_colours_read *colours);
 
 #endif

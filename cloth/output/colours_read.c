@@ -1,5 +1,6 @@
 /* The file is read as it was when it was opened, up to its first incomplete record. A whole record
  * of another size than its kind and the mesh give is an error. */
+#include "cloth/base/bytes.h"
 #include "cloth/base/file.h"
 #include "cloth/base/memory.h"
 #include "cloth/output/files/files.h"
@@ -7,45 +8,19 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 struct output_colours_read {
-    char *path;
+    struct output_path path;
     unsigned char *bytes;
     size_t size;
     uint32_t n_vertices;
-    struct cloth_list at; /* size_t: where each record begins */
 };
 
-static int colours_read_bytes(struct output_colours_read *colours, struct cloth_error *error)
+static struct element_strains counts_of(const unsigned char *bytes)
 {
-    FILE *file = cloth_file_open(colours->path);
-    struct stat status;
-    if (!file)
-        return cloth_fail(error, CLOTH_E_INPUT,
-                          "cannot read %s: %s; duite-cloth --output writes it beside the frames",
-                          colours->path, cloth_file_why());
-    int code =
-        fstat(fileno(file), &status) == 0 ? CLOTH_OK : output_fail(error, "read", colours->path);
-    const size_t size = code ? 0 : (size_t)status.st_size;
-    colours->bytes = code ? NULL : cloth_alloc(size, 1, error);
-    if (!code)
-        code = colours->bytes ? CLOTH_OK : CLOTH_E_MEMORY;
-    if (!code)
-        colours->size = fread(colours->bytes, 1, size, file);
-    fclose(file);
-    if (!code && (colours->size < OUTPUT_COLOURS_HEADER ||
-                  memcmp(colours->bytes, output_colours_header, OUTPUT_COLOURS_HEADER) != 0))
-        code = cloth_fail(error, CLOTH_E_INPUT, "%s is not what duite-cloth writes (version 1)",
-                          colours->path);
-    return code;
-}
-
-static struct output_rest counts_of(const unsigned char *bytes)
-{
-    return (struct output_rest){.n_triangles = output_get_u32(bytes),
-                                .n_edges = output_get_u32(bytes + 4),
-                                .n_materials = output_get_u32(bytes + 8)};
+    return (struct element_strains){.n_triangles = cloth_get_u32(bytes),
+                                    .n_edges = cloth_get_u32(bytes + 4),
+                                    .n_materials = cloth_get_u32(bytes + 8)};
 }
 
 /* True if a record has the size it must have. bytes: after its header. */
@@ -58,29 +33,36 @@ static bool is_sound(const struct output_colours_read *colours, const struct out
         return record->size % 4 == 0;
     if (record->kind != OUTPUT_RECORD_REST || record->size < OUTPUT_REST_COUNTS)
         return false;
-    const struct output_rest rest = counts_of(bytes);
+    const struct element_strains rest = counts_of(bytes);
     return record->size == output_rest_size(&rest);
 }
 
-static int find_records(struct output_colours_read *colours, struct cloth_error *error)
+/* The record at *at, which moves behind it. NULL: there is none, or it is being written. */
+static const unsigned char *next_record(const struct output_colours_read *colours, size_t *at,
+                                        struct output_record *record)
 {
-    size_t at = OUTPUT_COLOURS_HEADER;
-    while (colours->size - at >= OUTPUT_RECORD_HEADER) {
-        const struct output_record record = output_record_get(colours->bytes + at);
-        const size_t left = colours->size - at - OUTPUT_RECORD_HEADER;
-        if (record.size > left)
-            break; /* it is being written */
-        if (!is_sound(colours, &record, colours->bytes + at + OUTPUT_RECORD_HEADER))
+    const unsigned char *bytes = colours->bytes + *at;
+    const size_t left = colours->size - *at;
+    if (left < OUTPUT_RECORD_HEADER)
+        return NULL;
+    *record = output_record_get(bytes);
+    if (record->size > left - OUTPUT_RECORD_HEADER)
+        return NULL;
+    *at += OUTPUT_RECORD_HEADER + (size_t)record->size;
+    return bytes + OUTPUT_RECORD_HEADER;
+}
+
+static int check_records(const struct output_colours_read *colours, struct cloth_error *error)
+{
+    struct output_record record;
+    const unsigned char *bytes;
+    for (size_t at = OUTPUT_COLOURS_HEADER, from = at; (bytes = next_record(colours, &at, &record));
+         from = at)
+        if (!is_sound(colours, &record, bytes))
             return cloth_fail(error, CLOTH_E_INPUT,
                               "%s is damaged at byte %zu, or of another mesh than cloth.obj beside "
                               "it: run the scene again",
-                              colours->path, at);
-        size_t *next = cloth_list_add(&colours->at, sizeof at, 1, error);
-        if (!next)
-            return CLOTH_E_MEMORY;
-        *next = at;
-        at += OUTPUT_RECORD_HEADER + (size_t)record.size;
-    }
+                              colours->path.text, from);
     return CLOTH_OK;
 }
 
@@ -91,33 +73,39 @@ int output_colours_load(struct output_colours_read **colours, const char *folder
     if (!made)
         return CLOTH_E_MEMORY;
     made->n_vertices = n_vertices;
-    made->path = output_path(folder, output_colours_name, "");
-    if (!made->path)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
-    const int code = colours_read_bytes(made, error);
-    return code ? code : find_records(made, error);
+    made->path = output_path(folder, "%s", output_colours_name);
+    made->bytes = output_read_file(made->path.text, &made->size);
+    if (!made->bytes)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "cannot read %s: %s; duite-cloth --output writes it beside the frames",
+                          made->path.text, cloth_file_why());
+    if (made->size < OUTPUT_COLOURS_HEADER ||
+        memcmp(made->bytes, output_colours_header, OUTPUT_COLOURS_HEADER) != 0)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s is not what duite-cloth writes (version 1)",
+                          made->path.text);
+    return check_records(made, error);
 }
 
-/* The record of a kind that counts in a frame; NULL: none. */
+/* The last record of a kind that counts in a frame; NULL: none. */
 static const unsigned char *colours_read_find(const struct output_colours_read *colours,
                                               enum output_record_kind kind, uint64_t frame,
                                               struct output_record *record)
 {
-    const size_t *at = colours->at.items;
-    for (size_t i = colours->at.n; i > 0; i--) {
-        const unsigned char *bytes = colours->bytes + at[i - 1];
-        *record = output_record_get(bytes);
-        if (record->kind == kind && record->frame <= frame)
-            return bytes + OUTPUT_RECORD_HEADER;
-    }
-    return NULL;
+    const unsigned char *found = NULL, *bytes;
+    struct output_record one;
+    for (size_t at = OUTPUT_COLOURS_HEADER; (bytes = next_record(colours, &at, &one));)
+        if (one.kind == kind && one.frame <= frame) {
+            *record = one;
+            found = bytes;
+        }
+    return found;
 }
 
 static int colours_read_fail(const struct output_colours_read *colours, const char *what,
                              uint64_t frame, struct cloth_error *error)
 {
-    return cloth_fail(error, CLOTH_E_INPUT, "%s does not say %s of frame %ju", colours->path, what,
-                      (uintmax_t)frame);
+    return cloth_fail(error, CLOTH_E_INPUT, "%s does not say %s of frame %ju", colours->path.text,
+                      what, (uintmax_t)frame);
 }
 
 static int fail_as_damaged(const struct output_colours_read *colours, const char *what,
@@ -125,14 +113,14 @@ static int fail_as_damaged(const struct output_colours_read *colours, const char
 {
     return cloth_fail(error, CLOTH_E_INPUT,
                       "%s is damaged: it has a number of %s that is none: run the scene again",
-                      colours->path, what);
+                      colours->path.text, what);
 }
 
 /* -1, or less than there are vertices: of a block, or of a rank, which has a block. */
 static bool get_number(const struct output_colours_read *colours, const unsigned char bytes[4],
                        int32_t *number)
 {
-    const uint32_t value = output_get_u32(bytes);
+    const uint32_t value = cloth_get_u32(bytes);
     *number = value == UINT32_MAX ? -1 : (int32_t)value;
     return value == UINT32_MAX || value < colours->n_vertices;
 }
@@ -178,27 +166,25 @@ uint64_t output_colours_rest_since(const struct output_colours_read *colours, ui
 }
 
 int output_colours_rest_at(const struct output_colours_read *colours, uint64_t frame,
-                           struct output_rest *rest, struct cloth_error *error)
+                           struct element_strains *rest, struct cloth_error *error)
 {
     struct output_record record;
     const unsigned char *bytes = colours_read_find(colours, OUTPUT_RECORD_REST, frame, &record);
-    *rest = (struct output_rest){0};
+    *rest = (struct element_strains){0};
     if (!bytes)
         return colours_read_fail(colours, "the shapes at rest", frame, error);
     *rest = counts_of(bytes);
-    if (output_rest_make(rest, error))
+    rest->n_vertices = colours->n_vertices;
+    if (element_strains_room(rest, error))
         return CLOTH_E_MEMORY;
-    return output_rest_get(bytes, colours->n_vertices, rest)
-               ? CLOTH_OK
-               : fail_as_damaged(colours, "a shape at rest", error);
+    return output_rest_get(bytes, rest) ? CLOTH_OK
+                                        : fail_as_damaged(colours, "a shape at rest", error);
 }
 
 void output_colours_unload(struct output_colours_read *colours)
 {
     if (!colours)
         return;
-    free(colours->path);
     free(colours->bytes);
-    free(colours->at.items);
     free(colours);
 }

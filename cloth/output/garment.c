@@ -71,11 +71,9 @@ static void put_seam(FILE *file, const struct both *both, uint32_t s)
     output_garment_put_side(file, both, &side[0]);
     fputs(", ", file);
     output_garment_put_side(file, both, &side[1]);
-    fprintf(file, "],\n     \"reversed\": %s, \"distances\": [", seam->reversed ? "true" : "false");
-    output_json_number(file, seam->distance[0]);
-    fputs(", ", file);
-    output_json_number(file, seam->distance[1]);
-    fputs("],\n     \"pairs\": [", file);
+    fprintf(file, "],\n     \"reversed\": %s, \"distances\": ", seam->reversed ? "true" : "false");
+    output_json_put_numbers(file, 2, seam->distance);
+    fputs(",\n     \"pairs\": [", file);
     for (uint32_t k = 0; k < seam->n_pairs; k++)
         fprintf(file, "%s[%u, %u]", k ? ", " : "", seam->pair[k][0], seam->pair[k][1]);
     fputs("]}", file);

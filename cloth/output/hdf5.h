@@ -1,7 +1,7 @@
 #ifndef CLOTH_OUTPUT_HDF5_H
 #define CLOTH_OUTPUT_HDF5_H
 
-#include "cloth/base/error.h"
+#include "cloth/output/settle.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -12,7 +12,7 @@
  *   cloth.vtkhdf.series        JSON: {"file-series-version": "1.0", "files": [{"name", "time"}]}
  *   cloth.xmf                  XDMF: the same frames, for programs that do not read VTKHDF
  *
- * A thread of its own writes them, on rank 0: a frame is copied, and the caller goes on. At most
+ * The settler writes them, on rank 0: a frame is copied, and the caller goes on. At most
  * OUTPUT_HDF5_FLIGHT of them are in memory; then the caller waits. A frame gets its name when it is
  * whole and on the disk; then both indexes name it. Local functions, called from one thread at a
  * time. */
@@ -41,7 +41,7 @@ struct output_state {
 };
 
 struct output_hdf5_setup {
-    const char *folder;                      /* of frames; it is there */
+    const char *folder;                      /* of frames; it is there, and outlives this */
     uint32_t n_points, n_triangles, n_edges; /* cells are the triangles, then the edges */
     const uint32_t (*triangle)[3];           /* read by output_hdf5_open only */
     const uint32_t (*edge)[2];               /* as that */
@@ -50,10 +50,11 @@ struct output_hdf5_setup {
     uint32_t every;           /* > 0: of all frames each k-th, from the first on */
     const uint64_t *n_frames; /* of an earlier run's, how many of all stay, and go on; NULL: none */
     uint32_t level;           /* of gzip, 0 to 9; 0: none */
-    /* Fills the fields of cells from the positions. Called by the thread that writes. */
+    struct output_settler *settler; /* writes them; NULL: the caller does */
+    /* Fills the fields of cells from the positions. Called by the settler. */
     void (*derive)(void *context, struct output_state *state);
     void *context;
-    void (*warn)(const char *text); /* says a sentence at once; from that thread, too */
+    void (*warn)(const char *text); /* says a sentence at once; from the settler */
 };
 
 /* Why this build, or its HDF5, cannot do that; NULL: it can. */
@@ -75,13 +76,13 @@ bool output_hdf5_takes(const struct output_hdf5 *frames, uint64_t frame);
  * The caller fills position and the wanted fields of points. */
 struct output_state *output_hdf5_begin(struct output_hdf5 *frames, uint64_t frame, double time);
 
-/* The frame that was begun is whole and goes to the thread. */
+/* The frame that was begun is whole and goes to the settler. */
 void output_hdf5_end(struct output_hdf5 *frames);
 
-/* Waits until no frame is in flight. From any thread. */
-void output_hdf5_wait(struct output_hdf5 *frames);
+/* Waits until no frame is in flight. */
+void output_hdf5_wait(const struct output_hdf5 *frames);
 
-/* Writes the frames in flight and closes; a frame that was begun and has not ended is left out.
+/* Closes, when the settler is closed; a frame that was begun and has not ended is left out.
  * *frames becomes NULL. CLOTH_E_IO: some frames were not written; it names their number, the first
  * and the reason. */
 int output_hdf5_close(struct output_hdf5 **frames, struct cloth_error *error);

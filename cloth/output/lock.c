@@ -3,6 +3,7 @@
  * replace it. A lock that is not empty names its host and process, and, where the system says it,
  * when that began: a later process may have the same number. */
 #include "cloth/output/files/files.h"
+#include "cloth/output/output.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -14,9 +15,12 @@
 #include <unistd.h>
 
 struct output_lock {
-    char *path, *take; /* the lock, and the file that lets its maker replace it */
-    size_t number;     /* of `held` */
+    struct output_path path;
+    atomic_bool is_held;
 };
+
+enum { LOCKS = 4, TEXT = HOST_NAME_MAX + 128 };
+static struct output_lock locks[LOCKS]; /* of this process, for the signal handler */
 
 struct holder {
     char host[HOST_NAME_MAX + 1];
@@ -24,18 +28,13 @@ struct holder {
     unsigned long long start; /* in ticks of the kernel since it began; 0: not known */
 };
 
-enum { MAX = 4, TEXT = HOST_NAME_MAX + 128 };
-static char *_Atomic held[MAX]; /* paths of the locks of this process, for the signal handler */
-
 /* ---- Signals ---- */
 
 void output_locks_remove(void)
 {
-    for (int i = 0; i < MAX; i++) {
-        const char *path = held[i];
-        if (path)
-            unlink(path);
-    }
+    for (int i = 0; i < LOCKS; i++)
+        if (locks[i].is_held)
+            unlink(locks[i].path.text);
 }
 
 /* Ends the process as the signal would have without a handler. */
@@ -124,8 +123,8 @@ static bool lock_is_ours(const struct holder *holder)
 {
     const struct holder self = this_process();
     bool holds = false;
-    for (int i = 0; i < MAX; i++)
-        holds = holds || held[i];
+    for (int i = 0; i < LOCKS; i++)
+        holds = holds || locks[i].is_held;
     return holds && is_same(holder, &self);
 }
 
@@ -174,10 +173,12 @@ static int write_lock(const char *path)
     return -1;
 }
 
-static int lock_refuse(const char *folder, const char *path, const struct holder *holder,
-                       struct cloth_error *error)
+/* Says whose the lock at a path is. */
+static int lock_refuse(const char *folder, const char *path, struct cloth_error *error)
 {
-    if (!holder->process)
+    struct holder holder;
+    read_holder(path, &holder);
+    if (!holder.process)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%s: another run writes into this folder, or died as it began to: %s "
                           "names no process; give another folder, or, if no run uses this one, "
@@ -186,98 +187,74 @@ static int lock_refuse(const char *folder, const char *path, const struct holder
     return cloth_fail(error, CLOTH_E_INPUT,
                       "%s: another run writes into this folder, process %ld on host %s; give "
                       "another folder, or wait for the end of that run; if it has died, remove %s",
-                      folder, holder->process, holder->host, path);
+                      folder, holder.process, holder.host, path);
+}
+
+/* Where no other file may be. */
+static int write_first(const char *folder, const char *path, struct cloth_error *error)
+{
+    if (write_lock(path) == 0)
+        return CLOTH_OK;
+    return errno == EEXIST ? lock_refuse(folder, path, error) : output_refuse(error, "write", path);
 }
 
 /* While `take` is ours no other process replaces the lock. */
-static int replace(const struct output_lock *lock, const char *folder, struct cloth_error *note,
+static int replace(const char *path, const char *folder, struct cloth_error *note,
                    struct cloth_error *error)
 {
     struct holder holder;
-    if (read_holder(lock->path, &holder)) {
+    if (read_holder(path, &holder)) {
         if (!is_stale(&holder))
-            return lock_refuse(folder, lock->path, &holder, error);
+            return lock_refuse(folder, path, error);
         cloth_fail(note, CLOTH_E_IO,
                    "%s: process %ld of this host left %s and runs no more; this run has the "
                    "folder now",
-                   folder, holder.process, lock->path);
-        if (unlink(lock->path) != 0)
-            return output_refuse(error, "remove", lock->path);
+                   folder, holder.process, path);
+        if (unlink(path) != 0)
+            return output_refuse(error, "remove", path);
     }
-    if (write_lock(lock->path) == 0)
-        return CLOTH_OK;
-    if (errno != EEXIST)
-        return output_refuse(error, "write", lock->path);
-    read_holder(lock->path, &holder);
-    return lock_refuse(folder, lock->path, &holder, error);
+    return write_first(folder, path, error);
 }
 
-static int lock_take(const struct output_lock *lock, const char *folder, struct cloth_error *note,
+static int lock_take(const char *path, const char *folder, struct cloth_error *note,
                      struct cloth_error *error)
 {
     struct holder holder;
-    if (write_lock(lock->path) == 0)
+    const struct output_path take = output_path(folder, "duite.lock.take");
+    if (write_lock(path) == 0)
         return CLOTH_OK;
     if (errno != EEXIST)
-        return output_refuse(error, "write", lock->path);
-    const bool locked = read_holder(lock->path, &holder);
+        return output_refuse(error, "write", path);
+    const bool locked = read_holder(path, &holder);
     if (locked && lock_is_ours(&holder))
         return CLOTH_OK;
     if (locked && !is_stale(&holder))
-        return lock_refuse(folder, lock->path, &holder, error);
-    if (write_lock(lock->take) != 0) {
-        if (errno != EEXIST)
-            return output_refuse(error, "write", lock->take);
-        read_holder(lock->take, &holder);
-        return lock_refuse(folder, lock->take, &holder, error);
-    }
-    const int code = replace(lock, folder, note, error);
-    unlink(lock->take);
+        return lock_refuse(folder, path, error);
+    if (write_first(folder, take.text, error))
+        return error->code;
+    const int code = replace(path, folder, note, error);
+    unlink(take.text);
     return code;
 }
 
 /* ---- For the run ---- */
 
-static int lock_make(struct output_lock *lock, const char *folder, struct cloth_error *error)
-{
-    lock->path = output_path(folder, "duite.lock", "");
-    lock->take = output_path(folder, "duite.lock", ".take");
-    if (lock->path && lock->take)
-        return output_make_folder(folder, error);
-    return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the lock of %s", folder);
-}
-
-static void free_lock(struct output_lock *lock)
-{
-    free(lock->path);
-    free(lock->take);
-    free(lock);
-}
-
-/* A signal leaves a lock that is not noted, as SIGKILL does. */
-static void note_held(struct output_lock *lock)
-{
-    for (lock->number = 0; lock->number < MAX && held[lock->number];)
-        lock->number++;
-    if (lock->number < MAX)
-        held[lock->number] = lock->path;
-}
-
 int output_lock_take(struct output_lock **lock, const char *folder, struct cloth_error *note,
                      struct cloth_error *error)
 {
+    struct output_lock *made = locks;
     *lock = NULL;
-    struct output_lock *made = calloc(1, sizeof *made);
-    if (!made)
+    while (made < locks + LOCKS && made->is_held)
+        made++;
+    if (made == locks + LOCKS)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the lock of %s", folder);
+    made->path = output_path(folder, "duite.lock");
     catch_ends();
-    int code = lock_make(made, folder, error);
-    code = code ? code : lock_take(made, folder, note, error);
-    if (code) {
-        free_lock(made);
+    int code = output_make_folder(folder, error);
+    code = code ? code : lock_take(made->path.text, folder, note, error);
+    if (code)
         return code;
-    }
-    note_held(made);
+    made->is_held = true;
     *lock = made;
     return CLOTH_OK;
 }
@@ -290,9 +267,7 @@ void output_lock_free(struct output_lock **lock)
     *lock = NULL;
     if (!gone)
         return;
-    if (gone->number < MAX)
-        held[gone->number] = NULL;
-    if (read_holder(gone->path, &holder) && is_same(&holder, &self))
-        unlink(gone->path); /* else somebody removed it, and another run may have the folder */
-    free_lock(gone);
+    gone->is_held = false;
+    if (read_holder(gone->path.text, &holder) && is_same(&holder, &self))
+        unlink(gone->path.text); /* else somebody removed it, and another run may have the folder */
 }

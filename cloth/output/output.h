@@ -78,7 +78,7 @@ double output_room(const char *folder);
 
 /* Takes these bodies, of the same meshes, from now on; their time 0 is the frames' time `begin`, s.
  */
-void output_bodies_go_on(const struct output_frames *frames, const struct contact_bodies *bodies,
+void output_bodies_go_on(struct output_frames *frames, const struct contact_bodies *bodies,
                          double begin);
 
 /* Appends a frame: position is (all vertices) x 3, metres. Has the form of flow_output.frame,
@@ -116,13 +116,10 @@ int output_forces_close(struct output_forces **forces, struct cloth_error *error
 /* Removes that of an earlier run from a folder of frames, whose run has none. */
 int output_forces_forget(const char *folder, struct cloth_error *error);
 
-/* Reads a frame back. Errors: CLOTH_E_INPUT, there is none, or it cannot be read. */
+/* Counts its frames, and reads one back, unless force is NULL or that frame is not there (yet).
+ * Errors: CLOTH_E_INPUT, there is no such file, or it cannot be read. */
 int output_forces_read(const char *folder, uint32_t n_vertices, uint64_t frame, double *force,
-                       struct cloth_error *error);
-
-/* How many frames it has. Errors alike. */
-int output_forces_count(const char *folder, uint32_t n_vertices, uint64_t *n_frames,
-                        struct cloth_error *error);
+                       uint64_t *n_frames, struct cloth_error *error);
 
 /* A folder's lock: DIR/duite.lock, which names the host and the process of the run that writes into
  * the folder, and since when that runs. Local functions, on rank 0. */

@@ -3,15 +3,6 @@
 #include "cloth/output/files/json.h"
 #include "cloth/output/garment.h"
 
-static void output_pattern_put_numbers(FILE *file, const double *value, int n)
-{
-    for (int i = 0; i < n; i++) {
-        fputs(i ? ", " : "[", file);
-        output_json_number(file, value[i]);
-    }
-    fputc(']', file);
-}
-
 static void put_curvature(FILE *file, const struct garment_edge *edge)
 {
     static const char *const type[] = {
@@ -24,10 +15,10 @@ static void put_curvature(FILE *file, const struct garment_edge *edge)
         fprintf(file, ", %d, %d]}", edge->large, edge->right);
         return;
     }
-    output_pattern_put_numbers(file, edge->control[0], 2);
+    output_json_put_numbers(file, 2, edge->control[0]);
     if (edge->curve == GARMENT_CUBIC) {
         fputs(", ", file);
-        output_pattern_put_numbers(file, edge->control[1], 2);
+        output_json_put_numbers(file, 2, edge->control[1]);
     }
     fputs("]}", file);
 }
@@ -36,13 +27,13 @@ static void output_pattern_put_panel(FILE *file, const struct garment_panel *pan
 {
     output_json_string(file, panel->name);
     fputs(": {\n        \"translation\": ", file);
-    output_pattern_put_numbers(file, panel->translate, 3);
+    output_json_put_numbers(file, 3, panel->translate);
     fputs(", \"rotation\": ", file);
-    output_pattern_put_numbers(file, panel->rotate, 3);
+    output_json_put_numbers(file, 3, panel->rotate);
     fputs(",\n        \"vertices\": [", file);
     for (uint32_t c = 0; c < panel->n_corners; c++) {
         fputs(c ? ", " : "", file);
-        output_pattern_put_numbers(file, panel->corner[c], 2);
+        output_json_put_numbers(file, 2, panel->corner[c]);
     }
     fputs("],\n        \"edges\": [", file);
     for (uint32_t e = 0; e < panel->n_edges; e++) {

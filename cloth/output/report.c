@@ -2,9 +2,9 @@
  * reports it. */
 #include "cloth/output/files/files.h"
 #include "cloth/output/files/json.h"
+#include "cloth/output/output.h"
 
 #include <errno.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -89,61 +89,7 @@ static int fill_report(FILE *file, const void *what)
     return ferror(file);
 }
 
-/* Beside its final name, then renamed, so that the path never holds half a report, or parts of two
- * runs'. */
-static int write_renamed(const struct output_report *report, const char *path,
-                         struct cloth_error *error)
-{
-    char *part = NULL;
-    if (asprintf(&part, "%s.%ld.part", path, (long)getpid()) < 0)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory to write %s", path);
-    int code = output_write_file(part, fill_report, report, error);
-    if (!code && rename(part, path) != 0) {
-        code = output_fail(error, "write", path);
-        unlink(part);
-    }
-    free(part);
-    return code;
-}
-
 /* ---- Destination ---- */
-
-enum { MAX_LINKS = 40 }; /* as the kernel follows */
-
-/* The path with its last part replaced by the text of a link there. */
-static char *beside(const char *path, const char *link)
-{
-    char *joined = NULL;
-    const char *slash = strrchr(path, '/');
-    const int folder = slash && *link != '/' ? (int)(slash - path) + 1 : 0;
-    return asprintf(&joined, "%.*s%s", folder, path, link) < 0 ? NULL : joined;
-}
-
-/* The path that links lead to, even if it does not exist yet. The caller frees it. NULL: errno says
- * why. */
-static char *follow(const char *path)
-{
-    char *now = strdup(path), link[PATH_MAX];
-    for (int links = 0; now; links++) {
-        const ssize_t n = readlink(now, link, sizeof link - 1);
-        if (n < 0)
-            return now;
-        link[n] = '\0';
-        char *next = links < MAX_LINKS ? beside(now, link) : NULL;
-        free(now);
-        now = next;
-        if (links == MAX_LINKS)
-            errno = ELOOP;
-    }
-    return NULL;
-}
-
-/* Renaming onto a pipe or a terminal would replace it: it has to be written as it is. */
-static bool written_in_place(const char *path)
-{
-    struct stat status;
-    return stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
-}
 
 /* The one of our own two outputs that the path leads to, as /dev/stdout does; -1: neither. */
 static int own_output(const char *path)
@@ -185,42 +131,37 @@ static bool within(const char *folder, const char *made)
     return made && strncmp(folder, made, n) == 0 && (made[n] == '/' || !made[n]);
 }
 
-static int output_report_check_folder(const char *file, const char *path, const char *made,
-                                      struct cloth_error *error)
+static int check_folder(const char *file, const char *path, const char *made,
+                        struct cloth_error *error)
 {
+    struct output_path folder;
     const char *slash = strrchr(file, '/');
-    char *folder = slash ? strndup(file, (size_t)(slash - file) + 1) : strdup("./");
-    if (!folder)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
-    int code = 0;
-    if (access(folder, W_OK | X_OK) != 0 && !(errno == ENOENT && within(folder, made))) {
-        const char *reason = strerror(errno);
-        if (strcmp(file, path) == 0)
-            code = cloth_fail(error, CLOTH_E_INPUT, "cannot write in its folder: %s", reason);
-        else
-            code = cloth_fail(error, CLOTH_E_INPUT,
-                              "it is a link to %s; cannot write in the folder of that: %s", file,
-                              reason);
-    }
-    free(folder);
-    return code;
+    snprintf(folder.text, sizeof folder.text, "%.*s", slash ? (int)(slash - file) + 1 : 2,
+             slash ? file : "./");
+    if (access(folder.text, W_OK | X_OK) == 0 || (errno == ENOENT && within(folder.text, made)))
+        return 0;
+    const char *reason = strerror(errno);
+    return strcmp(file, path) == 0
+               ? cloth_fail(error, CLOTH_E_INPUT, "cannot write in its folder: %s", reason)
+               : cloth_fail(error, CLOTH_E_INPUT,
+                            "it is a link to %s; cannot write in the folder of that: %s", file,
+                            reason);
 }
 
 int output_report_check(const char *path, const char *made, struct cloth_error *error)
 {
     struct stat status;
-    if (stat(path, &status) == 0 && S_ISDIR(status.st_mode))
+    const bool is_there = stat(path, &status) == 0;
+    if (is_there && S_ISDIR(status.st_mode))
         return cloth_fail(error, CLOTH_E_INPUT, "this is a folder; the name of a file is expected");
-    if (written_in_place(path) || own_output(path) >= 0)
+    if (is_there && (!S_ISREG(status.st_mode) || own_output(path) >= 0)) /* written as it is */
         return access(path, W_OK) == 0
                    ? 0
                    : cloth_fail(error, CLOTH_E_INPUT, "cannot be written: %s", strerror(errno));
-    char *file = follow(path);
-    if (!file)
-        return cloth_fail(error, CLOTH_E_INPUT, "cannot follow this link: %s", strerror(errno));
-    const int code = output_report_check_folder(file, path, made, error);
-    free(file);
-    return code;
+    struct output_path end;
+    return output_follow(path, &end) == 0
+               ? check_folder(end.text, path, made, error)
+               : cloth_fail(error, CLOTH_E_INPUT, "cannot follow this link: %s", strerror(errno));
 }
 
 int output_report_write(struct output_report *report, const char *path, struct cloth_error *error)
@@ -228,14 +169,8 @@ int output_report_write(struct output_report *report, const char *path, struct c
     if (fflush(report->stream) != 0 || ferror(report->stream))
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the report %s", path);
     const int own = own_output(path);
-    if (own >= 0)
-        return write_own(report, own, path, error);
-    if (written_in_place(path))
-        return output_write_file(path, fill_report, report, error);
-    char *file = follow(path);
-    const int code = file ? write_renamed(report, file, error) : output_fail(error, "write", path);
-    free(file);
-    return code;
+    return own >= 0 ? write_own(report, own, path, error)
+                    : output_replace_file(path, fill_report, report, error);
 }
 
 void output_report_free(struct output_report *report)

@@ -1,9 +1,9 @@
 /* The folder may not be there yet: then its nearest parent that exists is on the same file system.
  */
+#include "cloth/output/files/files.h"
 #include "cloth/output/output.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -16,11 +16,8 @@ static double replaced(const char *folder)
     double bytes = 0;
     for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
         struct stat status;
-        const size_t size = strlen(folder) + strlen(name[i]) + 2;
-        char *path = malloc(size);
-        if (path && snprintf(path, size, "%s/%s", folder, name[i]) > 0 && stat(path, &status) == 0)
+        if (stat(output_path(folder, "%s", name[i]).text, &status) == 0)
             bytes += (double)status.st_size;
-        free(path);
     }
     return bytes;
 }

@@ -1,10 +1,9 @@
-/* Under the lock is how far each member is. The thread alone counts up `settled`; it takes all
- * frames that are there at once, so a slow disk is asked less often. After a failure it settles
- * nothing more. */
+/* Under the lock is how far each member is. The thread takes all frames that are there at once, so
+ * a slow disk is asked less often. After a failure it settles nothing more. */
 #include "cloth/output/settle.h"
 
-#include <pthread.h>
-#include <signal.h>
+#include "cloth/base/thread.h"
+
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,19 +14,17 @@ struct output_settler {
     pthread_t thread;
     pthread_mutex_t lock; /* of what follows */
     pthread_cond_t change;
+    uint32_t n;
     struct output_member member[OUTPUT_MEMBERS];
     uint32_t written[OUTPUT_MEMBERS], settled[OUTPUT_MEMBERS];
-    uint32_t n;
+    uint64_t given, done; /* frames that members wrote; that the thread has settled, in turn */
     struct cloth_error trouble; /* the first */
     bool ends;
 };
 
-static bool is_settled(const struct output_settler *settler, const uint32_t *goal)
+static bool is_idle(const struct output_settler *settler)
 {
-    bool is = true;
-    for (uint32_t i = 0; i < settler->n; i++)
-        is = is && settler->settled[i] >= goal[i];
-    return is || settler->trouble.code;
+    return settler->done == settler->given || settler->trouble.code;
 }
 
 /* ---- The thread ---- */
@@ -36,19 +33,22 @@ static bool is_settled(const struct output_settler *settler, const uint32_t *goa
  * no member gets ahead of one before it. */
 static void settle_all(struct output_settler *settler)
 {
-    uint32_t goal[OUTPUT_MEMBERS];
+    const uint64_t goal = settler->given;
+    uint32_t written[OUTPUT_MEMBERS];
     struct cloth_error why = {0};
-    memcpy(goal, settler->written, sizeof goal);
+    memcpy(written, settler->written, sizeof written);
     for (uint32_t i = 0; i < settler->n && !why.code; i++) {
         const struct output_member member = settler->member[i];
-        if (settler->settled[i] == goal[i])
+        if (settler->settled[i] == written[i])
             continue;
         pthread_mutex_unlock(&settler->lock);
-        member.settle(member.context, goal[i], &why);
+        member.settle(member.context, written[i], &why);
         pthread_mutex_lock(&settler->lock);
         if (!why.code)
-            settler->settled[i] = goal[i];
+            settler->settled[i] = written[i];
+        pthread_cond_broadcast(&settler->change);
     }
+    settler->done = goal;
     settler->trouble = why;
     pthread_cond_broadcast(&settler->change);
 }
@@ -57,24 +57,13 @@ static void *output_settle_run(void *context)
 {
     struct output_settler *settler = context;
     pthread_mutex_lock(&settler->lock);
-    while (!(settler->ends && is_settled(settler, settler->written)))
-        if (is_settled(settler, settler->written))
+    while (!(settler->ends && is_idle(settler)))
+        if (is_idle(settler))
             pthread_cond_wait(&settler->change, &settler->lock);
         else
             settle_all(settler);
     pthread_mutex_unlock(&settler->lock);
     return NULL;
-}
-
-/* Signals are the other threads'. */
-static int output_settle_start(struct output_settler *settler)
-{
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    const int failed = pthread_create(&settler->thread, NULL, output_settle_run, settler);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return failed;
 }
 
 static void output_settle_drop(struct output_settler *settler)
@@ -94,7 +83,7 @@ int output_settler_open(struct output_settler **settler, struct cloth_error *err
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for frames");
     pthread_mutex_init(&made->lock, NULL);
     pthread_cond_init(&made->change, NULL);
-    const int failed = output_settle_start(made);
+    const int failed = cloth_thread_start(&made->thread, output_settle_run, made);
     if (failed) {
         output_settle_drop(made);
         return cloth_fail(error, CLOTH_E_LIBRARY, "no thread to bring frames to the disk: %s",
@@ -116,9 +105,8 @@ int output_settler_wait(struct output_settler *settler, struct cloth_error *erro
     if (!settler)
         return CLOTH_OK;
     pthread_mutex_lock(&settler->lock);
-    uint32_t goal[OUTPUT_MEMBERS]; /* of now: on a slow disk there are always newer frames */
-    memcpy(goal, settler->written, sizeof goal);
-    while (!is_settled(settler, goal))
+    const uint64_t goal = settler->given; /* of now: on a slow disk there are always newer frames */
+    while (settler->done < goal && !settler->trouble.code)
         pthread_cond_wait(&settler->change, &settler->lock);
     const int code = tell(settler, error);
     pthread_mutex_unlock(&settler->lock);
@@ -155,6 +143,19 @@ void output_member_add(struct output_member *member, struct output_settler *sett
     pthread_mutex_unlock(&settler->lock);
 }
 
+bool output_member_wait(const struct output_member *member, uint32_t n)
+{
+    struct output_settler *settler = member->settler;
+    if (!settler)
+        return true;
+    pthread_mutex_lock(&settler->lock);
+    while (settler->settled[member->place] < n && !settler->trouble.code)
+        pthread_cond_wait(&settler->change, &settler->lock);
+    const bool is_settled = settler->settled[member->place] >= n;
+    pthread_mutex_unlock(&settler->lock);
+    return is_settled;
+}
+
 int output_member_wrote(const struct output_member *member, uint32_t n, struct cloth_error *error)
 {
     struct output_settler *settler = member->settler;
@@ -162,6 +163,7 @@ int output_member_wrote(const struct output_member *member, uint32_t n, struct c
         return member->settle(member->context, n, error);
     pthread_mutex_lock(&settler->lock);
     settler->written[member->place] = n;
+    settler->given++;
     pthread_cond_broadcast(&settler->change);
     while (n - settler->settled[member->place] > BEHIND && !settler->trouble.code)
         pthread_cond_wait(&settler->change, &settler->lock);

@@ -3,10 +3,12 @@
 
 #include "cloth/base/error.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
-/* A thread that syncs frames to the disk, so that no worker of a run waits for it. Workers write
- * the frames; the thread syncs and counts them. On rank 0 alone; local functions. */
+/* A thread that brings frames to the disk, so that no worker of a run waits for it. Workers write
+ * the frames, or copy them; the thread syncs and counts them, and makes those of HDF5. On rank 0
+ * alone; local functions. */
 struct output_settler;
 
 /* Before the runtime binds its threads to cores. Errors: CLOTH_E_MEMORY; CLOTH_E_LIBRARY, no
@@ -32,10 +34,13 @@ struct output_member {
     struct output_settler *settler; /* NULL: there is no thread */
     uint32_t place;                 /* among the members */
 };
-enum { OUTPUT_MEMBERS = 2 };
+enum { OUTPUT_MEMBERS = 3 };
 
 /* Adds it, whose first n frames are settled. settler may be NULL. */
 void output_member_add(struct output_member *member, struct output_settler *settler, uint32_t n);
+/* Waits until its first n frames are settled. False: they are not, and will not be, since the
+ * settler failed. */
+bool output_member_wait(const struct output_member *member, uint32_t n);
 /* Its first n frames are written. Waits while the disk is some frames behind. Errors: of a frame
  * that could not be settled, of any member, this one or one before it. */
 int output_member_wrote(const struct output_member *member, uint32_t n, struct cloth_error *error);

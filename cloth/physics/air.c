@@ -30,7 +30,7 @@ PHYS_INLINE void cross(const phys_vec *a, const phys_vec *b, phys_vec *c)
 /* The part of the force on a triangle that each of so many corners takes. */
 static void push(const struct phys_air *air, const struct corner c[3], int corners, phys_vec *part)
 {
-    const phys_vec wind = {air->wind[0], air->wind[1], air->wind[2], 0};
+    const phys_vec wind = PHYS_VEC(air->wind);
     const phys_vec u = wind - (c[0].v + c[1].v + c[2].v) / 3;
     const phys_vec a = c[1].x - c[0].x, b = c[2].x - c[0].x;
     phys_vec normal;
@@ -45,18 +45,19 @@ static void push(const struct phys_air *air, const struct corner c[3], int corne
             (air->normal * length_of(&across) * across + air->tangent * length_of(&along) * along);
 }
 
-void phys_air_force(const struct phys_air *air, size_t n, const uint32_t (*corner)[4],
+void phys_air_force(const struct phys_elements *faces, const struct phys_air *air,
                     const struct phys_sight *sight, phys_vec *f)
 {
-    for (size_t e = 0; e < n; e++) {
-        const int corners = corner[e][3] == PHYS_NO_CORNER ? 3 : 4;
+    for (uint32_t e = 0; e < faces->n; e++) {
+        const uint32_t *corner = faces->corner[e];
+        const int corners = corner[3] == PHYS_NO_CORNER ? 3 : 4;
         struct corner c[3];
         phys_vec part;
         for (int i = 0; i < 3; i++)
-            c[i] = corner_of(sight, corner[e][i]);
+            c[i] = corner_of(sight, corner[i]);
         push(air, c, corners, &part);
         for (int i = 0; i < corners; i++)
-            if (corner[e][i] < sight->n)
-                f[corner[e][i]] += part;
+            if (corner[i] < sight->n)
+                f[corner[i]] += part;
     }
 }

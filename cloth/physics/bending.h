@@ -24,19 +24,9 @@
  * cloth: a hinge without stiffness has the damping. A hinge whose triangle lost its area acts
  * through the other alone. Pure functions; nothing is allocated. */
 
-struct phys_hinges {
-    size_t n;
-    const uint32_t (*corner)[4];
-    const double *stiffness; /* n: k, N m */
-    const double *damping;   /* n: N m s: of ds/dt */
-    const double *rest;      /* n: s0 */
-};
-
-struct phys_quadratic {
-    size_t n;
-    const uint32_t (*corner)[4];
-    const phys_vec *weight; /* n: w_0 .. w_3, sqrt(N/m); they sum to nothing */
-};
+/* Numbers of a hinge: k, N m; the damping of ds/dt, N m s; s0. The vector of a quadratic energy is
+ * w_0 .. w_3, sqrt(N/m), which sum to nothing. */
+enum { PHYS_HINGE_STIFFNESS, PHYS_HINGE_DAMPING, PHYS_HINGE_REST };
 
 /* The rest shape of an element whose corners lie at x (m; x y z of each), flat or not. */
 struct phys_bend_rest {
@@ -55,22 +45,22 @@ double phys_bend_rigidity(double warp, double weft, const double direction[2]);
 /* As of triangles (triangle.h); pairs of each element: (0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2,
  * 3). */
 enum { PHYS_BEND_PAIRS = 6 };
-void phys_hinges_force(const struct phys_hinges *hinges, const struct phys_sight *sight,
-                       phys_vec *f);
-void phys_hinges_stiffness(const struct phys_hinges *hinges, int full, double scale,
+void phys_hinges_force(const struct phys_elements *hinges, const struct phys_air *air,
+                       const struct phys_sight *sight, phys_vec *f);
+void phys_hinges_stiffness(const struct phys_elements *hinges, int full, double scale,
                            const struct phys_sight *sight, phys_vec *y);
-void phys_hinges_matrix(const struct phys_hinges *hinges, size_t from, size_t to,
+void phys_hinges_matrix(const struct phys_elements *hinges, size_t from, size_t to,
                         const struct phys_step *step, const struct phys_sight *sight,
                         const uint32_t *at, struct phys_pair *pair);
-double phys_hinges_energy(const struct phys_hinges *hinges, const struct phys_sight *sight);
+double phys_hinges_energy(const struct phys_elements *hinges, const struct phys_sight *sight);
 
-void phys_quadratic_force(const struct phys_quadratic *quadratic, const struct phys_sight *sight,
-                          phys_vec *f);
-void phys_quadratic_stiffness(const struct phys_quadratic *quadratic, double scale,
+void phys_quadratic_force(const struct phys_elements *quadratic, const struct phys_air *air,
+                          const struct phys_sight *sight, phys_vec *f);
+void phys_quadratic_stiffness(const struct phys_elements *quadratic, int full, double scale,
                               const struct phys_sight *sight, phys_vec *y);
-void phys_quadratic_matrix(const struct phys_quadratic *quadratic, size_t from, size_t to, double h,
-                           struct phys_pair *pair);
-double phys_quadratic_energy(const struct phys_quadratic *quadratic,
-                             const struct phys_sight *sight);
+void phys_quadratic_matrix(const struct phys_elements *quadratic, size_t from, size_t to,
+                           const struct phys_step *step, const struct phys_sight *sight,
+                           const uint32_t *at, struct phys_pair *pair);
+double phys_quadratic_energy(const struct phys_elements *quadratic, const struct phys_sight *sight);
 
 #endif

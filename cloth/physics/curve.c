@@ -3,20 +3,28 @@
 
 #include <math.h>
 
-double phys_curve_at(size_t n, const struct phys_curve_key *curve_key, double time)
+size_t phys_key_before(size_t n, const double *times, size_t stride, double time)
 {
     size_t low = 0, high = n;
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
-        if (curve_key[middle].time <= time)
+        if (times[stride * middle] <= time)
             low = middle;
         else
             high = middle;
     }
-    if (high == n || time <= curve_key[low].time)
-        return curve_key[low].factor;
-    const double part = (time - curve_key[low].time) / (curve_key[high].time - curve_key[low].time);
-    return (1 - part) * curve_key[low].factor + part * curve_key[high].factor;
+    return low;
+}
+
+double phys_curve_at(size_t n, const struct phys_curve_key *curve_key, double time)
+{
+    const size_t stride = sizeof *curve_key / sizeof(double);
+    const struct phys_curve_key *key =
+        curve_key + phys_key_before(n, &curve_key->time, stride, time);
+    if (key + 1 == curve_key + n || time <= key->time)
+        return key->factor;
+    const double part = (time - key->time) / (key[1].time - key->time);
+    return (1 - part) * key->factor + part * key[1].factor;
 }
 
 double phys_sine(double turns)

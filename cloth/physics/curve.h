@@ -9,6 +9,10 @@ struct phys_curve_key {
     double time, factor; /* s, ascending; 1 */
 };
 
+/* The last of n > 0 ascending times, `stride` numbers from each other, that is not after a time;
+ * else the first. */
+size_t phys_key_before(size_t n, const double *times, size_t stride, double time);
+
 /* The value by n > 0 key frames: linear between two, constant before the first and after the last.
  */
 double phys_curve_at(size_t n, const struct phys_curve_key *curve_key, double time);

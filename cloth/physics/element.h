@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Shared by triangles and hinges. An element joins three or four vertices of a block and of its
+/* An element joins two to four vertices of a block and of its
  * neighbours: corners 0 .. n - 1 are the block's own rows, corner n + i is row i of its ghosts.
  * Every block that owns a corner works on the element and writes its own rows only. All find the
  * same bits: an element's numbers depend only on its corners in their order. */
@@ -18,6 +18,21 @@ struct phys_sight {
 
 /* A corner that an element has not got. */
 static const uint32_t PHYS_NO_CORNER = UINT32_MAX;
+
+struct phys_air; /* as it blows (cloth/physics/air.h) */
+
+/* The elements of one kind in a block, in order. A function on lists works on elements in order,
+ * and an element's numbers depend on its corners alone. Each kind says which vectors, numbers and
+ * data it has. */
+enum { PHYS_NUMBERS = 3 };
+struct phys_elements {
+    uint32_t n;
+    uint32_t (*corner)[4]; /* n: of corners that it lacks see element_kind.pack */
+    uint32_t *at;          /* n x pairs: the entry of each, as solve_assemble_pairs wants it */
+    phys_vec *vector;      /* n, or none */
+    double *number[PHYS_NUMBERS]; /* n each; those of the kind come first */
+    void *material;               /* the elements' data of a material; or none */
+};
 
 /* The matrix of an element. An implicit step of h seconds has M + h C + h^2 K, where C and K are
  * the slopes of the forces against velocities and positions, taken with a minus. */

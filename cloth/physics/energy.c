@@ -5,7 +5,7 @@
 
 double phys_energy_weight(size_t n, const double *mass, const double gravity[3], const phys_vec *x)
 {
-    const phys_vec g = {gravity[0], gravity[1], gravity[2], 0};
+    const phys_vec g = PHYS_VEC(gravity);
     double sum = 0;
     for (size_t i = 0; i < n; i++)
         sum -= mass[i] * phys_dot(&g, x + i);
@@ -15,7 +15,7 @@ double phys_energy_weight(size_t n, const double *mass, const double gravity[3],
 double phys_energy_load(size_t n, const double *mass, const double gravity[3], const phys_vec *load,
                         const phys_vec *x)
 {
-    const phys_vec g = {gravity[0], gravity[1], gravity[2], 0};
+    const phys_vec g = PHYS_VEC(gravity);
     double sum = 0;
     for (size_t i = 0; i < n; i++) {
         const phys_vec rest = load[i] - mass[i] * g;

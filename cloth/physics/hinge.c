@@ -7,9 +7,11 @@
 #include <math.h>
 
 PHYS_KERNEL(phys_hinges_force,
-            (const struct phys_hinges *hinges, const struct phys_sight *sight, phys_vec *f),
-            (hinges, sight, f))
+            (const struct phys_elements *hinges, const struct phys_air *air,
+             const struct phys_sight *sight, phys_vec *f),
+            (hinges, air, sight, f))
 {
+    (void)air;
     for (size_t first = 0; first < hinges->n; first += PHYS_WIDE) {
         struct phys_four four;
         struct phys_hinge h;
@@ -17,9 +19,9 @@ PHYS_KERNEL(phys_hinges_force,
         phys_vec k, damping, rest, part, speed = {0};
         phys_four_from(first, hinges->n, &four);
         phys_hinge_make(&four, hinges->corner, sight, &h);
-        phys_gather_numbers(&four, hinges->stiffness, &k);
-        phys_gather_numbers(&four, hinges->damping, &damping);
-        phys_gather_numbers(&four, hinges->rest, &rest);
+        phys_gather_numbers(&four, hinges->number[PHYS_HINGE_STIFFNESS], &k);
+        phys_gather_numbers(&four, hinges->number[PHYS_HINGE_DAMPING], &damping);
+        phys_gather_numbers(&four, hinges->number[PHYS_HINGE_REST], &rest);
         for (int i = 0; i < 4; i++) {
             phys_gather(&four, hinges->corner, i, sight->n, sight->v, sight->v_ghost, &v);
             phys_wide_dot(h.slope + i, &v, &part);
@@ -40,14 +42,14 @@ struct factors {
     phys_vec slope, change;
 };
 
-PHYS_INLINE void factors_of(const struct phys_hinges *hinges, const struct phys_four *four,
+PHYS_INLINE void factors_of(const struct phys_elements *hinges, const struct phys_four *four,
                             const struct phys_hinge *h, int full, double a, double b,
                             struct factors *factors)
 {
     phys_vec k, damping, rest;
-    phys_gather_numbers(four, hinges->stiffness, &k);
-    phys_gather_numbers(four, hinges->damping, &damping);
-    phys_gather_numbers(four, hinges->rest, &rest);
+    phys_gather_numbers(four, hinges->number[PHYS_HINGE_STIFFNESS], &k);
+    phys_gather_numbers(four, hinges->number[PHYS_HINGE_DAMPING], &damping);
+    phys_gather_numbers(four, hinges->number[PHYS_HINGE_REST], &rest);
     factors->slope = (a * k + b * damping) * h->cosine * h->cosine;
     factors->change = (phys_vec){0};
     if (!full)
@@ -56,7 +58,7 @@ PHYS_INLINE void factors_of(const struct phys_hinges *hinges, const struct phys_
     factors->change = a * k * (h->s - rest) * h->cosine;
 }
 
-PHYS_INLINE void stiffness(const struct phys_hinges *hinges, int full, double scale,
+PHYS_INLINE void stiffness(const struct phys_elements *hinges, int full, double scale,
                            const struct phys_sight *sight, phys_vec *y)
 {
     for (size_t first = 0; first < hinges->n; first += PHYS_WIDE) {
@@ -88,7 +90,7 @@ PHYS_INLINE void stiffness(const struct phys_hinges *hinges, int full, double sc
 }
 
 PHYS_KERNEL(phys_hinges_stiffness,
-            (const struct phys_hinges *hinges, int full, double scale,
+            (const struct phys_elements *hinges, int full, double scale,
              const struct phys_sight *sight, phys_vec *y),
             (hinges, full, scale, sight, y))
 {
@@ -134,7 +136,7 @@ PHYS_INLINE void write_block(const struct phys_four *four, const struct phys_hin
     phys_write_pairs(four, cyclic, PHYS_BEND_PAIRS, pair);
 }
 
-PHYS_INLINE void matrix(const struct phys_hinges *hinges, size_t from, size_t to,
+PHYS_INLINE void matrix(const struct phys_elements *hinges, size_t from, size_t to,
                         const struct phys_step *step, int full, const struct phys_sight *sight,
                         const uint32_t *at, struct phys_pair *pair)
 {
@@ -158,8 +160,9 @@ PHYS_INLINE void matrix(const struct phys_hinges *hinges, size_t from, size_t to
 }
 
 PHYS_KERNEL(phys_hinges_matrix,
-            (const struct phys_hinges *hinges, size_t from, size_t to, const struct phys_step *step,
-             const struct phys_sight *sight, const uint32_t *at, struct phys_pair *pair),
+            (const struct phys_elements *hinges, size_t from, size_t to,
+             const struct phys_step *step, const struct phys_sight *sight, const uint32_t *at,
+             struct phys_pair *pair),
             (hinges, from, to, step, sight, at, pair))
 {
     if (step->full)
@@ -169,7 +172,8 @@ PHYS_KERNEL(phys_hinges_matrix,
 }
 
 PHYS_KERNEL_OF(double, phys_hinges_energy,
-               (const struct phys_hinges *hinges, const struct phys_sight *sight), (hinges, sight))
+               (const struct phys_elements *hinges, const struct phys_sight *sight),
+               (hinges, sight))
 {
     double sum = 0;
     for (size_t first = 0; first < hinges->n; first += PHYS_WIDE) {
@@ -178,8 +182,8 @@ PHYS_KERNEL_OF(double, phys_hinges_energy,
         phys_vec k, rest;
         phys_four_from(first, hinges->n, &four);
         phys_hinge_make(&four, hinges->corner, sight, &h);
-        phys_gather_numbers(&four, hinges->stiffness, &k);
-        phys_gather_numbers(&four, hinges->rest, &rest);
+        phys_gather_numbers(&four, hinges->number[PHYS_HINGE_STIFFNESS], &k);
+        phys_gather_numbers(&four, hinges->number[PHYS_HINGE_REST], &rest);
         const phys_vec energy = 0.5 * k * (h.s - rest) * (h.s - rest);
         sum = phys_sum_own(&four, hinges->corner, sight->n, &energy, sum);
     }
@@ -194,7 +198,7 @@ double phys_bend_rigidity(double warp, double weft, const double direction[2])
 
 int phys_bend_rest(const double x[12], struct phys_bend_rest *rest)
 {
-    const uint32_t corner[1][4] = {{0, 1, 2, 3}};
+    uint32_t corner[1][4] = {{0, 1, 2, 3}};
     phys_vec row[4];
     for (int i = 0; i < 4; i++)
         row[i] = (phys_vec){x[3 * i], x[3 * i + 1], x[3 * i + 2], 0};

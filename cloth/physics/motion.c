@@ -1,25 +1,14 @@
 /* + - * / and sqrt only, so that a motion has the same bits everywhere. */
 #include "cloth/physics/motion.h"
-#include "cloth/base/axes.h"
 
-/* The key at or before the time; n > 0. */
-static size_t key_before(size_t n, const struct phys_key *keys, double time)
-{
-    size_t low = 0, high = n;
-    while (high - low > 1) {
-        const size_t middle = low + (high - low) / 2;
-        if (keys[middle].time <= time)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
+#include "cloth/base/axes.h"
+#include "cloth/physics/curve.h"
 
 void phys_pose_at(size_t n, const struct phys_key *keys, const double about[3], double time,
                   struct phys_pose *pose)
 {
-    const struct phys_key *a = keys + key_before(n, keys, time), *b = a + 1 < keys + n ? a + 1 : a;
+    const size_t at = phys_key_before(n, &keys->time, sizeof *keys / sizeof(double), time);
+    const struct phys_key *a = keys + at, *b = at + 1 < n ? a + 1 : a;
     const double part = b == a || time <= a->time ? 0 : (time - a->time) / (b->time - a->time);
     double dot = 0, q[4];
     for (int i = 0; i < 4; i++)
@@ -54,8 +43,8 @@ void phys_pose_direction_back(const struct phys_pose *pose, const phys_vec *from
 
 static void offsets(const struct phys_pose *pose, phys_vec *about, phys_vec *shift)
 {
-    *about = (phys_vec){pose->about[0], pose->about[1], pose->about[2], 0};
-    *shift = (phys_vec){pose->translate[0], pose->translate[1], pose->translate[2], 0};
+    *about = PHYS_VEC(pose->about);
+    *shift = PHYS_VEC(pose->translate);
 }
 
 void phys_pose_point(const struct phys_pose *pose, const phys_vec *from, phys_vec *to)

@@ -134,20 +134,15 @@ PHYS_INLINE void force_all(const struct phys_springs *s, const struct where *at,
 }
 
 PHYS_KERNEL(phys_springs_force,
-            (const struct phys_springs *springs, const phys_vec *x, const phys_vec *v, phys_vec *f),
-            (springs, x, v, f))
-{
-    const struct where at = {x, v, x, v, 0};
-    force_all(springs, &at, f);
-}
-
-PHYS_KERNEL(phys_springs_force_cut,
             (const struct phys_springs *springs, const phys_vec *x, const phys_vec *v,
              const phys_vec *x_other, const phys_vec *v_other, phys_vec *f),
             (springs, x, v, x_other, v_other, f))
 {
-    const struct where at = {x, v, x_other, v_other, 1};
-    force_all(springs, &at, f);
+    const struct where inner = {x, v, x, v, 0}, cut = {x, v, x_other, v_other, 1};
+    if (x_other)
+        force_all(springs, &cut, f);
+    else
+        force_all(springs, &inner, f);
 }
 
 /* ---- Matrix and right side ---- */
@@ -215,21 +210,15 @@ PHYS_INLINE void system_all(const struct phys_springs *s, double h, double push,
 
 PHYS_KERNEL(phys_springs_system,
             (const struct phys_springs *springs, double h, double push, const phys_vec *x,
-             const phys_vec *v, phys_vec *b, phys_vec *value),
-            (springs, h, push, x, v, b, value))
-{
-    const struct where at = {x, v, x, v, 0};
-    system_all(springs, h, push, &at, b, value);
-}
-
-PHYS_KERNEL(phys_springs_system_cut,
-            (const struct phys_springs *springs, double h, double push, const phys_vec *x,
              const phys_vec *v, const phys_vec *x_other, const phys_vec *v_other, phys_vec *b,
              phys_vec *value),
             (springs, h, push, x, v, x_other, v_other, b, value))
 {
-    const struct where at = {x, v, x_other, v_other, 1};
-    system_all(springs, h, push, &at, b, value);
+    const struct where inner = {x, v, x, v, 0}, cut = {x, v, x_other, v_other, 1};
+    if (x_other)
+        system_all(springs, h, push, &cut, b, value);
+    else
+        system_all(springs, h, push, &inner, b, value);
 }
 
 PHYS_KERNEL(phys_springs_matrix,

@@ -17,11 +17,10 @@
  * particles at one place have no direction: there u = 0 and t = 0, with PHYS_ABSOLUTE t = 1. With
  * an L just below 0 (for 0) t = 1 there, too, but not with PHYS_FULL.
  *
- * Functions come in pairs. The plain one has both ends in the same arrays and writes both rows. The
- * `_cut` one has end 1 in arrays of another block, and writes the rows of end 0 only; the other
- * block does the same for its end. Both compute the same bits with opposite signs, so momentum is
- * kept to roundoff of the sums. Springs are worked on in order. Pure functions; nothing is
- * allocated. */
+ * x_other, v_other NULL: both ends are in x and v, and both rows are written. Else end 1 is in
+ * those arrays, of another block, and the rows of end 0 alone are written; the other block does the
+ * same for its end. Both compute the same bits with opposite signs, so momentum is kept to roundoff
+ * of the sums. Springs are worked on in order. Pure functions; nothing is allocated. */
 enum phys_slope { PHYS_DEFINITE, PHYS_FULL, PHYS_ABSOLUTE };
 struct phys_springs {
     size_t n;
@@ -34,10 +33,7 @@ struct phys_springs {
 
 /* Adds the forces (N) to f. x: m, v: m/s. */
 void phys_springs_force(const struct phys_springs *springs, const phys_vec *x, const phys_vec *v,
-                        phys_vec *f);
-void phys_springs_force_cut(const struct phys_springs *springs, const phys_vec *x,
-                            const phys_vec *v, const phys_vec *x_other, const phys_vec *v_other,
-                            phys_vec *f);
+                        const phys_vec *x_other, const phys_vec *v_other, phys_vec *f);
 
 /* Makes the springs' part of the matrix of an implicit step of h seconds, h c u u' + h^2 K = alpha
  * I + w w'. Each spring has four doubles w0 w1 w2 alpha (value: n; kg). Its end 1 is a row of
@@ -48,10 +44,8 @@ void phys_springs_matrix(const struct phys_springs *springs, double h, const phy
 /* The same, and the right side of that step: b += push f - h^2 K v, with push h (s), or 0 where the
  * forces are in b. */
 void phys_springs_system(const struct phys_springs *springs, double h, double push,
-                         const phys_vec *x, const phys_vec *v, phys_vec *b, phys_vec *value);
-void phys_springs_system_cut(const struct phys_springs *springs, double h, double push,
-                             const phys_vec *x, const phys_vec *v, const phys_vec *x_other,
-                             const phys_vec *v_other, phys_vec *b, phys_vec *value);
+                         const phys_vec *x, const phys_vec *v, const phys_vec *x_other,
+                         const phys_vec *v_other, phys_vec *b, phys_vec *value);
 
 /* The largest l / L of those springs whose `chosen` byte (n) is not zero; 0 if there are none. */
 double phys_springs_stretch(const struct phys_springs *springs, const unsigned char *chosen,

@@ -29,46 +29,26 @@ void phys_kick(size_t n, double t, double ahead, const double *mass, const doubl
         w[i] = v[i] + free[i] * t / (mass[i] + ahead * t * drag[i]) * (f[i] - drag[i] * v[i]);
 }
 
-static void first(size_t n, double h, const phys_vec *a, const struct phys_runge *r, phys_vec *x,
-                  phys_vec *v)
-{
-    for (size_t i = 0; i < n; i++) {
-        r->x0[i] = x[i];
-        r->v0[i] = v[i];
-        r->sum_x[i] = v[i];
-        r->sum_v[i] = a[i];
-        x[i] += 0.5 * h * v[i];
-        v[i] += 0.5 * h * a[i];
-    }
-}
+const struct phys_runge_row phys_runge_rows[PHYS_RUNGE_STAGES] = {
+    {.at = 0, .weight = 1, .ahead = 0.5},
+    {.at = 0.5, .weight = 2, .ahead = 0.5},
+    {.at = 0.5, .weight = 2, .ahead = 1},
+    {.at = 1, .weight = 1}};
 
-static void middle(size_t n, double h, const phys_vec *a, const struct phys_runge *r, phys_vec *x,
-                   phys_vec *v)
+void phys_runge_stage(size_t n, double h, int stage, const phys_vec *a, const struct phys_runge *r,
+                      phys_vec *x, phys_vec *v)
 {
+    const struct phys_runge_row *row = phys_runge_rows + stage;
+    const double ahead = row->ahead * h, sixth = h / 6;
     for (size_t i = 0; i < n; i++) {
-        r->sum_x[i] += 2 * v[i];
-        r->sum_v[i] += 2 * a[i];
-        x[i] = r->x0[i] + h * v[i];
-        v[i] = r->v0[i] + h * a[i];
+        const phys_vec dx = v[i], dv = a[i];
+        if (stage == 0) {
+            r->x0[i] = x[i];
+            r->v0[i] = v[i];
+        }
+        r->sum_x[i] = stage == 0 ? dx : r->sum_x[i] + row->weight * dx;
+        r->sum_v[i] = stage == 0 ? dv : r->sum_v[i] + row->weight * dv;
+        x[i] = r->x0[i] + (row->ahead > 0 ? ahead * dx : sixth * r->sum_x[i]);
+        v[i] = r->v0[i] + (row->ahead > 0 ? ahead * dv : sixth * r->sum_v[i]);
     }
-}
-
-static void last(size_t n, double h, const phys_vec *a, const struct phys_runge *r, phys_vec *x,
-                 phys_vec *v)
-{
-    for (size_t i = 0; i < n; i++) {
-        x[i] = r->x0[i] + h / 6 * (r->sum_x[i] + v[i]);
-        v[i] = r->v0[i] + h / 6 * (r->sum_v[i] + a[i]);
-    }
-}
-
-void phys_runge_stage(size_t n, double h, int stage, const phys_vec *a,
-                      const struct phys_runge *runge, phys_vec *x, phys_vec *v)
-{
-    if (stage == 0)
-        first(n, h, a, runge, x, v);
-    else if (stage == PHYS_RUNGE_STAGES - 1)
-        last(n, h, a, runge, x, v);
-    else
-        middle(n, stage == 1 ? 0.5 * h : h, a, runge, x, v);
 }

@@ -32,10 +32,18 @@ struct phys_runge {
     phys_vec *x0, *v0, *sum_x, *sum_v;
 };
 
-/* Ends stage 0, 1, 2 or 3 of a step of h seconds. The slopes of the stage are v and the
- * acceleration a at x, v. Keeps the slopes and moves x, v to the next stage, after stage 3 to the
- * end of the step. Stage 0 needs nothing of *runge. */
+/* A stage: its time in the step, and how far its slopes take the state to the next stage, in h;
+ * their weight, of six in all. After the last stage the sum takes the state to the end of the step.
+ */
 enum { PHYS_RUNGE_STAGES = 4 };
+struct phys_runge_row {
+    double at, weight, ahead;
+};
+extern const struct phys_runge_row phys_runge_rows[PHYS_RUNGE_STAGES];
+
+/* Ends a stage, from 0, of a step of h seconds. The slopes of the stage are v and the
+ * acceleration a at x, v. Keeps the slopes and moves x, v to the next stage, after the last to the
+ * end of the step. Stage 0 needs nothing of *runge. */
 void phys_runge_stage(size_t n, double h, int stage, const phys_vec *a,
                       const struct phys_runge *runge, phys_vec *x, phys_vec *v);
 

@@ -10,15 +10,15 @@ struct edge {
     phys_vec k, over, t; /* k, and l - l0 and t; these are 0 where an edge is not over its limit */
 };
 
-PHYS_INLINE void edge_make(const struct phys_strain_limits *limits, const struct phys_four *four,
+PHYS_INLINE void edge_make(const struct phys_elements *limits, const struct phys_four *four,
                            const struct phys_sight *sight, struct edge *edge)
 {
     struct phys_wide a, b;
     phys_vec square, length, inverse, limit;
     phys_gather(four, limits->corner, 0, sight->n, sight->x, sight->x_ghost, &a);
     phys_gather(four, limits->corner, 1, sight->n, sight->x, sight->x_ghost, &b);
-    phys_gather_numbers(four, limits->stiffness, &edge->k);
-    phys_gather_numbers(four, limits->length, &limit);
+    phys_gather_numbers(four, limits->number[PHYS_LIMIT_STIFFNESS], &edge->k);
+    phys_gather_numbers(four, limits->number[PHYS_LIMIT_LENGTH], &limit);
     phys_wide_from(&b, &a, &b);
     phys_wide_dot(&b, &b, &square);
     phys_sqrt(&square, &length);
@@ -30,7 +30,7 @@ PHYS_INLINE void edge_make(const struct phys_strain_limits *limits, const struct
 }
 
 /* Adds pull (N along u) to corner 0, and takes it from corner 1. */
-PHYS_INLINE void add_pull(const struct phys_strain_limits *limits, const struct phys_four *four,
+PHYS_INLINE void add_pull(const struct phys_elements *limits, const struct phys_four *four,
                           const struct phys_wide *pull, uint32_t n, phys_vec *f)
 {
     const phys_vec minus = {-1, -1, -1, -1};
@@ -41,9 +41,11 @@ PHYS_INLINE void add_pull(const struct phys_strain_limits *limits, const struct 
 }
 
 PHYS_KERNEL(phys_strain_limits_force,
-            (const struct phys_strain_limits *limits, const struct phys_sight *sight, phys_vec *f),
-            (limits, sight, f))
+            (const struct phys_elements *limits, const struct phys_air *air,
+             const struct phys_sight *sight, phys_vec *f),
+            (limits, air, sight, f))
 {
+    (void)air;
     for (size_t first = 0; first < limits->n; first += PHYS_WIDE) {
         struct phys_four four;
         struct edge edge;
@@ -70,10 +72,11 @@ PHYS_INLINE void factors_of(const struct edge *edge, int taut, phys_vec *along, 
 }
 
 PHYS_KERNEL(phys_strain_limits_stiffness,
-            (const struct phys_strain_limits *limits, double scale, const struct phys_sight *sight,
-             phys_vec *y),
-            (limits, scale, sight, y))
+            (const struct phys_elements *limits, int full, double scale,
+             const struct phys_sight *sight, phys_vec *y),
+            (limits, full, scale, sight, y))
 {
+    (void)full;
     for (size_t first = 0; first < limits->n; first += PHYS_WIDE) {
         struct phys_four four;
         struct edge edge;
@@ -93,7 +96,7 @@ PHYS_KERNEL(phys_strain_limits_stiffness,
     }
 }
 
-PHYS_INLINE void matrix(const struct phys_strain_limits *limits, size_t from, size_t to, double h,
+PHYS_INLINE void matrix(const struct phys_elements *limits, size_t from, size_t to, double h,
                         int taut, const struct phys_sight *sight, struct phys_pair *pair)
 {
     for (size_t first = from; first < to; first += PHYS_WIDE) {
@@ -114,22 +117,27 @@ PHYS_INLINE void matrix(const struct phys_strain_limits *limits, size_t from, si
     }
 }
 
+/* Blocks are symmetric, and whole in either matrix. */
 PHYS_KERNEL(phys_strain_limits_matrix,
-            (const struct phys_strain_limits *limits, size_t from, size_t to, double h,
-             const struct phys_sight *sight, struct phys_pair *pair),
-            (limits, from, to, h, sight, pair))
+            (const struct phys_elements *limits, size_t from, size_t to,
+             const struct phys_step *step, const struct phys_sight *sight, const uint32_t *at,
+             struct phys_pair *pair),
+            (limits, from, to, step, sight, at, pair))
 {
-    matrix(limits, from, to, h, 0, sight, pair);
+    (void)at;
+    matrix(limits, from, to, step->h, 0, sight, pair);
 }
 
-void phys_strain_limits_stiffest(const struct phys_strain_limits *limits, size_t from, size_t to,
-                                 double h, const struct phys_sight *sight, struct phys_pair *pair)
+void phys_strain_limits_stiffest(const struct phys_elements *limits, size_t from, size_t to,
+                                 const struct phys_step *step, const struct phys_sight *sight,
+                                 const uint32_t *at, struct phys_pair *pair)
 {
-    matrix(limits, from, to, h, 1, sight, pair);
+    (void)at;
+    matrix(limits, from, to, step->h, 1, sight, pair);
 }
 
 PHYS_KERNEL_OF(double, phys_strain_limits_energy,
-               (const struct phys_strain_limits *limits, const struct phys_sight *sight),
+               (const struct phys_elements *limits, const struct phys_sight *sight),
                (limits, sight))
 {
     double sum = 0;

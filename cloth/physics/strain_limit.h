@@ -13,26 +13,25 @@
  * energy; force and K are its derivatives, as of any spring. W and the force are continuous, K is
  * not. K is never indefinite, so nothing is left out of it. There is no damping. Pure functions;
  * nothing is allocated. */
-struct phys_strain_limits {
-    size_t n;
-    const uint32_t (*corner)[4]; /* n: the ends */
-    const double *stiffness;     /* n: k, N/m, >= 0 */
-    const double *length;        /* n: l0, m, > 0 */
-};
+
+/* Numbers of an edge: k, N/m, >= 0; l0, m, > 0. */
+enum { PHYS_LIMIT_STIFFNESS, PHYS_LIMIT_LENGTH };
 
 /* Like the functions of triangles (triangle.h), with one pair each. */
-void phys_strain_limits_force(const struct phys_strain_limits *limits,
+void phys_strain_limits_force(const struct phys_elements *limits, const struct phys_air *air,
                               const struct phys_sight *sight, phys_vec *f);
-void phys_strain_limits_stiffness(const struct phys_strain_limits *limits, double scale,
+void phys_strain_limits_stiffness(const struct phys_elements *limits, int full, double scale,
                                   const struct phys_sight *sight, phys_vec *y);
-void phys_strain_limits_matrix(const struct phys_strain_limits *limits, size_t from, size_t to,
-                               double h, const struct phys_sight *sight, struct phys_pair *pair);
-double phys_strain_limits_energy(const struct phys_strain_limits *limits,
+void phys_strain_limits_matrix(const struct phys_elements *limits, size_t from, size_t to,
+                               const struct phys_step *step, const struct phys_sight *sight,
+                               const uint32_t *at, struct phys_pair *pair);
+double phys_strain_limits_energy(const struct phys_elements *limits,
                                  const struct phys_sight *sight);
 
 /* The same matrix as if each edge, where it is now, had just reached its limit: K = k u u' at
  * least. */
-void phys_strain_limits_stiffest(const struct phys_strain_limits *limits, size_t from, size_t to,
-                                 double h, const struct phys_sight *sight, struct phys_pair *pair);
+void phys_strain_limits_stiffest(const struct phys_elements *limits, size_t from, size_t to,
+                                 const struct phys_step *step, const struct phys_sight *sight,
+                                 const uint32_t *at, struct phys_pair *pair);
 
 #endif

@@ -85,9 +85,11 @@ void phys_triangle_local(const double x[9], const double uv[6], double local[6])
 }
 
 PHYS_KERNEL(phys_triangles_force,
-            (const struct phys_triangles *t, const struct phys_sight *sight, phys_vec *f),
-            (t, sight, f))
+            (const struct phys_elements *t, const struct phys_air *air,
+             const struct phys_sight *sight, phys_vec *f),
+            (t, air, sight, f))
 {
+    (void)air;
     struct phys_moduli moduli = PHYS_NO_MODULI;
     for (size_t first = 0; first < t->n; first += PHYS_WIDE) {
         struct phys_four four;
@@ -116,7 +118,7 @@ PHYS_KERNEL(phys_triangles_force,
 /* ---- Energy and strain of a state ---- */
 
 PHYS_KERNEL_OF(double, phys_triangles_energy,
-               (const struct phys_triangles *t, const struct phys_sight *sight), (t, sight))
+               (const struct phys_elements *t, const struct phys_sight *sight), (t, sight))
 {
     double sum = 0;
     struct phys_moduli moduli = PHYS_NO_MODULI;
@@ -143,7 +145,7 @@ PHYS_INLINE void larger_of(const struct phys_plane2 *e, phys_vec *largest)
 }
 
 PHYS_KERNEL(phys_triangles_strain,
-            (const struct phys_triangles *t, const struct phys_sight *sight, double *largest,
+            (const struct phys_elements *t, const struct phys_sight *sight, double *largest,
              double (*stress)[3]),
             (t, sight, largest, stress))
 {
@@ -167,7 +169,7 @@ PHYS_KERNEL(phys_triangles_strain,
 }
 
 PHYS_KERNEL(phys_triangles_torque,
-            (const struct phys_triangles *t, const struct phys_sight *sight, double torque[3]),
+            (const struct phys_elements *t, const struct phys_sight *sight, double torque[3]),
             (t, sight, torque))
 {
     struct phys_moduli moduli = PHYS_NO_MODULI;

@@ -119,7 +119,7 @@ PHYS_INLINE void force_of(const struct phys_frame *f, const struct slope *slope,
 }
 
 /* b += push f - a K v. */
-PHYS_INLINE void add_right_side(const struct phys_triangles *t, const struct phys_four *four,
+PHYS_INLINE void add_right_side(const struct phys_elements *t, const struct phys_four *four,
                                 const struct phys_frame *f, const struct slope *slope, int full,
                                 double a, double push, const struct phys_sight *sight, phys_vec *b)
 {
@@ -280,7 +280,7 @@ struct wanted {
     phys_vec *b;
 };
 
-PHYS_INLINE void work(const struct phys_triangles *t, size_t first, size_t end,
+PHYS_INLINE void work(const struct phys_elements *t, size_t first, size_t end,
                       const struct wanted *wanted, struct phys_moduli *moduli, const uint32_t *at,
                       struct phys_pair *pair)
 {
@@ -297,7 +297,7 @@ PHYS_INLINE void work(const struct phys_triangles *t, size_t first, size_t end,
     write_blocks(&four, &frame, &slope, h, wanted->full, at, pair);
 }
 
-PHYS_INLINE void work_all(const struct phys_triangles *t, size_t from, size_t to,
+PHYS_INLINE void work_all(const struct phys_elements *t, size_t from, size_t to,
                           const struct wanted *wanted, const uint32_t *at, struct phys_pair *pair)
 {
     struct phys_moduli moduli = PHYS_NO_MODULI;
@@ -310,7 +310,7 @@ PHYS_INLINE void work_all(const struct phys_triangles *t, size_t from, size_t to
 }
 
 PHYS_KERNEL(phys_triangles_matrix,
-            (const struct phys_triangles *triangles, size_t from, size_t to,
+            (const struct phys_elements *triangles, size_t from, size_t to,
              const struct phys_step *step, const struct phys_sight *sight, const uint32_t *at,
              struct phys_pair *pair),
             (triangles, from, to, step, sight, at, pair))
@@ -323,7 +323,7 @@ PHYS_KERNEL(phys_triangles_matrix,
 }
 
 PHYS_KERNEL(phys_triangles_system,
-            (const struct phys_triangles *triangles, size_t from, size_t to,
+            (const struct phys_elements *triangles, size_t from, size_t to,
              const struct phys_step *step, double push, const struct phys_sight *sight,
              const uint32_t *at, phys_vec *b, struct phys_pair *pair),
             (triangles, from, to, step, push, sight, at, b, pair))

@@ -12,6 +12,9 @@
  * Helpers are always inlined: no vector is passed by value. */
 typedef double phys_vec __attribute__((vector_size(32)));
 
+/* Three numbers as a vector. */
+#define PHYS_VEC(x) ((phys_vec){(x)[0], (x)[1], (x)[2], 0})
+
 #define PHYS_INLINE static inline __attribute__((always_inline, unused))
 
 /* Before a loop over lanes, components or corners, so that its values stay in registers: GCC at -O2

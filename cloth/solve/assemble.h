@@ -10,17 +10,6 @@
  * entry are the same on both sides if both add in the same order. When all have been added, the
  * values are made of the sums. Pure functions. */
 
-/* Adds N to an entry whose first row is that of N, or, transposed, whose second is. */
-static inline void solve_assemble(struct phys_pair *sum, bool transposed, const double n[3][3])
-{
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        sum->cyclic[0][i] += n[i][i];
-        sum->cyclic[1][i] += transposed ? n[j][i] : n[i][j];
-        sum->cyclic[2][i] += transposed ? n[k][i] : n[i][k];
-    }
-}
-
 /* Adds n springs (w0 w1 w2 alpha each), of which spring i belongs to entry at[i]. */
 void solve_assemble_springs(size_t n, const uint32_t *at, const phys_vec *value,
                             struct phys_pair *sums);

@@ -309,7 +309,7 @@ PHYS_KERNEL(solve_advance_ghosts,
 {
     for (size_t i = 0; i < n; i++) {
         const double *row = s + 3 * (size_t)at[i];
-        const phys_vec value = {row[0], row[1], row[2], 0};
+        const phys_vec value = PHYS_VEC(row);
         solve_advance(alpha, beta, &value, z + i, p + i);
     }
 }
@@ -318,7 +318,7 @@ void solve_unpack(size_t n, const double *packed, const uint32_t *at, phys_vec *
 {
     for (size_t i = 0; i < n; i++) {
         const double *row = packed + 3 * (size_t)at[i];
-        y[i] = (phys_vec){row[0], row[1], row[2], 0};
+        y[i] = PHYS_VEC(row);
     }
 }
 

@@ -351,7 +351,7 @@ PHYS_KERNEL(solve_advance_ghosts_coarse,
     motions(x, motion);
     for (size_t i = 0; i < n; i++) {
         const double *row = s + 3 * (size_t)at[i];
-        phys_vec value = {row[0], row[1], row[2], 0};
+        phys_vec value = PHYS_VEC(row);
         lift(basis + i, motion, &value);
         solve_advance(alpha, beta, &value, z + i, p + i);
     }

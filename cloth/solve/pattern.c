@@ -1,6 +1,7 @@
 /* The order of least degree is found once a run, by elimination on bits; it never depends on
  * numbers of the matrix. */
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 #include "cloth/solve/coarse.h"
 
 #include <stdlib.h>
@@ -74,12 +75,6 @@ static void order(struct graph *graph, struct solve_pattern *pattern)
     }
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-    return x < y ? -1 : x > y;
-}
-
 static void list(const struct graph *graph, struct solve_pattern *pattern)
 {
     for (uint32_t k = 0; k < graph->n; k++) {
@@ -87,7 +82,7 @@ static void list(const struct graph *graph, struct solve_pattern *pattern)
         for (uint32_t a = 0; a < graph->n; a++)
             if (solve_pattern_meets(graph, pattern->block[k], a))
                 row[n++] = pattern->place[a];
-        qsort(row, n, sizeof *row, ascending);
+        qsort(row, n, sizeof *row, cloth_compare_items_u32);
     }
 }
 

@@ -1,6 +1,8 @@
 /* Pairs are worked on one after the other: equal arrays give equal bits. */
 #include "cloth/solve/system.h"
 
+#include "cloth/base/order.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -63,10 +65,8 @@ struct entry {
 static int solve_system_compare(const void *va, const void *vb)
 {
     const struct entry *a = va, *b = vb;
-    for (int i = 0; i < 2; i++)
-        if (a->end[i] != b->end[i])
-            return a->end[i] < b->end[i] ? -1 : 1;
-    return (a->at > b->at) - (a->at < b->at);
+    const int order = cloth_compare_numbers(a->end, b->end, 2);
+    return order ? order : (a->at > b->at) - (a->at < b->at);
 }
 
 /* Moves the data of pairs, `bytes` each, to their new places. room: as large. */
@@ -119,31 +119,18 @@ int solve_system_sort(struct solve_system *system, struct cloth_error *error)
 /* ---- Product ---- */
 
 /* (N + N') / 2 of the difference d, and the turn of N, (N - N') / 2, of p_a and p_b. */
-static void solve_system_add_block(const double *n, const double p[2][3], double *y_a, double *y_b)
+static void add_pair(const double n[3][3], const double p[2][3], double *y_a, double *y_b)
 {
     for (int c = 0; c < 3; c++) {
         double same = 0, a = 0, b = 0;
         for (int e = 0; e < 3; e++) {
-            const double turn = 0.5 * (n[3 * c + e] - n[3 * e + c]);
-            same += 0.5 * (n[3 * c + e] + n[3 * e + c]) * (p[0][e] - p[1][e]);
+            const double turn = 0.5 * (n[c][e] - n[e][c]);
+            same += 0.5 * (n[c][e] + n[e][c]) * (p[0][e] - p[1][e]);
             a += turn * p[1][e];
             b += turn * p[0][e];
         }
         y_a[c] += same - a;
         y_b[c] -= same - b;
-    }
-}
-
-static void add_spring(const double *w, const double p[2][3], double *y_a, double *y_b)
-{
-    double d[3];
-    for (size_t c = 0; c < 3; c++)
-        d[c] = p[0][c] - p[1][c];
-    const double dot = w[0] * d[0] + w[1] * d[1] + w[2] * d[2];
-    for (size_t c = 0; c < 3; c++) {
-        const double force = w[3] * d[c] + dot * w[c];
-        y_a[c] += force;
-        y_b[c] -= force;
     }
 }
 
@@ -155,16 +142,13 @@ void solve_system_multiply(const struct solve_system *system, const double *p, d
             y[3 * (size_t)a + c] = system->diagonal[a] * (free[a] * p[3 * (size_t)a + c]);
     for (size_t i = 0; i < system->n_pairs; i++) {
         const size_t a = system->end[i][0], b = system->end[i][1];
-        double ends[2][3];
+        double ends[2][3], n[3][3];
         for (size_t c = 0; c < 3; c++) {
             ends[0][c] = free[a] * p[3 * a + c];
             ends[1][c] = free[b] * p[3 * b + c];
         }
-        if (system->block)
-            solve_system_add_block(system->block[i], (const double(*)[3])ends, y + 3 * a,
-                                   y + 3 * b);
-        else
-            add_spring(system->value[i], (const double(*)[3])ends, y + 3 * a, y + 3 * b);
+        solve_system_pair(system, i, n);
+        add_pair((const double(*)[3])n, (const double(*)[3])ends, y + 3 * a, y + 3 * b);
     }
     for (uint32_t a = 0; a < system->n; a++)
         for (size_t c = 0; c < 3; c++)

@@ -3,6 +3,8 @@
  * the largest of four sums over the points, in any number and order. */
 #include "cloth/view/view.h"
 
+#include "cloth/base/vector.h"
+
 #include <cglm/cam.h>
 #include <cglm/mat4.h>
 #include <math.h>
@@ -49,16 +51,11 @@ void view_fit_start(struct view_fit *fit, double azimuth, double elevation, doub
     }
 }
 
-static double camera_dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void camera_show(struct view_fit *fit, const double p[3])
 {
-    double z = camera_dot(fit->side[2], p);
+    double z = cloth_dot(fit->side[2], p);
     for (int i = 0; i < 2; i++) {
-        double x = camera_dot(fit->side[i], p), t = fit->tangent[i];
+        double x = cloth_dot(fit->side[i], p), t = fit->tangent[i];
         fit->max[2 * i] = fmax(fit->max[2 * i], x + t * z);
         fit->max[2 * i + 1] = fmax(fit->max[2 * i + 1], t * z - x);
     }
@@ -96,8 +93,8 @@ void view_fit_planes(struct view_fit *fit, size_t n, const double (*planes)[6])
             for (int k = 0; k < 3; k++)
                 p[k] = corner >> k & 1 ? fit->high[k] : fit->low[k];
             double height =
-                (camera_dot(p, normal) - camera_dot(point, normal)) / camera_dot(normal, normal);
-            if (!(fabs(height) * sqrt(camera_dot(normal, normal)) <= extent(fit)))
+                (cloth_dot(p, normal) - cloth_dot(point, normal)) / cloth_dot(normal, normal);
+            if (!(fabs(height) * sqrt(cloth_dot(normal, normal)) <= extent(fit)))
                 continue;
             for (int k = 0; k < 3; k++)
                 p[k] -= height * normal[k];
@@ -184,7 +181,7 @@ void view_orbit_camera(const struct view_orbit *orbit, double aspect, struct vie
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++)
             view[k][i] = (float)side[i][k];
-        view[3][i] = (float)-(camera_dot(side[i], orbit->target) + (i == 2 ? orbit->distance : 0));
+        view[3][i] = (float)-(cloth_dot(side[i], orbit->target) + (i == 2 ? orbit->distance : 0));
     }
     const double angle = 2 * atan(tan(radians(HALF_ANGLE)) / orbit->zoom);
     const double near = fmax(0.3 * (orbit->distance - orbit->front), 0.01 * orbit->distance);

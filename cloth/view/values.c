@@ -48,10 +48,8 @@ static int view_values_find_forces(const struct view_values *values, uint64_t fr
 {
     const uint32_t n = values->cache->mesh.n_vertices;
     uint64_t n_frames = 0;
-    int code = output_forces_count(values->folder, n, &n_frames, error);
+    const int code = output_forces_read(values->folder, n, frame, values->force, &n_frames, error);
     const bool there = frame < n_frames;
-    if (!code && there)
-        code = output_forces_read(values->folder, n, frame, values->force, error);
     for (size_t v = 0; v < n && !code; v++) {
         const double *f = values->force + 3 * v;
         value[v] = there ? sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) : (double)NAN;
@@ -61,33 +59,9 @@ static int view_values_find_forces(const struct view_values *values, uint64_t fr
 
 /* ---- Strain and stress ---- */
 
-static int take_strains(struct element_strains *strains, uint32_t n_vertices,
-                        const struct output_rest *rest, struct cloth_error *error)
-{
-    *strains = (struct element_strains){
-        .n_vertices = n_vertices, .n_triangles = rest->n_triangles, .n_edges = rest->n_edges};
-    if (element_strains_room(strains, rest->n_materials, error))
-        return CLOTH_E_MEMORY;
-    memcpy(strains->corner, rest->corner, rest->n_triangles * sizeof *rest->corner);
-    memcpy(strains->area, rest->area, rest->n_triangles * sizeof *rest->area);
-    memcpy(strains->edge, rest->edge, rest->n_edges * sizeof *rest->edge);
-    memcpy(strains->length, rest->length, rest->n_edges * sizeof *rest->length);
-    memcpy(strains->has_stress, rest->has_stress, rest->n_materials * sizeof *rest->has_stress);
-    for (uint32_t t = 0; t < rest->n_triangles; t++) {
-        const double *g = rest->gradient[t];
-        strains->gradient[t] = (phys_vec){g[0], g[1], g[2], g[3]};
-    }
-    for (uint32_t m = 0; m < rest->n_materials; m++) {
-        const double *c = rest->modulus[m];
-        strains->membrane[m] = (struct phys_membrane){.modulus = {c[0], c[1], c[2], c[3]}};
-    }
-    return CLOTH_OK;
-}
-
 /* Takes the shapes at rest of the frame. */
 static int make_strains(struct view_values *values, uint64_t frame, struct cloth_error *error)
 {
-    struct output_rest rest = {0};
     const uint64_t since = output_colours_rest_since(values->colours, frame);
     if (since == values->since && since != UINT64_MAX)
         return CLOTH_OK;
@@ -97,16 +71,13 @@ static int make_strains(struct view_values *values, uint64_t frame, struct cloth
     values->cell = NULL;
     values->stress = NULL;
     values->since = UINT64_MAX;
-    int code = output_colours_rest_at(values->colours, frame, &rest, error);
-    const size_t n = (size_t)rest.n_triangles + rest.n_edges;
-    if (!code)
-        code = take_strains(&values->strains, values->cache->mesh.n_vertices, &rest, error);
+    int code = output_colours_rest_at(values->colours, frame, &values->strains, error);
+    const size_t n = (size_t)values->strains.n_triangles + values->strains.n_edges;
     if (!code) {
         values->cell = cloth_alloc(n, sizeof *values->cell, error);
         values->stress = cloth_alloc(n, sizeof *values->stress, error);
         code = values->cell && values->stress ? CLOTH_OK : CLOTH_E_MEMORY;
     }
-    output_rest_free(&rest);
     values->since = code ? UINT64_MAX : since;
     return code;
 }
@@ -198,8 +169,8 @@ int view_values_frames(struct view_values *values, enum view_colour by, uint64_t
 {
     *n_frames = values->cache->n_frames;
     return by == VIEW_COLOUR_CONTACT
-               ? output_forces_count(values->folder, values->cache->mesh.n_vertices, n_frames,
-                                     error)
+               ? output_forces_read(values->folder, values->cache->mesh.n_vertices, 0, NULL,
+                                    n_frames, error)
                : CLOTH_OK;
 }
 

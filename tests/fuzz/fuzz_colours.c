@@ -11,14 +11,14 @@ static void read_frame(const struct output_colours_read *colours, uint64_t frame
 {
     int32_t number[MOST];
     struct cloth_error error = {0};
-    struct output_rest rest = {0};
+    struct element_strains rest = {0};
     output_colours_blocks(colours, frame, number, &error);
     error = (struct cloth_error){0};
     output_colours_ranks(colours, frame, number, &error);
     error = (struct cloth_error){0};
     if (output_colours_rest_since(colours, frame) != UINT64_MAX)
         output_colours_rest_at(colours, frame, &rest, &error);
-    output_rest_free(&rest);
+    element_strains_free(&rest);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

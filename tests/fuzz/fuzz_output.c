@@ -1,6 +1,6 @@
 /* A folder of frames as duite-view reads it: cloth.obj, cloth.pc2, frames.csv, scene.json,
  * contact.pc2, and a body with its shapes. */
-#include "cloth/output/files/obstacles.h"
+#include "cloth/output/files/scene.h"
 #include "tests/fuzz/fuzz.h"
 
 #include <stdlib.h>
@@ -16,7 +16,8 @@ static void read_frames(struct output_cache *cache)
         if (!output_cache_frame(cache, k, position, &error))
             output_cache_pose(cache, k, &error);
         error = (struct cloth_error){0};
-        output_forces_read(fuzz_folder(), n, k, position, &error);
+        uint64_t n_frames;
+        output_forces_read(fuzz_folder(), n, k, position, &n_frames, &error);
     }
     free(position);
 }

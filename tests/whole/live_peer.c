@@ -9,6 +9,7 @@
  *
  * WHAT: foreign (bytes that are no message), version (a message of the next version), large (a
  * message of a megabyte), parts (too many of them). */
+#include "cloth/base/bytes.h"
 #include "cloth/live/live.h"
 #include "cloth/live/message.h"
 
@@ -102,7 +103,7 @@ static int send_what(void *socket, const char *what)
 static unsigned receive_version(void *socket)
 {
     unsigned char bytes[LIVE_HEADER];
-    return zmq_recv(socket, bytes, sizeof bytes, 0) >= LIVE_HEADER ? live_get_u32(bytes + 8) : 0;
+    return zmq_recv(socket, bytes, sizeof bytes, 0) >= LIVE_HEADER ? cloth_get_u32(bytes + 8) : 0;
 }
 
 static int send_to(void *zmq, const char *host, const char *what)

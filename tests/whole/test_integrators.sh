@@ -143,6 +143,17 @@ ok "a stiff sheet that falls from a corner gains less than 1 % of its fall: no s
 ok "from two corners it gains 11 %, and steps stay short for a while when one was halved" stiff 1 8 --set 'cloths[0].pins=[{vertices: [0, 19]}]'
 without_quiet() { "$DUITE_CLOTH" stiff.yaml --set 'cloths[0].pins=[{vertices: [0, 19]}]' > said; grep shorter said; }
 ok "the summary says what steps were halved for" eval "without_quiet | grep -c 'halved $(value steps_halved) times: $(value steps_halved) for energy gained (time.energy_growth)\$'"
+cat > still.yaml << END
+schema: 1
+gravity: [0, 0, 0]
+cloths: [{name: a, material: m, mesh: {grid: {width: 1, height: 1, nx: 40, ny: 40}}, transform: {translate: [0.3, 0.1, 0.7], rotate: [0.9, 0.3, 0.2, 0.1]}}]
+materials: {m: {density: 0.2, stretch: 1000, shear: 300, bend: 1, damping: {stiffness: 0.004}}}
+time: {h: 0.01, end: 0.2}
+END
+still() {
+    run still.yaml --report report.json && grep -E '"steps' report.json && test "$(value steps)" = 20
+}
+ok "rounding of a sheet at rest without forces is no gain" still
 
 # ---- Newton steps
 

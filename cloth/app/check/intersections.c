@@ -22,7 +22,6 @@ static const uint32_t NO_PART = UINT32_MAX;
 /* The soup of triangles, and what is known of it before the first frame. */
 struct intersections {
     struct intersections_setup of;
-    double begin; /* s: when motions and bodies are at time 0 */
     struct contact_soup soup;
     phys_vec *place;     /* room for the vertices of a body */
     uint32_t *part;      /* by point of cloth: the lowest that triangles join it to, directly or
@@ -125,18 +124,13 @@ int intersections_open(struct intersections **intersections, const struct inters
 }
 
 int intersections_of(struct intersections **intersections, const struct model *model,
-                     const struct contact_apart *apart, const char *program, bool self_off,
-                     struct intersections_found *found, struct cloth_error *error)
+                     struct intersections_setup of, struct cloth_error *error)
 {
     struct contact_soup soup;
-    const struct intersections_setup of = {.program = program,
-                                           .model = model,
-                                           .obstacles = model->obstacles,
-                                           .keys = model->keys,
-                                           .bodies = &model->bodies,
-                                           .apart = apart,
-                                           .self_off = self_off,
-                                           .found = found};
+    of.model = model;
+    of.obstacles = model->obstacles;
+    of.keys = model->keys;
+    of.bodies = &model->bodies;
     int code = model_soup(model, &soup, error);
     code = code ? code : intersections_open(intersections, &of, &soup, error);
     contact_soup_free(&soup);
@@ -379,18 +373,13 @@ static void add_found(const struct look *look, uint64_t pairs, uint64_t with_sha
     found->frames = look->frame + 1;
 }
 
-void intersections_begin(struct intersections *intersections, double begin)
-{
-    intersections->begin = begin;
-}
-
 int intersections_frame(struct intersections *intersections, uint64_t frame, double time,
                         const double *position, bool written, struct cloth_error *error)
 {
     struct look look = {.all = intersections,
                         .frame = frame,
                         .time = time,
-                        .placed = time - intersections->begin,
+                        .placed = time - intersections->of.begin,
                         .written = written,
                         .says = intersections->of.program && intersections->last == UINT64_MAX};
     uint64_t pairs = 0, with_shapes = 0;

@@ -36,6 +36,7 @@ struct intersections_setup {
     const struct contact_apart *apart; /* pairs that do not meet, also triangles of joined vertices
                                         */
     bool self_off;                     /* nor does any cloth meet itself */
+    double begin; /* s, on the frames' clock: when motions and bodies are at time 0 */
     struct intersections_found *found; /* to be added to */
 };
 
@@ -49,13 +50,9 @@ struct contact_soup;
 int intersections_open(struct intersections **intersections, const struct intersections_setup *of,
                        struct contact_soup *soup, struct cloth_error *error);
 
-/* The same for a model, while it has its meshes; model and the others, as above, outlive it. */
+/* The same for a model, while it has its meshes: it fills the model and what the model has. */
 int intersections_of(struct intersections **intersections, const struct model *model,
-                     const struct contact_apart *apart, const char *program, bool self_off,
-                     struct intersections_found *found, struct cloth_error *error);
-
-/* Puts time 0 of motions and bodies at the frames' time `begin`, s, from now on. */
-void intersections_begin(struct intersections *intersections, double begin);
+                     struct intersections_setup of, struct cloth_error *error);
 
 /* Checks a frame: position as of flow_output.frame; written: as floats, else as doubles. A frame
  * may be checked both ways, one after the other. Prints the first few findings of the check on

@@ -176,8 +176,6 @@ static void keeper_warn(struct keeper *keeper, const char *why)
 static void write_one(struct keeper *keeper)
 {
     struct cloth_error error = {0};
-    if (keeper->of->hdf5.frames) /* in flight; one that cannot be written is not waited for */
-        output_hdf5_wait(keeper->of->hdf5.frames);
     if (!keeper->part[1].bytes || !keeper->part[2].bytes)
         cloth_fail(&error, CLOTH_E_MEMORY, "no memory for a checkpoint");
     else if (!output_settler_wait(keeper->of->settler, &error) &&

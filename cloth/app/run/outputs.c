@@ -92,7 +92,9 @@ static int open_output(struct outputs *to, const struct phases *phases, const st
     setup->settler = to->settler;
     code = code ? code : output_open(&to->frames, setup, error);
     code = code ? code : outputs_open_colours(to, phases, flow, n_frames, error);
-    code = code ? code : outputs_hdf5_open(&to->hdf5, model, to->options->output, n_frames, error);
+    code = code ? code
+                : outputs_hdf5_open(&to->hdf5, model, to->options->output, n_frames, to->settler,
+                                    error);
     code = code ? code : open_forces(to, model, flow, n_frames, error);
     return code ? code : open_probes(to, flow, resumed ? &rows : NULL, error);
 }
@@ -157,14 +159,14 @@ static int show_scene(struct outputs *to, const struct phases *phases, const str
 static int open_check(struct outputs *to, const struct phases *phases,
                       const struct contact_apart *apart, struct cloth_error *error)
 {
+    const struct intersections_setup of = {.program = "duite-cloth",
+                                           .apart = apart,
+                                           .begin = phases->total.simulated_seconds,
+                                           .found = &to->found};
     intersections_close(&to->intersections);
-    if (!to->options->check_intersections)
-        return CLOTH_OK;
-    const int code = intersections_of(&to->intersections, phases_model(phases), apart,
-                                      "duite-cloth", false, &to->found, error);
-    if (!code)
-        intersections_begin(to->intersections, phases->total.simulated_seconds);
-    return code;
+    return to->options->check_intersections
+               ? intersections_of(&to->intersections, phases_model(phases), of, error)
+               : CLOTH_OK;
 }
 
 int outputs_open(struct outputs *to, const struct simulate_options *options,

@@ -2,8 +2,8 @@
  *
  * The folder has the shapes and moduli that give the strain of any frame, not the strain: they are
  * written once, and a run need not know what its pictures will show. In scientific frames strain
- * and stress follow from positions, too: the thread that writes finds them, and no rank but this
- * one needs to. */
+ * and stress follow from positions, too: the settler finds them, and no rank but this one
+ * needs to. */
 #include "cloth/app/run/outputs_fields.h"
 
 #include "cloth/base/memory.h"
@@ -20,22 +20,6 @@ void outputs_warn(const char *text)
 }
 
 /* ---- Colours ---- */
-
-static void outputs_colours_copy(const struct element_strains *strains,
-                                 const struct output_rest *rest)
-{
-    memcpy(rest->corner, strains->corner, rest->n_triangles * sizeof *rest->corner);
-    memcpy(rest->area, strains->area, rest->n_triangles * sizeof *rest->area);
-    memcpy(rest->edge, strains->edge, rest->n_edges * sizeof *rest->edge);
-    memcpy(rest->length, strains->length, rest->n_edges * sizeof *rest->length);
-    memcpy(rest->has_stress, strains->has_stress, rest->n_materials * sizeof *rest->has_stress);
-    for (int i = 0; i < 4; i++) {
-        for (uint32_t t = 0; t < rest->n_triangles; t++)
-            rest->gradient[t][i] = strains->gradient[t][i];
-        for (uint32_t m = 0; m < rest->n_materials; m++)
-            rest->modulus[m][i] = strains->membrane[m].modulus[i];
-    }
-}
 
 /* Goes on without the file that was not written. */
 static int outputs_colours_go_on(struct output_colours **colours, int code,
@@ -56,21 +40,14 @@ static int outputs_colours_go_on(struct output_colours **colours, int code,
 int outputs_colours_rest(struct output_colours **colours, const struct model *model, uint64_t frame,
                          struct cloth_error *error)
 {
-    struct element_strains strains = {0};
-    struct output_rest rest = {.n_materials = model->n_materials};
+    struct element_strains rest;
     if (!*colours)
         return CLOTH_OK;
-    int code = element_strains_make(&strains, model, error);
-    rest.n_triangles = strains.n_triangles;
-    rest.n_edges = strains.n_edges;
-    code = code ? code : output_rest_make(&rest, error);
-    if (!code) {
-        outputs_colours_copy(&strains, &rest);
+    int code = element_strains_make(&rest, model, error);
+    if (!code)
         code = outputs_colours_go_on(colours, output_colours_rest(*colours, frame, &rest, error),
                                      error);
-    }
-    output_rest_free(&rest);
-    element_strains_free(&strains);
+    element_strains_free(&rest);
     return code;
 }
 
@@ -129,7 +106,8 @@ static uint32_t (*corners_of(const struct element_strains *strains, struct cloth
 }
 
 int outputs_hdf5_open(struct outputs_hdf5 *to, const struct model *model, const char *folder,
-                      const uint64_t *n_frames, struct cloth_error *error)
+                      const uint64_t *n_frames, struct output_settler *settler,
+                      struct cloth_error *error)
 {
     if (!model->hdf5.every)
         return output_hdf5_forget(folder, n_frames, error);
@@ -144,6 +122,7 @@ int outputs_hdf5_open(struct outputs_hdf5 *to, const struct model *model, const 
         return error->code;
     setup.folder = folder;
     setup.n_frames = n_frames;
+    setup.settler = settler;
     setup.triangle = (const uint32_t(*)[3])triangle;
     setup.edge = (const uint32_t(*)[2])to->strains.edge;
     setup.context = to;
@@ -222,7 +201,7 @@ void outputs_hdf5_force(struct outputs_hdf5 *of, const double *force)
 /* Its size on the disk for a run of this model alone, bytes, about. */
 static double colours_bytes(const struct model *model, uint64_t n_vertices)
 {
-    struct output_rest rest = {.n_materials = model->n_materials};
+    struct element_strains rest = {.n_materials = model->n_materials};
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         rest.n_triangles += model->cloths[c].mesh.n_triangles;
         rest.n_edges += model->cloths[c].mesh.n_bare_edges;

@@ -46,7 +46,8 @@ struct outputs_hdf5 {
  * n_frames: the first *n_frames of the earlier run stay, which this one resumes; NULL: the run is
  * new. Returns a cloth_code. */
 int outputs_hdf5_open(struct outputs_hdf5 *to, const struct model *model, const char *folder,
-                      const uint64_t *n_frames, struct cloth_error *error);
+                      const uint64_t *n_frames, struct output_settler *settler,
+                      struct cloth_error *error);
 /* Goes on with another model of the same cloths, while there are meshes. Returns a cloth_code. */
 int outputs_hdf5_go_on(struct outputs_hdf5 *to, const struct model *model,
                        struct cloth_error *error);

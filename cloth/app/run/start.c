@@ -134,9 +134,10 @@ static int look_at_start(const struct model *model, const struct contact_apart *
                          struct cloth_error *error)
 {
     struct intersections *intersections = NULL;
+    const struct intersections_setup of = {
+        .program = "duite-cloth", .apart = apart, .self_off = !model->contact.self, .found = found};
     *found = (struct intersections_found){0};
-    int code = intersections_of(&intersections, model, apart, "duite-cloth", !model->contact.self,
-                                found, error);
+    int code = intersections_of(&intersections, model, of, error);
     code = code ? code : intersections_frame(intersections, 0, 0, position, false, error);
     intersections_close(&intersections);
     return code;

@@ -35,8 +35,8 @@ struct flow_saved_side {
 /* Where the arrays are in the bytes of a main program. */
 struct flow_saved_arrays {
     struct flow_tied_blocks tied; /* all NULL: there are none */
-    const struct flow_saved_side *side;
-    const uint32_t *kept;
+    struct flow_saved_side *side;
+    uint32_t *kept;
 };
 
 /* Bytes of main program of a checkpoint; its arrays, in bytes that are aligned to 8. Pure. */

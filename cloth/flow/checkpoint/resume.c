@@ -75,21 +75,6 @@ static int resume_main_body(const duite_call *call, const struct resume_main_fie
     return 0;
 }
 
-/* Sends it to all ranks. */
-static int share_main(struct flow_state *state, unsigned char *received)
-{
-    const struct flow_block_args all = {0};
-    duite_object object;
-    int code = duite_new(state->rt, DUITE_BYTE, state->head.resumed_bytes, &object);
-    if (!code)
-        code = flow_fork_given_at(state, 0, &flow_kernel_resume_main, &all,
-                                  &(struct flow_given){.one = &object});
-    if (!code)
-        code = duite_get(state->rt, object, received);
-    const int freed = object.generation ? duite_free(state->rt, object) : DUITE_OK;
-    return code ? code : freed;
-}
-
 /* Frames that only the end of the earlier run called for are shown again, at their right times. */
 static void take_report(struct flow_state *state, const struct flow_saved *saved)
 {
@@ -109,31 +94,29 @@ static void take_report(struct flow_state *state, const struct flow_saved *saved
     state->flow->frames = state->next_frame;
 }
 
-static int take_main(struct flow_state *state, const unsigned char *from)
+static void take_main(struct flow_state *state, const unsigned char *from)
 {
     struct flow_saved saved;
     memcpy(&saved, from, sizeof saved);
     const struct flow_saved_arrays arrays = flow_saved_arrays(&saved, from);
     take_report(state, &saved);
-    int code = saved.has_ties ? flow_ties_again(state, &arrays.tied) : DUITE_OK;
-    if (!code && model_seeks(state->flow->model))
-        code = flow_contact_meet_again(state, saved.n_meetings, arrays.side);
+    if (saved.has_ties)
+        flow_ties_again(state, &arrays.tied);
+    if (model_seeks(state->flow->model))
+        flow_noted(state, flow_contact_meet_again(state, saved.n_meetings, arrays.side));
     for (uint32_t b = 0; b < saved.n_kept; b++)
         flow_contact_keep_again(state, b, arrays.kept[b]);
-    return code;
 }
 
 int flow_resume_main(struct flow_state *state)
 {
     unsigned char *main = cloth_alloc(state->head.resumed_bytes, 1, &state->flow->trouble);
     state->grid.end = state->flow->n_steps * FLOW_TICKS;
-    int code = flow_memory_agree(state);
-    if (!code)
-        code = share_main(state, main);
-    if (!code)
-        code = take_main(state, main);
+    if (!flow_memory_agree(state) &&
+        !flow_broadcast(state, &flow_kernel_resume_main, state->head.resumed_bytes, main))
+        take_main(state, main);
     free(main);
-    return code;
+    return state->code;
 }
 
 /* ---- State of blocks ---- */
@@ -222,40 +205,36 @@ static void skip(const struct flow_state *state, size_t n, struct load_args *arg
         args->at = next_at(args->at, bytes_at(from, args->at));
 }
 
-static int load_all(struct flow_state *state)
+static void load_all(struct flow_state *state)
 {
     const uint32_t n_blocks = state->flow->tables.n_blocks;
     duite_object refs[FLOW_MAX_PARAMETERS + FLOW_FIELDS_OF_ALL + 1];
     duite_object *rest = refs + FLOW_MAX_PARAMETERS;
     struct load_args args = {.at = state->head.resumed_bytes};
-    int code = DUITE_OK;
-    for (uint32_t b = 0; b <= n_blocks && !code; b++) {
+    for (uint32_t b = 0; b <= n_blocks && !state->code; b++) {
         const struct flow_block_args block = {b};
         args.block = b;
         args.keeps = b < n_blocks && flow_contact_mode(state->flow->model)->carries;
         const size_t n = flow_saved_objects(state, b, rest);
         if (n)
-            code = flow_fork_given_at(state, 0, &flow_kernel_resume_load, &args,
-                                      &(struct flow_given){.n = n, .rest = rest});
+            flow_fork_given_at(state, 0, &flow_kernel_resume_load, &args,
+                               &(struct flow_given){.n = n, .rest = rest});
         skip(state, n, &args);
-        if (!code && b < n_blocks)
-            code = flow_fork_one(state, &flow_kernel_resume, &block);
-        if (!code && b % TRAVEL == TRAVEL - 1)
-            code = duite_wait(state->rt);
+        if (b < n_blocks)
+            flow_fork_one(state, &flow_kernel_resume, &block);
+        if (b % TRAVEL == TRAVEL - 1)
+            flow_noted(state, duite_wait(state->rt));
     }
-    return code;
 }
 
 int flow_resume_blocks(struct flow_state *state)
 {
     const struct model *model = state->flow->model;
-    int code = load_all(state);
-    if (!code)
-        code = flow_levels_initialise(state);
-    if (!code && !model_is_filtered(model))
-        code = flow_coarse_initialise(state);
-    if (!code)
-        code = flow_contact_resume(state);
-    const int failed = duite_wait(state->rt); /* the bytes are not read any more */
-    return code ? code : failed;
+    load_all(state);
+    flow_levels_initialise(state);
+    if (!model_is_filtered(model))
+        flow_coarse_initialise(state);
+    if (!state->code)
+        flow_noted(state, flow_contact_resume(state));
+    return flow_noted(state, duite_wait(state->rt)); /* the bytes are not read any more */
 }

@@ -10,31 +10,17 @@
 
 /* ---- The bytes, on rank 0 ---- */
 
-static void give_up_saving(struct flow *flow)
-{
-    free(flow->saving.bytes);
-    flow->saving = (struct flow_checkpoint){0};
-    flow->saving_room = 0;
-}
-
 /* The next n bytes; NULL: no memory, now or before. */
 static unsigned char *append_room(struct flow *flow, size_t n)
 {
-    struct flow_checkpoint *to = &flow->saving;
-    if (!to->bytes)
-        return NULL;
-    if (to->n + n > flow->saving_room) {
-        const size_t room = flow->saving_room + flow->saving_room / 2 + n;
-        unsigned char *more = realloc(to->bytes, room);
-        if (!more) {
-            give_up_saving(flow);
-            return NULL;
-        }
-        to->bytes = more;
-        flow->saving_room = room;
-    }
-    to->n += n;
-    return to->bytes + to->n - n;
+    struct cloth_list *to = &flow->saving;
+    struct cloth_error ignored = {0}; /* the program gets no bytes */
+    unsigned char *room = to->items ? cloth_list_add(to, 1, n, &ignored) : NULL;
+    if (room)
+        return room;
+    free(to->items);
+    *to = (struct cloth_list){0};
+    return NULL;
 }
 
 static void append_object(struct flow *flow, const duite_param *object)
@@ -63,8 +49,8 @@ static int save_body(const duite_call *call, const struct save_fields *on)
         append_object(flow, on->saved_objects + i);
     if (!on->args->last)
         return 0;
-    const struct flow_checkpoint whole = flow->saving;
-    flow->saving = (struct flow_checkpoint){0};
+    const struct flow_checkpoint whole = {flow->saving.items, flow->saving.n};
+    flow->saving = (struct cloth_list){0};
     flow->output->save(flow->output->context, whole);
     return 0;
 }
@@ -97,33 +83,20 @@ static struct flow_saved describe_saved(const struct flow_state *state, bool fin
     return saved;
 }
 
-static unsigned char *save_put_bytes(unsigned char *to, const void *from, size_t n)
-{
-    if (n)
-        memcpy(to, from, n);
-    return to + n;
-}
-
 static void put_main(const struct flow_state *state, const struct flow_saved *saved,
                      unsigned char *to)
 {
-    const struct flow_tied_blocks *tied = &state->tied.now;
-    const unsigned char *end = to + saved->main_bytes;
-    to = save_put_bytes(to, saved, sizeof *saved);
-    if (saved->has_ties) {
-        to = save_put_bytes(to, tied->room, saved->n_blocks * sizeof *tied->room);
-        to = save_put_bytes(to, tied->first, ((size_t)saved->n_blocks + 1) * sizeof *tied->first);
-        to = save_put_bytes(to, tied->other, saved->n_others * sizeof *tied->other);
-        to = save_put_bytes(to, tied->place, saved->n_others * sizeof *tied->place);
-    }
+    const struct flow_saved_arrays arrays = flow_saved_arrays(saved, to);
+    memset(to, 0, saved->main_bytes);
+    memcpy(to, saved, sizeof *saved);
+    if (saved->has_ties)
+        flow_ties_copy(&state->tied.now, saved->n_blocks, &arrays.tied);
     for (uint32_t i = 0; i < saved->n_meetings; i++) {
         const struct flow_meeting *of = state->contact.meetings.all + i;
-        const struct flow_saved_side side = {{of->side[0], of->side[1]}, of->room};
-        to = save_put_bytes(to, &side, sizeof side);
+        arrays.side[i] = (struct flow_saved_side){{of->side[0], of->side[1]}, of->room};
     }
     for (uint32_t b = 0; b < saved->n_kept; b++)
-        to = save_put_bytes(to, &state->contact.kept[b].n[state->contact.begin], sizeof(uint32_t));
-    memset(to, 0, (size_t)(end - to));
+        arrays.kept[b] = state->contact.kept[b].n[state->contact.begin];
 }
 
 /* Bytes of a checkpoint without lists, whose length the main program does not know. */
@@ -144,8 +117,8 @@ static void begin_saving(struct flow_state *state, bool finished)
 {
     struct flow *flow = state->flow;
     const struct flow_saved saved = describe_saved(state, finished);
-    flow->saving_room = saved.main_bytes + fields_bytes(state);
-    flow->saving = (struct flow_checkpoint){.bytes = malloc(flow->saving_room)};
+    const size_t bytes = saved.main_bytes + fields_bytes(state);
+    flow->saving = (struct cloth_list){.items = malloc(bytes), .capacity = bytes};
     unsigned char *to = append_room(flow, saved.main_bytes);
     if (to)
         put_main(state, &saved, to);
@@ -159,13 +132,13 @@ int flow_save(struct flow_state *state, bool finished)
     int64_t token;
     if (!state->output || !state->output->save)
         return DUITE_OK;
-    int code = duite_get(state->rt, state->run.token, &token); /* the one before is over */
-    if (!code && duite_rank(state->rt) == 0)
+    if (!flow_get(state, FLOW_FIELD_token, &token) /* the one before is over */
+        && duite_rank(state->rt) == 0)
         begin_saving(state, finished);
-    for (uint32_t b = 0; b <= n_blocks && !code; b++) {
+    for (uint32_t b = 0; b <= n_blocks; b++) {
         const struct save_args args = {.block = b, .last = b == n_blocks};
         const struct flow_given given = {.n = flow_saved_objects(state, b, rest), .rest = rest};
-        code = flow_fork_given_at(state, 0, &flow_kernel_save, &args, &given);
+        flow_fork_given_at(state, 0, &flow_kernel_save, &args, &given);
     }
-    return code;
+    return state->code;
 }

@@ -36,16 +36,16 @@ struct flow_saved_arrays flow_saved_arrays(const struct flow_saved *saved,
                                            const unsigned char *bytes)
 {
     struct flow_saved_arrays arrays = {0};
-    const void *at = bytes + sizeof *saved;
+    void *at = (unsigned char *)bytes + sizeof *saved; /* users of const bytes do not write */
     if (saved->has_ties) {
-        arrays.tied.room = (void *)at; /* users of const arrays do not write */
+        arrays.tied.room = at;
         arrays.tied.first = (void *)(arrays.tied.room + saved->n_blocks);
         arrays.tied.other = arrays.tied.first + saved->n_blocks + 1;
         arrays.tied.place = arrays.tied.other + saved->n_others;
         at = arrays.tied.place + saved->n_others;
     }
     arrays.side = at;
-    arrays.kept = (const void *)(arrays.side + saved->n_meetings);
+    arrays.kept = (void *)(arrays.side + saved->n_meetings);
     return arrays;
 }
 

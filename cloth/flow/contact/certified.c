@@ -57,12 +57,12 @@ static uint32_t certified_cloth_of(const struct flow *flow, uint32_t vertex)
 
 /* Writes the parts of a pair: vertices as their meshes count them, from 1, and the obstacle. Only
  * rank 0 knows them. */
-static void certified_describe_pair(const struct flow_state *state, const struct flow_near *near,
-                                    size_t size, char *text)
+static void certified_describe_pair(const struct flow_state *state,
+                                    const struct flow_contact *contact, size_t size, char *text)
 {
     const struct flow *flow = state->flow;
-    const struct flow_tie_corners *at = &near->contact.at;
-    const uint32_t n_blocks = flow->tables.n_blocks, other = near->contact.side[1];
+    const struct flow_tie_corners *at = &contact->at;
+    const uint32_t n_blocks = flow->tables.n_blocks, other = contact->side[1];
     uint32_t last = flow->model->n_cloths;
     text[0] = 0;
     if (!flow->vertex)
@@ -84,26 +84,33 @@ static void certified_describe_pair(const struct flow_state *state, const struct
                     contact_kinds[flow->model->obstacles[other - n_blocks].kind]->name);
 }
 
+/* Gets a list that tasks made, on every rank; the caller frees it. */
+static int get_list(struct flow_state *state, duite_object object, struct flow_list **list)
+{
+    size_t bytes;
+    *list = NULL;
+    int code = duite_get_count(state->rt, object, &bytes);
+    if (code)
+        return code;
+    *list = aligned_alloc(FLOW_LINE, (bytes / FLOW_LINE + 1) * FLOW_LINE);
+    if (!*list)
+        cloth_fail(&state->flow->trouble, CLOTH_E_MEMORY, "out of memory for a list of pairs");
+    code = flow_memory_agree(state);
+    return code ? code : duite_get(state->rt, object, *list);
+}
+
 /* Finds the first pair of a list that fails, and describes it. */
 static int describe_first_of(struct flow_state *state, const struct flow_meeting *meeting,
                              size_t size, char *text)
 {
-    size_t bytes;
-    int code = duite_get_count(state->rt, meeting->near, &bytes);
-    if (code)
-        return code;
-    struct flow_list *list = aligned_alloc(FLOW_LINE, (bytes / FLOW_LINE + 1) * FLOW_LINE);
-    if (!list)
-        cloth_fail(&state->flow->trouble, CLOTH_E_MEMORY, "out of memory for a list of pairs");
-    code = flow_memory_agree(state);
-    if (!code)
-        code = duite_get(state->rt, meeting->near, list);
+    struct flow_list *list;
+    const int code = get_list(state, meeting->near, &list);
     const struct flow_near *near = (const struct flow_near *)(list + 1);
     uint64_t i = 0;
     while (!code && i < list->n && !near[i].fails)
         i++;
     if (!code && i < list->n)
-        certified_describe_pair(state, near + i, size, text);
+        certified_describe_pair(state, &near[i].contact, size, text);
     free(list);
     return code;
 }
@@ -119,6 +126,27 @@ static int describe_failing(struct flow_state *state, size_t size, char *text)
     return i < meetings->n ? describe_first_of(state, meetings->all + i, size, text) : DUITE_OK;
 }
 
+/* Describes the first contact without room in the accepted state; on rank 0 only. */
+static int describe_pinched(struct flow_state *state, size_t size, char *text)
+{
+    const struct flow_contact_state *now = &state->contact;
+    int code = DUITE_OK;
+    bool found = false;
+    text[0] = 0;
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code && !found; b++) {
+        struct flow_list *list;
+        code = get_list(state, now->kept[b].list[now->now], &list);
+        const struct flow_contact *contact = (const struct flow_contact *)(list + 1);
+        for (uint64_t i = 0; !code && !found && i < list->n; i++) {
+            found = contact_row_is_pinched(&contact[i].row);
+            if (found)
+                certified_describe_pair(state, contact + i, size, text);
+        }
+        free(list);
+    }
+    return code;
+}
+
 /* The reason of a failure. what: the fault of n pairs; cure: its remedy. */
 static int say_why(struct flow_state *state, uint64_t n, const char *what, const char *cure)
 {
@@ -130,32 +158,39 @@ static int say_why(struct flow_state *state, uint64_t n, const char *what, const
     return code;
 }
 
-/* Pairs fail that cannot be cut further: the step is halved, or the run ends. */
-static int note_pinch(struct flow_state *state, uint64_t fails)
+/* Adds n pinches to the report, with the first of all. */
+static int note_pinches(struct flow_state *state, uint64_t n,
+                        int (*describe)(struct flow_state *state, size_t size, char *text))
 {
     struct flow_report *report = state->report;
-    const bool first = !report->contact_pinches;
+    const bool first = !report->contact_pinches && n;
     char pair[200] = "";
-    report->contact_pinches += fails;
-    if (flow_attempt_is_last(state))
-        return say_why(state, fails,
-                       "pairs of features cannot be kept apart: obstacles or pins pinch the cloth, "
-                       "or are too fast",
-                       model_contact_cure(state->flow->model));
-    const int code = first ? describe_failing(state, sizeof pair, pair) : DUITE_OK;
+    report->contact_pinches += n;
+    const int code = first ? describe(state, sizeof pair, pair) : DUITE_OK;
     if (pair[0])
         snprintf(report->contact_pinch, sizeof report->contact_pinch, "%s, at %g s", pair,
                  flow_attempt_args(state).time);
     return code;
 }
 
+/* Pairs fail that cannot be cut further: the step is halved, or the run ends. */
+static int note_failing(struct flow_state *state, uint64_t fails)
+{
+    if (flow_attempt_is_last(state))
+        return say_why(state, fails,
+                       "pairs of features cannot be kept apart: obstacles or pins pinch the cloth, "
+                       "or are too fast",
+                       model_contact_cure(state->flow->model));
+    return note_pinches(state, fails, describe_failing);
+}
+
 /* ---- The begin of a step ---- */
 
-/* again: this step was looked at before. */
-static int look_at_step(struct flow_state *state, bool again, struct flow_seen *seen)
+/* again: this step was looked at before. shorter: as in flow_contact_look. */
+static int look_at_step(struct flow_state *state, bool again, bool shorter, struct flow_seen *seen)
 {
     struct flow_report *report = state->report;
-    const int code = flow_contact_look(state, seen);
+    const int code = flow_contact_look(state, shorter, seen);
     report->contact_pairs += seen->passes;
     report->contact_queries += state->contact.meetings.n;
     report->contact_queries_again += again ? state->contact.meetings.n : 0;
@@ -175,7 +210,7 @@ static int start_certified(struct flow_state *state)
     if (!code)
         code = flow_contact_cut_none(state);
     if (!code)
-        code = look_at_step(state, false, &seen);
+        code = look_at_step(state, false, false, &seen);
     if (!code && seen.fails) {
         char cure[128];
         snprintf(cure, sizeof cure, ": %s", model_start_cure(state->flow->model));
@@ -241,10 +276,10 @@ static int cut_failing(struct flow_state *state, struct flow_seen *seen)
             state->contact.cut_run = cut.run;
         if (!flow_attempt_is_last(state) && (double)cut.halved > TOO_MANY * (double)seen->contacts)
             state->contact.failed = true;
-        code = look_at_step(state, true, seen);
+        code = look_at_step(state, true, false, seen);
     }
     state->contact.failed = state->contact.failed || seen->fails;
-    return !code && seen->fails ? note_pinch(state, seen->fails) : code;
+    return !code && seen->fails ? note_failing(state, seen->fails) : code;
 }
 
 /* True if the step's solve succeeded. */
@@ -263,7 +298,11 @@ static int settle_certified(struct flow_state *state)
         code = duite_get(state->rt, state->run.status[parity], status);
         if (code || !is_solved(status))
             return code;
-        code = look_at_step(state, solve > 1, &seen);
+        code = look_at_step(state, solve > 1, !flow_attempt_is_last(state), &seen);
+        if (!code && seen.hopeless) {
+            state->contact.failed = true;
+            return DUITE_OK;
+        }
         if (code || solve == MAX_SOLVES || !((double)seen.fails > FEW * (double)seen.contacts))
             break;
         code = make_again(state, status);
@@ -283,16 +322,17 @@ static void add_solves(const struct flow_state *state, double status[FLOW_STATUS
     status[FLOW_TOUCHED] += (double)state->contact.cut;
 }
 
-static void note_settled(struct flow_state *state, bool accepted)
+static int note_settled(struct flow_state *state, const double status[FLOW_STATUS], bool accepted)
 {
     if (!accepted)
-        return;
+        return DUITE_OK;
     state->contact.begin = state->contact.now;
     state->contact.accepted = state->contact.attempt;
     state->report->contacts_now = state->contact.near;
     if (state->contact.cut_run > state->report->contact_cut_run)
         state->report->contact_cut_run = state->contact.cut_run;
     state->report->contact_cut_momentum += state->contact.cut_momentum;
+    return note_pinches(state, (uint64_t)status[FLOW_PINCHES], describe_pinched);
 }
 
 /* ---- In tasks ---- */

@@ -136,10 +136,11 @@ static inline duite_object *flow_contact_rest(const struct flow_state *state)
 /* Counts of one look at the step. */
 struct flow_seen {
     uint64_t fails, passes, contacts;
+    bool hopeless; /* more pairs fail than a solve can hold: lists are not complete */
 };
 /* Looks at the way from kept_x to x: all pairs are certified, the near ones are listed. (pairs.c)
- */
-int flow_contact_look(struct flow_state *state, struct flow_seen *seen);
+ * shorter: a shorter step can be made where it is hopeless. */
+int flow_contact_look(struct flow_state *state, bool shorter, struct flow_seen *seen);
 /* The lists of meetings whose features may have corners in a block, put into `to`; returns how
  * many. Marks the blocks that may keep contacts with corners in it, of all. Local. (pairs.c) */
 struct flow_saved_side;

@@ -24,6 +24,7 @@ struct meeting {
     const struct contact_body *body;
     const uint32_t *fan;      /* of the body (contact_body_opens) */
     const uint32_t *attached; /* by point of the first skin */
+    const double *area[2];    /* by point of each skin; of a body NULL */
     bool leaves_out;          /* see flow_leaves_out */
     bool sweeps;              /* as the mode does (mode.h) */
     struct contact_skin skin[2];
@@ -100,6 +101,19 @@ static void describe_corner(const struct corners *corners, const struct contact_
     to->at.held |= (unsigned char)((corners->held >> from & 1) << k);
 }
 
+/* The area that a contact presses: that of the cloth at its first side's point. Between two cloths
+ * it is half of that, as contacts of the other one's features press the same place. */
+static double contact_meet_area(const struct meeting *m, const struct corners *corners,
+                                const struct flow_contact *of)
+{
+    double area = 0;
+    for (uint32_t k = 0; k < of->first; k++) {
+        const uint32_t from = (k + contact_meet_is_turned(m, corners)) % 4;
+        area += of->at.weight[k] * m->area[corners->side[from]][of->point[k]];
+    }
+    return m->body ? area : 0.5 * area;
+}
+
 /* Fills a contact, in zeroed memory. places: of the corners; they give the row's origin. */
 static void contact_meet_describe_pair(const struct meeting *m,
                                        const struct contact_candidate *candidate,
@@ -117,6 +131,7 @@ static void contact_meet_describe_pair(const struct meeting *m,
     to->row.gap = nearest->gap;
     to->row.thickness = m->model->contact.thickness;
     to->row.friction = friction_of(m, corners->pair, corners->point, corners->side);
+    to->row.solid = m->body != NULL;
     for (int k = 0; k < 2; k++) {
         to->side[k] = m->args->side[turned ? k : k ^ second];
         to->feature[k] = candidate->of[k ^ second];
@@ -128,6 +143,7 @@ static void contact_meet_describe_pair(const struct meeting *m,
         if (k < to->at.n)
             to->row.origin += to->at.weight[k] * places[from];
     }
+    to->row.hard = m->model->contact.pressure * contact_meet_area(m, corners, to);
 }
 
 static void append_pair(struct meeting *m, const struct flow_near *near)
@@ -342,6 +358,7 @@ static void begin_meeting(const duite_call *call, const struct flow_meet_args *a
                           .leaves_out =
                               flow_leaves_out(flow->model, args->side[1] >= flow->tables.n_blocks),
                           .attached = own.attached,
+                          .area = {own.area, own.area},
                           .near = (struct flow_near *)(list + 1),
                           .room = args->room,
                           .counts = counts + (size_t)FLOW_COUNTS * args->number};
@@ -379,7 +396,9 @@ static int meet_body(const duite_call *call, const struct meet_fields *on)
 {
     struct meeting m;
     begin_meeting(call, on->args, on->skin, on->skin_x, on->skin_boxes, on->counts, on->near, &m);
-    m.skin[1] = flow_skin_open(on->other_skin).skin;
+    const struct flow_skin other = flow_skin_open(on->other_skin);
+    m.skin[1] = other.skin;
+    m.area[1] = other.area;
     m.side[1] = side_of_points(m.skin + 1, on->other_x, on->other_boxes);
     return duite_resize(call, FLOW_INDEX_OF(meet, near), query_meeting(&m, m.side + 1, on->near));
 }

@@ -22,6 +22,7 @@ struct meeting {
     bool sweeps;              /* as the mode does (mode.h) */
     uint32_t obstacle;        /* behind all cloths */
     const uint32_t *attached; /* by point of the skin */
+    const double *area;       /* likewise */
     struct contact_skin skin;
     const phys_vec *x, *y; /* by point */
     double h;              /* s: of the step */
@@ -65,6 +66,7 @@ static void describe_place(const struct meeting *m, uint32_t n, const uint32_t *
     to->row.gap = on->gap;
     to->row.thickness = m->model->contact.thickness;
     to->row.friction = friction_at(m, n, point);
+    to->row.solid = 1;
     for (int k = 0; k < 2; k++)
         to->side[k] = m->args->side[k];
     for (uint32_t k = 0; k < n; k++) {
@@ -74,6 +76,7 @@ static void describe_place(const struct meeting *m, uint32_t n, const uint32_t *
         to->at.weight[k] = on->weight[k];
         to->at.held |= (unsigned char)((m->skin.held[point[k]] != 0) << k);
         to->row.origin += on->weight[k] * places[k];
+        to->row.hard += m->model->contact.pressure * on->weight[k] * m->area[point[k]];
         near->part[k] = 1;
     }
 }
@@ -307,6 +310,7 @@ static int meet_shape_body(const duite_call *call, const struct meet_shape_field
     const struct flow_skin skin = flow_skin_open(on->skin);
     m.skin = skin.skin;
     m.attached = skin.attached;
+    m.area = skin.area;
     m.x = on->skin_x;
     m.y = m.x + m.skin.n_points;
     if (m.sweeps)

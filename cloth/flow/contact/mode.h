@@ -26,10 +26,11 @@ struct flow_contact_mode {
     int (*resume)(struct flow_state *state); /* or where it goes on from a checkpoint */
     int (*begin)(struct flow_state *state);  /* of a step, before its forces */
     int (*settle)(struct flow_state *state); /* when x and v have moved: ends the step */
-    /* Adds to the status of a step what other solves cost and how many vertices contact moved. Is
-     * told if the step was accepted. Local. */
+    /* Adds to the status of a step what other solves cost and how many vertices contact moved.
+     * Local. */
     void (*status)(const struct flow_state *state, double status[FLOW_STATUS]);
-    void (*settled)(struct flow_state *state, bool accepted);
+    /* Is told if the step was accepted. Collective. */
+    int (*settled)(struct flow_state *state, const double status[FLOW_STATUS], bool accepted);
 
     /* What it needs. */
     bool sweeps;  /* pairs are certified on the whole way of a step, bodies by their skins, and ways
@@ -59,7 +60,7 @@ int flow_contact_resume(struct flow_state *state);
 int flow_contact_begin(struct flow_state *state);
 int flow_contact_settle(struct flow_state *state);
 void flow_contact_status(const struct flow_state *state, double status[FLOW_STATUS]);
-void flow_contact_settled(struct flow_state *state, bool accepted);
+int flow_contact_settled(struct flow_state *state, const double status[FLOW_STATUS], bool accepted);
 
 /* Bounds the fastest vibration of contacts that are springs at a vertex of mean mass: its square is
  * at most this times k / m, its damping this times c / m. Two layers that press on each other, each

@@ -58,9 +58,8 @@ void flow_contact_status(const struct flow_state *state, double status[FLOW_STAT
         mode->status(state, status);
 }
 
-void flow_contact_settled(struct flow_state *state, bool accepted)
+int flow_contact_settled(struct flow_state *state, const double status[FLOW_STATUS], bool accepted)
 {
     const struct flow_contact_mode *mode = mode_of(state);
-    if (mode->settled)
-        mode->settled(state, accepted);
+    return mode->settled ? mode->settled(state, status, accepted) : DUITE_OK;
 }

@@ -18,6 +18,10 @@
  * nothing. */
 static const double SPARE = 20;
 enum { LEAST_ROOM = 256 }; /* items of a list, which doubles where it is short */
+/* Failing pairs a vertex of the blocks that they are of: with more, cloth passes many layers or the
+ * whole of itself in the step, and its contacts would be far more than the cloth. A wrung sheet has
+ * 8.4, two sheets that pass each other 7. */
+enum { MOST_FAILING = 10 };
 
 /* ---- Boxes ---- */
 
@@ -312,6 +316,26 @@ static void pairs_sum_up(struct flow_state *state, struct flow_seen *seen)
     }
 }
 
+/* True if more pairs fail than their blocks can hold. */
+static bool pairs_is_hopeless(const struct flow_state *state)
+{
+    const struct flow_meetings *meetings = &state->contact.meetings;
+    const uint32_t n_blocks = state->flow->tables.n_blocks;
+    unsigned char *fails = state->contact.mark;
+    double n_fails = 0, n_vertices = 0;
+    memset(fails, 0, n_blocks);
+    for (uint32_t i = 0; i < meetings->n; i++) {
+        const double n = meetings->count[FLOW_COUNTS * (size_t)i + FLOW_COUNT_FAILS];
+        n_fails += n;
+        for (int k = 0; k < 2 && n > 0; k++)
+            if (meetings->all[i].side[k] < n_blocks)
+                fails[meetings->all[i].side[k]] = 1;
+    }
+    for (uint32_t b = 0; b < n_blocks; b++)
+        n_vertices += fails[b] ? state->flow->tables.block[b].skin.n_vertices : 0;
+    return n_fails > MOST_FAILING * n_vertices;
+}
+
 /* Places the shapes over the step. */
 static void place_shapes(struct flow_state *state)
 {
@@ -327,8 +351,9 @@ static void place_shapes(struct flow_state *state)
     }
 }
 
-int flow_contact_look(struct flow_state *state, struct flow_seen *seen)
+int flow_contact_look(struct flow_state *state, bool shorter, struct flow_seen *seen)
 {
+    bool hopeless = false;
     int code = flow_contact_mode(state->flow->model)->sweeps ? flow_skins_refit(state)
                                                              : flow_skins_place(state);
     if (!code)
@@ -336,9 +361,11 @@ int flow_contact_look(struct flow_state *state, struct flow_seen *seen)
     place_shapes(state);
     if (!code && (!state->contact.meetings.counts.generation || !all_meet(state)))
         code = make_meetings(state);
-    do
+    do {
         code = code ? code : fork_meetings(state);
-    while (!code && make_longer(state));
+        hopeless = !code && shorter && pairs_is_hopeless(state);
+    } while (!code && !hopeless && make_longer(state));
     pairs_sum_up(state, seen);
+    seen->hopeless = hopeless;
     return code;
 }

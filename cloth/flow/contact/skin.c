@@ -22,6 +22,7 @@ static size_t lay_skin(const struct contact_skin *skin, void *memory,
     arrays->from = flow_room_next(&room, skin->n_points * sizeof *arrays->from);
     arrays->at = flow_room_next(&room, skin->n_points * sizeof *arrays->at);
     arrays->attached = flow_room_next(&room, skin->n_points * sizeof *arrays->attached);
+    arrays->area = flow_room_next(&room, skin->n_points * sizeof *arrays->area);
     return room.used;
 }
 
@@ -48,6 +49,7 @@ struct flow_skin flow_skin_open(const void *memory)
     skin.from = arrays.from;
     skin.at = arrays.at;
     skin.attached = arrays.attached;
+    skin.area = arrays.area;
     return skin;
 }
 

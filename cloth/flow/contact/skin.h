@@ -14,6 +14,7 @@ struct flow_skin {
         *from;          /* n_points: the number of the neighbour; n_neighbours: the block itself */
     const uint32_t *at; /* n_points: place in its halo; row */
     const uint32_t *attached; /* n_points: the obstacle, from 1, that its pin follows, or 0 */
+    const double *area;       /* n_points: of the cloth there at rest, m^2 */
 };
 
 /* Bytes of the object, which follow of the block's shape. */
@@ -25,6 +26,7 @@ struct flow_skin flow_skin_open(const void *memory);
 /* Arrays that do not change in a run, to be written. from, at: as above. */
 struct flow_skin_arrays {
     uint32_t *from, *at, *attached;
+    double *area;
 };
 struct flow_skin_arrays flow_skin_places(const struct flow_table *table, void *memory);
 

@@ -201,6 +201,23 @@ static int skin_tables_find_joined(struct flow_source *source, struct cloth_erro
     return CLOTH_OK;
 }
 
+/* Sums the areas of triangles at their corners. */
+static int skin_tables_find_areas(struct flow_source *source, uint32_t n, struct cloth_error *error)
+{
+    struct finder finder = {0};
+    double *area = cloth_alloc(source->blocks.n_places, sizeof *area, error);
+    source->skins.area = area;
+    for (uint32_t t = 0; t < n && area; t++) {
+        uint32_t place[3];
+        skin_tables_find_corners(source, &finder, t, place);
+        const struct mesh *rest = model_rest(source->model->cloths + finder.cloth);
+        const double third = mesh_triangle_area(rest, t - finder.triangle) / 3;
+        for (int k = 0; k < 3; k++)
+            area[place[k]] += third;
+    }
+    return area ? CLOTH_OK : CLOTH_E_MEMORY;
+}
+
 int flow_skins_make(struct flow_source *source, struct cloth_error *error)
 {
     struct flow_skins *skins = &source->skins;
@@ -212,6 +229,8 @@ int flow_skins_make(struct flow_source *source, struct cloth_error *error)
     if (!skins->start || !skins->triangle || !skins->stands || !skins->shared)
         return CLOTH_E_MEMORY;
     int code = skin_tables_find_joined(source, error);
+    if (!code)
+        code = skin_tables_find_areas(source, n, error);
     if (!code)
         code = skin_tables_list_triangles(source, n, error);
     if (!code)
@@ -226,6 +245,7 @@ void flow_skins_free(struct flow_skins *skins)
     free(skins->stands);
     free(skins->shared);
     free(skins->joined);
+    free(skins->area);
     *skins = (struct flow_skins){0};
 }
 
@@ -311,6 +331,7 @@ static void fill_points(const struct making *making, const struct flow_skin_arra
         making->held[i] = !source->particles.free[v];
         making->x[i] = particle.position;
         arrays->attached[i] = source->particles.attached ? source->particles.attached[v] : 0;
+        arrays->area[i] = source->skins.area[place];
         arrays->from[i] = neighbour_of(t, block);
         arrays->at[i] = arrays->from[i] == t->n_neighbours ? making->row[i] : source->halo[place];
     }

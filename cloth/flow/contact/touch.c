@@ -28,7 +28,8 @@ struct touch_args {
 /* The present contacts, the next ones, the energy of these; each meeting's list and, with another
  * block, its points. */
 FLOW_KERNEL(touch, FLOW_COLLIDE, struct touch_args,
-            (GIVEN_R(before), GIVEN_W(after), R(skin_x), SUM(contact_energy), REST_R(meetings)))
+            (GIVEN_R(before), GIVEN_W(after), R(skin_x), SUM(contact_energy), SUM(status),
+             REST_R(meetings)))
 
 /* State of the body. */
 struct touching {
@@ -43,6 +44,7 @@ struct touching {
     unsigned char *used; /* n_before, then n: those before that live on; those after that have a
                           * multiplier of their own */
     double lent;         /* J: to those before */
+    double pinched;      /* those before that were not */
 };
 
 /* ---- Order ---- */
@@ -206,6 +208,7 @@ static void touch_hand_over(struct touching *t, size_t from, size_t to)
     find_solved_row(t, before, &row);
     contact_row_end(&row, &point, after);
     t->lent += contact_row_lent(&row, &point, before->row.energy, after->energy);
+    t->pinched += contact_row_is_pinched(after) && !contact_row_is_pinched(&row);
     t->used[from] = t->used[t->n_before + to] = 1;
 }
 
@@ -230,6 +233,7 @@ static void stay_at_place(const struct touching *t, const struct flow_contact *b
     struct contact_row there = after->row;
     if (before->kind != FLOW_CONTACT_SHAPE || before->feature[1] != FLOW_ON_TRIANGLE)
         return;
+    there.hard = before->row.hard;
     touch_find_point(t, before, &there.origin);
     flow_contact_end(flow_of(t->call), t->args->from, t->args->to, before, &there);
     if (!(there.gap < after->row.gap + hardly))
@@ -347,6 +351,7 @@ static int touch_body(const duite_call *call, const struct touch_fields *on)
         end_again(&t);
     if (args->accept)
         sum_held_energy(&t, on->contact_energy);
+    on->status[FLOW_PINCHES] += t.pinched;
     free(t.used);
     *after = (struct flow_list){.n = t.n};
     return duite_resize(call, FLOW_INDEX_OF(touch, after),

@@ -45,26 +45,13 @@ static bool has_system(int kind)
     return element_kinds[kind]->system != NULL;
 }
 
-/* Adds the forces of all kinds, or of those without a system. */
-static void add_forces(const duite_call *call, const struct flow_table *t, double now, bool all,
-                       const struct phys_sight *sight, phys_vec *f)
-{
-    const struct element_world world = {flow_of(call)->model, now};
-    for (int kind = 0; kind < ELEMENT_KINDS; kind++)
-        if (t->n_elements[kind] && (all || !has_system(kind)))
-            element_kinds[kind]->force(t->list + kind, &world, sight, f);
-}
-
 void flow_elements_force(const duite_call *call, const struct flow_table *t, double now,
-                         const struct phys_sight *sight, phys_vec *f)
+                         bool beside, const struct phys_sight *sight, phys_vec *f)
 {
-    add_forces(call, t, now, true, sight, f);
-}
-
-void flow_elements_force_beside(const duite_call *call, const struct flow_table *t, double now,
-                                const struct phys_sight *sight, phys_vec *f)
-{
-    add_forces(call, t, now, false, sight, f);
+    const struct phys_air air = model_air_at(flow_of(call)->model, now);
+    for (int kind = 0; kind < ELEMENT_KINDS; kind++)
+        if (t->n_elements[kind] && !(beside && has_system(kind)))
+            element_kinds[kind]->force(t->list + kind, &air, sight, f);
 }
 
 void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
@@ -102,7 +89,7 @@ void flow_elements_assemble(const duite_call *call, const struct flow_table *t, 
     struct phys_pair pair[AT_ONCE * ELEMENT_PAIRS];
     for (int i = 0; i < ELEMENT_KINDS; i++) {
         const struct element_kind *kind = element_kinds[i];
-        const struct element_list *list = t->list + i;
+        const struct phys_elements *list = t->list + i;
         for (uint32_t from = 0, n; kind->pairs && from < list->n; from += n) {
             const uint32_t *at = list->at + kind->pairs * (size_t)from;
             n = list->n - from < AT_ONCE ? list->n - from : AT_ONCE;

@@ -204,7 +204,7 @@ void flow_source_members(const struct flow_source *source, uint32_t block,
     const struct flow_table *t = source->shape + block;
     for (uint32_t i = 0; i < ELEMENT_KINDS; i++) {
         const struct element_kind *kind = element_kinds[i];
-        const struct element_list *list = layout->list + i;
+        const struct phys_elements *list = layout->list + i;
         const struct element *element = source->member + *list_of(source, block, i);
         if (list->n)
             element_materials(kind, source->model, list->material);

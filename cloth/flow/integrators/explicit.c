@@ -55,11 +55,12 @@ static phys_vec *explicit_find_forces(const duite_call *call, const struct flow_
                                       const struct flow_step_args *step,
                                       const struct flow_view *view, const struct flow_move *m)
 {
-    phys_vec *f = flow_force_room(call);
+    const struct flow *flow = flow_of(call);
+    phys_vec *f = flow->forces + call->worker * flow->n_forces;
     fetch_own(t, m->halo_x);
     fetch_own(t, m->halo_v);
     fetch_halos(t, view);
-    flow_forces(call, t, step, view, f);
+    flow_forces(call, t, step, view, true, f);
     return f;
 }
 
@@ -135,12 +136,11 @@ int flow_euler_end(struct flow_state *state)
 {
     const bool keeps = flow_euler_keeps(state->flow->model);
     struct flow_step_args args = args_at(state, 0);
-    const int code =
-        flow_fork_each(state, keeps ? &flow_kernel_euler_next : &flow_kernel_euler, &args);
+    flow_fork_each(state, keeps ? &flow_kernel_euler_next : &flow_kernel_euler, &args);
     swap_halos(state);
     if (keeps)
         flow_swap_kept(state);
-    return code;
+    return state->code;
 }
 
 /* ---- Velocity Verlet ----
@@ -152,7 +152,7 @@ int flow_verlet_begin(struct flow_state *state)
 {
     struct flow_step_args args = args_at(state, 0);
     if (state->settled_forces && !flow_ties_changed(state))
-        return DUITE_OK;
+        return state->code;
     return flow_fork_each(state, &flow_kernel_force_free, &args);
 }
 
@@ -183,7 +183,7 @@ static int verlet_second_body(const duite_call *call, const struct verlet_second
     const struct flow_view view = FLOW_VIEW(on);
     fetch_own(t, on->spare_halo_v);
     fetch_halos(t, &view);
-    flow_forces_free(call, t, on->args, &view, on->f);
+    flow_forces(call, t, on->args, &view, false, on->f);
     flow_part_ends(call, FLOW_FORCE);
     phys_kick(t->n, 0.5 * on->args->h, 0, t->mass, t->drag, t->free, on->f, on->v0, on->v);
     flow_sliders_keep(call, t, on->args->time, on->v0, on->v);
@@ -194,12 +194,11 @@ static int verlet_second_body(const duite_call *call, const struct verlet_second
 int flow_verlet_end(struct flow_state *state)
 {
     struct flow_step_args args = args_at(state, 1);
-    int code = flow_fork_each(state, &flow_kernel_verlet_first, &args);
-    if (!code)
-        code = flow_fork_each(state, &flow_kernel_verlet_second, &args);
+    flow_fork_each(state, &flow_kernel_verlet_first, &args);
+    flow_fork_each(state, &flow_kernel_verlet_second, &args);
     swap_halos_v(state);
     state->settled_forces = model_leaves_ends(state->flow->model);
-    return code;
+    return state->code;
 }
 
 /* ---- The classic Runge-Kutta method: four stages, each a task a block ---- */
@@ -237,12 +236,11 @@ static int runge_body(const duite_call *call, const struct runge_fields *on)
 
 int flow_runge_end(struct flow_state *state)
 {
-    static const double when[PHYS_RUNGE_STAGES] = {0, 0.5, 0.5, 1};
-    int code = DUITE_OK;
-    for (uint32_t stage = 0; stage < PHYS_RUNGE_STAGES && !code; stage++) {
-        struct runge_args args = {.step = args_at(state, when[stage]), .stage = stage};
-        code = flow_fork_each(state, &flow_kernel_runge, &args);
+    for (uint32_t stage = 0; stage < PHYS_RUNGE_STAGES; stage++) {
+        struct runge_args args = {.step = args_at(state, phys_runge_rows[stage].at),
+                                  .stage = stage};
+        flow_fork_each(state, &flow_kernel_runge, &args);
         swap_halos(state);
     }
-    return code;
+    return state->code;
 }

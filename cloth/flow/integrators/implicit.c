@@ -29,45 +29,33 @@ static int fork_force(struct flow_state *state, struct flow_step_args args)
 /* The matrix at x where f is the right side, and the solve's begin. */
 static int fork_system(struct flow_state *state, struct flow_step_args args)
 {
-    int code = flow_fork_each(state, &flow_kernel_matrix, &args);
-    if (!code && model_is_filtered(state->flow->model))
-        code = flow_contact_constrain(state);
-    return code ? code : flow_cg_start(state);
-}
-
-/* Forks the filter of a step's solves, from x and v. */
-static int fork_filter(struct flow_state *state, struct flow_step_args args)
-{
-    return model_is_filtered(state->flow->model) ? flow_contact_filter(state, args) : DUITE_OK;
+    flow_fork_each(state, &flow_kernel_matrix, &args);
+    if (model_is_filtered(state->flow->model))
+        flow_contact_constrain(state);
+    return flow_cg_start(state);
 }
 
 /* A filtered solve makes forces, filter and matrix in separate tasks. */
-static int assemble_held(struct flow_state *state, struct flow_step_args args)
-{
-    int code = fork_force(state, args);
-    if (!code)
-        code = fork_filter(state, args);
-    if (!code)
-        code = flow_fork_each(state, &flow_kernel_system_of_forces, &args);
-    return code ? code : flow_contact_constrain(state);
-}
-
 int flow_assemble(struct flow_state *state)
 {
     struct flow_step_args args = flow_attempt_args(state);
-    if (model_is_filtered(state->flow->model))
-        return assemble_held(state, args);
-    return flow_fork_each(state, &flow_kernel_system, &args);
-}
-
-/* The system of a step of implicit Euler, and its solve's begin. */
-static int linearise(struct flow_state *state)
-{
-    const int code = flow_assemble(state);
-    return code ? code : flow_cg_start(state);
+    if (!model_is_filtered(state->flow->model))
+        return flow_fork_each(state, &flow_kernel_system, &args);
+    fork_force(state, args);
+    flow_contact_filter(state, args);
+    flow_fork_each(state, &flow_kernel_system_of_forces, &args);
+    return flow_contact_constrain(state);
 }
 
 /* ---- One linear step: v += dv, x += h v ---- */
+
+/* The result of a solve for a block. */
+struct solved {
+    const void *value; /* of the matrix */
+    const phys_vec *b, *dv, *r;
+    const struct solve_scalars *scalars;
+    const unsigned char *tie_table; /* NULL: the run has no ties */
+};
 
 /* The loss of a filtered solve: entries to held and to filtered rows do not cancel. */
 static void sum_rows(size_t n, const phys_vec *r, double sum[3])
@@ -78,14 +66,16 @@ static void sum_rows(size_t n, const phys_vec *r, double sum[3])
 }
 
 /* The loss of a solve. */
-static void note_lost(const struct flow_table *t, const struct flow_solved *solved, double lost[3])
+static void note_lost(const struct flow_table *t, const struct solved *solved, double lost[3])
 {
     solve_lost(&t->matrix, &t->held, solved->value, solved->b, solved->dv, lost);
     flow_ties_lost(solved->tie_table, flow_tie_values(t, solved->value), solved->dv, lost);
 }
 
-void flow_note_solve(const duite_call *call, const struct flow_table *t,
-                     const struct flow_solved *solved, double *status)
+/* Notes a solve in the status: its iterations and restarts, its error, the momentum that it lost,
+ * its failure. */
+static void note_solve(const duite_call *call, const struct flow_table *t,
+                       const struct solved *solved, double *status)
 {
     const struct solve_scalars *scalars = solved->scalars;
     if (t->matrix.filter)
@@ -107,10 +97,10 @@ void flow_note_solve(const duite_call *call, const struct flow_table *t,
 /* v += dv, x += h v of a block; notes the solve's cost and the momentum that it lost. It does not
  * run after a solve that failed in a step that must not, as that leaves no scalars. */
 static int implicit_move(const duite_call *call, const struct flow_table *t,
-                         const struct flow_step_args *step, const struct flow_solved *solved,
+                         const struct flow_step_args *step, const struct solved *solved,
                          const struct flow_move *m)
 {
-    flow_note_solve(call, t, solved, m->status);
+    note_solve(call, t, solved, m->status);
     if (m->x != m->from_x) {
         memcpy(m->x, m->from_x, t->n * sizeof *m->x);
         memcpy(m->v, m->from_v, t->n * sizeof *m->v);
@@ -125,12 +115,12 @@ static int implicit_move(const duite_call *call, const struct flow_table *t,
 }
 
 #define IMPLICIT_SOLVED(call, t, on)                                                               \
-    ((struct flow_solved){.value = flow_matrix_in(call, t, (on)->a),                               \
-                          .b = (on)->f,                                                            \
-                          .dv = (on)->dv,                                                          \
-                          .r = (on)->r,                                                            \
-                          .scalars = (on)->scalars,                                                \
-                          .tie_table = (on)->tie_table})
+    ((struct solved){.value = flow_matrix_in(call, t, (on)->a),                                    \
+                     .b = (on)->f,                                                                 \
+                     .dv = (on)->dv,                                                               \
+                     .r = (on)->r,                                                                 \
+                     .scalars = (on)->scalars,                                                     \
+                     .tie_table = (on)->tie_table})
 
 /* In place. */
 FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_step_args,
@@ -139,7 +129,7 @@ FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_step_args,
 static int implicit_body(const duite_call *call, const struct implicit_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
-    const struct flow_solved solved = IMPLICIT_SOLVED(call, t, on);
+    const struct solved solved = IMPLICIT_SOLVED(call, t, on);
     const struct flow_move move = FLOW_MOVE(on, x, v, halo_x, halo_v);
     return implicit_move(call, t, on->args, &solved, &move);
 }
@@ -151,7 +141,7 @@ FLOW_KERNEL(implicit_next, FLOW_POSITION, struct flow_step_args,
 static int implicit_next_body(const duite_call *call, const struct implicit_next_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
-    const struct flow_solved solved = IMPLICIT_SOLVED(call, t, on);
+    const struct solved solved = IMPLICIT_SOLVED(call, t, on);
     const struct flow_move move = FLOW_MOVE(on, kept_x, kept_v, halo_x, halo_v);
     return implicit_move(call, t, on->args, &solved, &move);
 }
@@ -169,14 +159,12 @@ static int fork_move(struct flow_state *state)
 {
     const bool keeps = flow_implicit_euler_keeps(state->flow->model);
     struct flow_step_args args = flow_attempt_args(state);
-    int code = flow_cg_iterate(state);
+    flow_cg_iterate(state);
     state->guessed = state->attempt.length;
-    if (!code)
-        code = flow_fork_each(state, keeps ? &flow_kernel_implicit_next : &flow_kernel_implicit,
-                              &args);
-    if (!code && keeps)
+    flow_fork_each(state, keeps ? &flow_kernel_implicit_next : &flow_kernel_implicit, &args);
+    if (keeps)
         flow_swap_kept(state);
-    return code;
+    return state->code;
 }
 
 /* ---- Newton steps ----
@@ -198,12 +186,10 @@ static int residual_body(const duite_call *call, const struct residual_fields *o
  * from there. */
 static int get_slope(struct flow_state *state, struct flow_step_args args, double *slope)
 {
-    int code = fork_force(state, args);
-    if (!code)
-        code = duite_set(state->rt, state->run.slope, NULL);
-    if (!code)
-        code = flow_fork_each(state, &flow_kernel_residual, &args);
-    return code ? code : duite_get(state->rt, state->run.slope, slope);
+    fork_force(state, args);
+    flow_set(state, FLOW_FIELD_slope, NULL);
+    flow_fork_each(state, &flow_kernel_residual, &args);
+    return flow_get(state, FLOW_FIELD_slope, slope);
 }
 
 /* A block moves by a part of dv, its bases where it began. */
@@ -242,17 +228,16 @@ static int search_line(struct flow_state *state, struct flow_step_args args, dou
 {
     struct shift_args shift = {.h = args.h};
     double slope, length = 1;
-    int code = get_slope(state, args, &slope);
-    for (int i = 0; i < MAX_CUTS && !code && !(slope >= -OVERSHOT * first); i++) {
+    get_slope(state, args, &slope);
+    for (int i = 0; i < MAX_CUTS && !state->code && !(slope >= -OVERSHOT * first); i++) {
         double cut = first / (first - slope);
         cut = cut >= LEAST_CUT ? cut : LEAST_CUT; /* not a number: the same */
         shift.part = (cut - 1) * length;
         length *= cut;
-        code = flow_fork_each(state, &flow_kernel_shift, &shift);
-        if (!code)
-            code = get_slope(state, args, &slope);
+        flow_fork_each(state, &flow_kernel_shift, &shift);
+        get_slope(state, args, &slope);
     }
-    return code;
+    return state->code;
 }
 
 /* The whole of dv. */
@@ -262,9 +247,9 @@ FLOW_KERNEL(correct, FLOW_VELOCITY, struct flow_step_args,
 static int correct_body(const duite_call *call, const struct correct_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
-    const struct flow_solved solved = IMPLICIT_SOLVED(call, t, on);
+    const struct solved solved = IMPLICIT_SOLVED(call, t, on);
     const struct newton_move move = {on->dv, on->base_x, on->v, on->x, on->halo_v, on->halo_x};
-    flow_note_solve(call, t, &solved, on->status);
+    note_solve(call, t, &solved, on->status);
     on->status[FLOW_SLOPE] = phys_slope(t->n, t->free, on->dv, on->f);
     newton_move(t, on->args->h, 1, &move);
     on->status[FLOW_CHANGE] = phys_distance(t->n, t->mass, on->dv, NULL);
@@ -277,18 +262,17 @@ static int correct_body(const duite_call *call, const struct correct_fields *on)
 static int fork_correct(struct flow_state *state, struct flow_step_args args,
                         const struct flow_as *as)
 {
-    const int code = flow_cg_iterate(state);
-    return code ? code : flow_fork_each_as(state, &flow_kernel_correct, &args, as);
+    flow_cg_iterate(state);
+    return flow_fork_each_as(state, &flow_kernel_correct, &args, as);
 }
 
 /* One Newton step. *sums: its report. */
 static int newton_step(struct flow_state *state, struct flow_step_args args,
                        double sums[FLOW_STATUS])
 {
-    int code = duite_set(state->rt, state->run.trial, NULL);
-    if (!code)
-        code = fork_correct(state, args, FLOW_AS(FLOW_FOR(status, trial)));
-    return code ? code : duite_get(state->rt, state->run.trial, sums);
+    flow_set(state, FLOW_FIELD_trial, NULL);
+    fork_correct(state, args, FLOW_AS(FLOW_FOR(status, trial)));
+    return flow_get(state, FLOW_FIELD_trial, sums);
 }
 
 /* Sums all Newton steps; only the last one's errors count. */
@@ -309,20 +293,16 @@ static int newton(struct flow_state *state, struct flow_step_args args)
     *newton = (struct flow_newton){0};
     while (true) {
         double last[FLOW_STATUS];
-        int code = newton_step(state, args, last);
-        if (code)
-            return code;
+        if (newton_step(state, args, last))
+            return state->code;
         sum_newton_steps(newton->status, last);
         newton->steps++;
         newton->converged = last[FLOW_CHANGE] <= small * last[FLOW_WHOLE];
         if (newton->converged || last[FLOW_FAILED] + last[FLOW_BEYOND] > 0)
             return DUITE_OK;
-        code = search_line(state, args, last[FLOW_SLOPE]);
-        if (code || newton->steps == model->newton_steps)
-            return code;
-        code = fork_system(state, args);
-        if (code)
-            return code;
+        if (search_line(state, args, last[FLOW_SLOPE]) || newton->steps == model->newton_steps)
+            return state->code;
+        fork_system(state, args);
     }
 }
 
@@ -340,17 +320,19 @@ static int finish_step(struct flow_state *state, struct flow_step_args args)
     return searches(state->flow->model) ? newton(state, args) : fork_correct(state, args, NULL);
 }
 
+/* The system of a step of implicit Euler, and its solve's begin. */
 int flow_implicit_euler_begin(struct flow_state *state)
 {
-    return linearise(state);
+    flow_assemble(state);
+    return flow_cg_start(state);
 }
 
 int flow_implicit_euler_end(struct flow_state *state)
 {
     if (!searches(state->flow->model))
         return fork_move(state);
-    const int code = fork_bases(state);
-    return code ? code : finish_step(state, flow_attempt_args(state));
+    fork_bases(state);
+    return finish_step(state, flow_attempt_args(state));
 }
 
 /* ---- BDF2 ---- */
@@ -395,12 +377,10 @@ static int predict_body(const duite_call *call, const struct predict_fields *on)
  * length, is by implicit Euler. */
 static int bdf2_start(struct flow_state *state)
 {
-    int code = flow_keep_as(state, FLOW_AS(FLOW_FOR(kept_x, last_x), FLOW_FOR(kept_v, last_v)));
-    if (!code)
-        code = fork_bases(state);
-    if (!code)
-        code = linearise(state);
-    return code ? code : finish_step(state, flow_attempt_args(state));
+    flow_keep_as(state, FLOW_AS(FLOW_FOR(kept_x, last_x), FLOW_FOR(kept_v, last_v)));
+    fork_bases(state);
+    flow_implicit_euler_begin(state);
+    return finish_step(state, flow_attempt_args(state));
 }
 
 bool flow_implicit_is_second(const struct flow_state *state)
@@ -416,14 +396,12 @@ int flow_bdf2_end(struct flow_state *state)
     if (!flow_implicit_is_second(state))
         return bdf2_start(state);
     args.h *= 2.0 / 3;
-    int code = flow_fork_each(state, &flow_kernel_predict, &args);
-    if (!code)
-        code = get_slope(state, args, &slope);
-    if (!code)
-        code = fork_filter(state, args);
-    if (!code)
-        code = fork_system(state, args);
-    return code ? code : finish_step(state, args);
+    flow_fork_each(state, &flow_kernel_predict, &args);
+    get_slope(state, args, &slope);
+    if (model_is_filtered(state->flow->model))
+        flow_contact_filter(state, args);
+    fork_system(state, args);
+    return finish_step(state, args);
 }
 
 void flow_implicit_status(const struct flow_state *state, double status[FLOW_STATUS])

@@ -28,10 +28,8 @@ struct visitor {
 
 static void particle_of(struct visitor *visitor, uint32_t vertex, struct flow_particle *particle)
 {
-    const struct model *model = visitor->source->model;
-    flow_source_cloth(&visitor->at, model, vertex);
-    flow_particle_of(&visitor->source->particles, model, model->cloths + visitor->at.cloth,
-                     visitor->at.first, vertex, particle);
+    const struct flow_source *source = visitor->source;
+    flow_particle_at(&source->particles, source->model, &visitor->at, vertex, particle);
 }
 
 static void add_spring_block(struct block *block, double times, const struct flow_spring *s,

@@ -3,10 +3,10 @@
 
 #include "cloth/base/memory.h"
 #include "cloth/flow/contact/mode.h"
+#include "cloth/flow/run/setup.h"
 #include "cloth/flow/state/state.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* The h w, w the fastest vibration, above which solves of implicit steps are expected to fail. The
@@ -30,20 +30,19 @@ static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
     const struct model *model = flow->model;
     const char *name = model_scheme(model)->name, *place = place_of_h(model);
     const double max = flow_limit_of(limit, model->integrator), turn = model->h * limit->omega;
-    const size_t size = sizeof flow->warning[FLOW_WARN_STEP];
     if (!(max > 0))
-        snprintf(flow->warning[FLOW_WARN_STEP], size,
-                 "%.200s: no step is short enough for %s without damping: the fastest vibration "
-                 "(up to %g rad/s, at vertex %u of cloth '%.60s', counted from 1) can grow by %g "
-                 "%% in each of %g s",
-                 place, name, limit->omega, limit->vertex + 1, limit->cloth->name,
-                 100 * growth_of(turn), model->h);
+        flow_warn_say(flow, FLOW_WARN_STEP, place,
+                      "no step is short enough for %s without damping: the fastest vibration (up "
+                      "to %g rad/s, at vertex %u of cloth '%.60s', counted from 1) can grow by %g "
+                      "%% in each of %g s",
+                      name, limit->omega, limit->vertex + 1, limit->cloth->name,
+                      100 * growth_of(turn), model->h);
     else if (model->h > max)
-        snprintf(
-            flow->warning[FLOW_WARN_STEP], size,
-            "%.200s: steps of %g s are beyond the limit of %s, %g s: the fastest vibration (up "
+        flow_warn_say(
+            flow, FLOW_WARN_STEP, place,
+            "steps of %g s are beyond the limit of %s, %g s: the fastest vibration (up "
             "to %g rad/s, at vertex %u of cloth '%.60s', counted from 1) can grow in each",
-            place, model->h, name, max, limit->omega, limit->vertex + 1, limit->cloth->name);
+            model->h, name, max, limit->omega, limit->vertex + 1, limit->cloth->name);
 }
 
 /* Springs of contacts, which may be faster than those of the cloth. */
@@ -55,12 +54,12 @@ static void warn_of_contacts(struct flow *flow)
     const struct flow_limit limit = {.omega = sqrt(rate * spring.stiffness),
                                      .along = rate * spring.damping};
     const double max = flow_limit_of(&limit, model->integrator);
-    if (!flow->warning[FLOW_WARN_STEP][0] && flow->vertex_mass > 0 && model->h > max)
-        snprintf(flow->warning[FLOW_WARN_STEP], sizeof flow->warning[FLOW_WARN_STEP],
-                 "%.200s: steps of %g s are beyond what contacts of stiffness %g N/m and damping "
-                 "%g allow %s, %g s: what they push can bounce ever harder",
-                 place_of_h(model), model->h, spring.stiffness, model->contact.damping,
-                 model_scheme(model)->name, max);
+    if (flow->vertex_mass > 0 && model->h > max)
+        flow_warn_say(flow, FLOW_WARN_STEP, place_of_h(model),
+                      "steps of %g s are beyond what contacts of stiffness %g N/m and damping %g "
+                      "allow %s, %g s: what they push can bounce ever harder",
+                      model->h, spring.stiffness, model->contact.damping, model_scheme(model)->name,
+                      max);
 }
 
 static void warn_implicit(struct flow *flow, const struct flow_limit *limit)
@@ -68,14 +67,14 @@ static void warn_implicit(struct flow *flow, const struct flow_limit *limit)
     const struct model *model = flow->model;
     const double turn = model->h * limit->omega;
     if (turn > MAX_TURN)
-        snprintf(flow->warning[FLOW_WARN_STEP], sizeof flow->warning[FLOW_WARN_STEP],
-                 "%.200s: in steps of %g s the cloth is %.1e times stiffer than its mass (vertex "
-                 "%u of cloth '%.60s', counted from 1): solves can fail, and the run can take up "
-                 "to 1024 times as "
-                 "many steps; give a density or mass %.1e times as large, or steps of at most %.1e "
-                 "s",
-                 place_of_h(model), model->h, turn * turn, limit->vertex + 1, limit->cloth->name,
-                 turn * turn / (MAX_TURN * MAX_TURN), MAX_TURN / limit->omega);
+        flow_warn_say(
+            flow, FLOW_WARN_STEP, place_of_h(model),
+            "in steps of %g s the cloth is %.1e times stiffer than its mass (vertex %u of "
+            "cloth '%.60s', counted from 1): solves can fail, and the run can take up to "
+            "1024 times as many steps; give a density or mass %.1e times as large, or "
+            "steps of at most %.1e s",
+            model->h, turn * turn, limit->vertex + 1, limit->cloth->name,
+            turn * turn / (MAX_TURN * MAX_TURN), MAX_TURN / limit->omega);
 }
 
 /* The smallest mass of an area, kg/m^2, of a cloth; infinite: it has no triangles. *edge: the mean
@@ -104,14 +103,12 @@ static int find_density(const struct model *model, const struct model_cloth *clo
 /* Forces on a cloth that the matrix does not know: the first kind that has something to say. */
 static void warn_of_kinds(struct flow *flow, const struct element_sheet *sheet)
 {
-    char *text = flow->warning[FLOW_WARN_AIR];
-    const size_t size = sizeof flow->warning[FLOW_WARN_AIR];
-    const size_t n = (size_t)snprintf(text, size, "%.200s: ", place_of_h(sheet->model));
-    for (int i = 0; i < ELEMENT_KINDS && !text[n]; i++)
+    char text[400] = "";
+    for (int i = 0; i < ELEMENT_KINDS && !*text; i++)
         if (element_kinds[i]->warn && element_kinds[i]->has(sheet->model, sheet->cloth))
-            element_kinds[i]->warn(sheet, text + n, size - n);
-    if (!text[n])
-        text[0] = 0;
+            element_kinds[i]->warn(sheet, text, sizeof text);
+    if (*text)
+        flow_warn_say(flow, FLOW_WARN_AIR, place_of_h(sheet->model), "%s", text);
 }
 
 static int warn_of_elements(struct flow *flow, struct cloth_error *error)

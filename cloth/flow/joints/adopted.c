@@ -1,11 +1,8 @@
 /* The room and links that ties need in the blocks: alike on every rank, as all ranks have the same
  * records. In reading order: memory, evaluating records, applying the result. */
+#include "cloth/base/order.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/state/bodies.h"
-
-#include "cloth/base/memory.h"
-
-#include <stdlib.h>
 
 /* ---- Memory ---- */
 
@@ -17,57 +14,33 @@ size_t flow_tied_others(uint32_t n_blocks, uint32_t n_joints, bool seeks)
 }
 
 static void take_tied(struct flow_tied_blocks *blocks, size_t n_blocks, size_t n_others,
-                      struct cloth_error *trouble)
+                      struct flow *flow)
 {
-    blocks->room = cloth_alloc(n_blocks, sizeof *blocks->room, trouble);
-    blocks->first = cloth_alloc(n_blocks + 1, sizeof *blocks->first, trouble);
-    blocks->other = cloth_alloc(n_others, sizeof *blocks->other, trouble);
-    blocks->place = cloth_alloc(n_others, sizeof *blocks->place, trouble);
+    blocks->room = flow_take(flow, n_blocks, sizeof *blocks->room);
+    blocks->first = flow_take(flow, n_blocks + 1, sizeof *blocks->first);
+    blocks->other = flow_take(flow, n_others, sizeof *blocks->other);
+    blocks->place = flow_take(flow, n_others, sizeof *blocks->place);
 }
 
 void flow_ties_take(struct flow_state *state)
 {
     const struct flow_head *head = &state->head;
     struct flow_tied *tied = &state->tied;
-    struct cloth_error *trouble = &state->flow->trouble;
-    const size_t others =
-        flow_tied_others(head->n_blocks, head->n_ties, model_seeks(state->flow->model));
-    if (!head->n_ties && !model_seeks(state->flow->model))
+    struct flow *flow = state->flow;
+    const size_t n = head->n_blocks;
+    const size_t others = flow_tied_others(head->n_blocks, head->n_ties, model_seeks(flow->model));
+    if (!head->n_ties && !model_seeks(flow->model))
         return;
-    tied->parent = cloth_alloc((size_t)head->n_pieces + 1, sizeof *tied->parent, trouble);
-    tied->group = cloth_alloc(head->n_pieces, sizeof *tied->group, trouble);
-    tied->said.of = cloth_alloc(head->n_blocks, sizeof *tied->said.of, trouble);
-    tied->said.first = cloth_alloc((size_t)head->n_blocks + 1, sizeof *tied->said.first, trouble);
-    tied->said.link = cloth_alloc(others, sizeof *tied->said.link, trouble);
+    tied->parent = flow_take(flow, (size_t)head->n_pieces + 1, sizeof *tied->parent);
+    tied->group = flow_take(flow, head->n_pieces, sizeof *tied->group);
+    tied->said.of = flow_take(flow, n, sizeof *tied->said.of);
+    tied->said.first = flow_take(flow, n + 1, sizeof *tied->said.first);
+    tied->said.link = flow_take(flow, others, sizeof *tied->said.link);
     tied->said.max_links = (uint32_t)others;
-    tied->scratch = cloth_alloc(flow_ties_scratch(head->n_ties), sizeof *tied->scratch, trouble);
-    tied->links =
-        cloth_alloc((size_t)head->n_blocks + FLOW_TIE_OTHERS, sizeof *tied->links, trouble);
-    take_tied(&tied->now, head->n_blocks, others, trouble);
-    take_tied(&tied->next, head->n_blocks, others, trouble);
-}
-
-static void drop_tied(struct flow_tied_blocks *blocks)
-{
-    free(blocks->room);
-    free(blocks->first);
-    free(blocks->other);
-    free(blocks->place);
-}
-
-void flow_ties_free(struct flow_state *state)
-{
-    struct flow_tied *tied = &state->tied;
-    free(tied->parent);
-    free(tied->group);
-    free(tied->said.of);
-    free(tied->said.first);
-    free(tied->said.link);
-    free(tied->scratch);
-    free(tied->links);
-    drop_tied(&tied->now);
-    drop_tied(&tied->next);
-    *tied = (struct flow_tied){0};
+    tied->scratch = flow_take(flow, flow_ties_scratch(head->n_ties), sizeof *tied->scratch);
+    tied->links = flow_take(flow, n + FLOW_TIE_OTHERS, sizeof *tied->links);
+    take_tied(&tied->now, n, others, flow);
+    take_tied(&tied->next, n, others, flow);
 }
 
 /* ---- Evaluating records ---- */
@@ -97,15 +70,8 @@ static void find_others(const struct flow_tied *tied, uint32_t n_blocks, bool ke
 static uint32_t number_among_others(const struct flow_tied_blocks *blocks, uint32_t block,
                                     uint32_t b)
 {
-    uint32_t low = blocks->first[block], high = blocks->first[block + 1];
-    while (high - low > 1) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (blocks->other[middle] <= b)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
+    const uint32_t first = blocks->first[block], n = blocks->first[block + 1] - first;
+    return first + cloth_first_from(blocks->other + first, 1, n, b);
 }
 
 /* A block shows the rows of its links one after the other. */
@@ -168,7 +134,7 @@ static bool has_links(const struct flow_tied *tied, uint32_t b)
            !memcmp(place, before->place + before->first[b], n * sizeof *place);
 }
 
-static int set_links(struct flow_state *state, uint32_t b)
+static void set_links(struct flow_state *state, uint32_t b)
 {
     const struct flow_tied_blocks *now = &state->tied.now;
     uint32_t(*to)[2] = state->tied.links;
@@ -179,13 +145,13 @@ static int set_links(struct flow_state *state, uint32_t b)
         to[1 + i][0] = now->other[first + i];
         to[1 + i][1] = now->place[first + i];
     }
-    return duite_set(state->rt, state->block[b].tie_links, to);
+    flow_noted(state, duite_set(state->rt, state->block[b].tie_links, to));
 }
 
 /* ---- Applying the result ---- */
 
-/* Makes the next rooms and links those of now. */
-static void fit_objects(struct flow_state *state)
+/* Makes the next rooms and links those of now, and sets links that changed. */
+static int fit_objects(struct flow_state *state)
 {
     struct flow_tied *tied = &state->tied;
     const struct flow_tied_blocks before = tied->now;
@@ -197,10 +163,14 @@ static void fit_objects(struct flow_state *state)
         }
     tied->now = tied->next;
     tied->next = before;
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !state->code; b++)
+        if (!has_links(tied, b))
+            set_links(state, b);
+    return state->code;
 }
 
-static void copy_tied(const struct flow_tied_blocks *from, uint32_t n_blocks,
-                      struct flow_tied_blocks *to)
+void flow_ties_copy(const struct flow_tied_blocks *from, uint32_t n_blocks,
+                    const struct flow_tied_blocks *to)
 {
     memcpy(to->room, from->room, n_blocks * sizeof *to->room);
     memcpy(to->first, from->first, ((size_t)n_blocks + 1) * sizeof *to->first);
@@ -210,21 +180,14 @@ static void copy_tied(const struct flow_tied_blocks *from, uint32_t n_blocks,
 
 int flow_ties_again(struct flow_state *state, const struct flow_tied_blocks *tied)
 {
-    const uint32_t n_blocks = state->flow->tables.n_blocks;
-    int code = DUITE_OK;
-    copy_tied(tied, n_blocks, &state->tied.next);
-    fit_objects(state);
-    for (uint32_t b = 0; b < n_blocks && !code; b++)
-        if (!has_links(&state->tied, b))
-            code = set_links(state, b);
-    return code;
+    flow_ties_copy(tied, state->flow->tables.n_blocks, &state->tied.next);
+    return fit_objects(state);
 }
 
 int flow_ties_adopt(struct flow_state *state)
 {
     struct flow_tied *tied = &state->tied;
     const uint32_t n_blocks = state->flow->tables.n_blocks;
-    int code = DUITE_OK;
     find_others(tied, n_blocks, true, &tied->next);
     if (tied->next.first[n_blocks] > 2 * tied->said.first[n_blocks])
         find_others(tied, n_blocks, false, &tied->next);
@@ -235,12 +198,8 @@ int flow_ties_adopt(struct flow_state *state)
         duite_graph_free(state->rt, state->solve); /* a failure is returned by the next fork */
         state->solve = (duite_graph){0};
     }
-    fit_objects(state);
-    for (uint32_t b = 0; b < n_blocks && !code; b++)
-        if (!has_links(tied, b))
-            code = set_links(state, b);
-    if (code || recorded || !model_is_implicit(state->flow->model))
-        return code;
+    if (fit_objects(state) || recorded || !model_is_implicit(state->flow->model))
+        return state->code;
     state->report->contact_graphs += model_seeks(state->flow->model);
     return flow_cg_record(state);
 }

@@ -95,7 +95,7 @@ int flow_ties_group(struct flow_state *state)
     unite(state->flow, state->attempt.begin, tied->parent);
     for (uint32_t piece = 0; piece < n; piece++)
         tied->group[piece] = free ? cloth_sets_root(tied->parent, piece + 1) : 0;
-    return duite_set(state->rt, state->run.groups, tied->group);
+    return flow_set(state, FLOW_FIELD_groups, tied->group);
 }
 
 /* ---- The tables of the blocks ---- */
@@ -135,13 +135,12 @@ static int fork_tables(struct flow_state *state, bool all)
 {
     const struct flow_tied *tied = &state->tied; /* next: the state before */
     struct tie_args args = {.tick = state->attempt.begin};
-    int code = DUITE_OK;
-    for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
+    for (; args.block < state->flow->tables.n_blocks; args.block++) {
         args.room = tied->now.room[args.block];
         if (all || !is_empty(&args.room) || !is_empty(tied->next.room + args.block))
-            code = flow_fork_one(state, &flow_kernel_tie, &args);
+            flow_fork_one(state, &flow_kernel_tie, &args);
     }
-    return code;
+    return state->code;
 }
 
 bool flow_ties_stay(const struct flow_state *state, uint64_t tick)
@@ -160,10 +159,9 @@ int flow_ties_choose(struct flow_state *state)
     if (model_seeks(state->flow->model)) /* they come with the contacts of the step */
         return DUITE_OK;
     say_joints(state->flow, tick, tied);
-    int code = flow_ties_adopt(state);
-    if (!code)
-        code = flow_ties_group(state);
-    return code ? code : fork_tables(state, first);
+    flow_ties_adopt(state);
+    flow_ties_group(state);
+    return fork_tables(state, first);
 }
 
 bool flow_ties_changed(const struct flow_state *state)
@@ -208,9 +206,8 @@ int flow_ties_show(struct flow_state *state)
 {
     const struct flow_tied_blocks *tied = &state->tied.now;
     struct flow_block_args args = {0};
-    int code = DUITE_OK;
-    for (; tied->first && args.block < state->flow->tables.n_blocks && !code; args.block++)
+    for (; tied->first && args.block < state->flow->tables.n_blocks; args.block++)
         if (tied->first[args.block] < tied->first[args.block + 1])
-            code = flow_fork_one(state, &flow_kernel_tie_show, &args);
-    return code;
+            flow_fork_one(state, &flow_kernel_tie_show, &args);
+    return state->code;
 }

@@ -56,9 +56,7 @@ static double distance_of(const struct flow_particles *particles, const struct m
     for (uint32_t i = 0; i < n; i++) {
         struct flow_cloths cloth = {0};
         struct flow_particle at;
-        flow_source_cloth(&cloth, model, vertex[i]);
-        flow_particle_of(particles, model, model->cloths + cloth.cloth, cloth.first, vertex[i],
-                         &at);
+        flow_particle_at(particles, model, &cloth, vertex[i], &at);
         d += weight[i] * at.position;
     }
     return sqrt(phys_dot(&d, &d));

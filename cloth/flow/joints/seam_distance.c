@@ -40,10 +40,8 @@ int flow_seams_fork(struct flow_state *state)
     struct flow_block_args args;
     if (!state->flow->model->n_pulled)
         return DUITE_OK;
-    /* All of them are 0 at first. */
-    const int code =
-        duite_set(state->rt, flow_field_object(state, FLOW_FIELD_seam_peaks, 0), state->seam_peaks);
-    return code ? code : flow_fork_each(state, &flow_kernel_seams, &args);
+    flow_set(state, FLOW_FIELD_seam_peaks, NULL);
+    return flow_fork_each(state, &flow_kernel_seams, &args);
 }
 
 int flow_seams_find(struct flow_state *state)
@@ -54,10 +52,8 @@ int flow_seams_find(struct flow_state *state)
     double most = 0;
     if (!model->n_pulled)
         return DUITE_OK;
-    const int code = duite_get(state->rt, flow_field_object(state, FLOW_FIELD_seam_peaks, 0),
-                               state->seam_squares);
-    if (code)
-        return code;
+    if (flow_get(state, FLOW_FIELD_seam_peaks, state->seam_squares))
+        return state->code;
     report->seams_open = 0;
     for (uint32_t s = 0; s < model->n_pulled; s++) {
         const double distance = sqrt(state->seam_squares[s]);

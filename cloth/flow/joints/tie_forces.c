@@ -5,80 +5,54 @@
 
 #include "cloth/physics/energy.h"
 
-/* Some joints as springs from points x[0] to x[1]. */
-enum { AT_ONCE = 32 };
-struct some_joints {
-    uint32_t n, next;      /* how many; the tie behind them */
-    uint32_t tie[AT_ONCE]; /* their numbers in the table */
-    uint32_t end[AT_ONCE][2];
-    double stiffness[AT_ONCE], damping[AT_ONCE], length[AT_ONCE];
-    phys_vec x[2][AT_ONCE], v[2][AT_ONCE];
+/* A joint as a spring from point 0 to point 1; it points to itself. */
+struct one_joint {
+    struct phys_springs spring;
+    phys_vec x[2], v[2];
 };
 
-static struct phys_springs springs_of(const struct some_joints *some, int full)
+/* Returns false if tie i is no joint. */
+static bool see_joint(const struct flow *flow, const struct flow_ties *ties,
+                      const struct flow_view *view, uint32_t i, struct one_joint *one)
 {
-    return (struct phys_springs){some->n,         (const uint32_t(*)[2])some->end,
-                                 some->stiffness, some->damping,
-                                 some->length,    full};
-}
-
-static void append_joint(const struct flow_ties *ties, const struct flow_view *view, uint32_t i,
-                         const struct flow_tie *joint, struct some_joints *some)
-{
-    const uint32_t at = some->n++;
-    some->tie[at] = i;
-    some->end[at][0] = some->end[at][1] = at;
-    some->stiffness[at] = joint->stiffness;
-    some->damping[at] = joint->damping;
-    some->length[at] = joint->length;
-    for (int end = 0; end < 2; end++)
-        some->x[end][at] = some->v[end][at] = (phys_vec){0};
+    static const uint32_t end[1][2] = {{0, 0}};
+    if (ties->of[i] >= flow->n_ties)
+        return false;
+    const struct flow_tie *joint = flow->tie + ties->of[i];
+    one->spring = (struct phys_springs){
+        1, end, &joint->stiffness, &joint->damping, &joint->length, flow->model->full_slope};
+    for (int side = 0; side < 2; side++)
+        one->x[side] = one->v[side] = (phys_vec){0};
     for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
         const double weight = ties->weight[i][k], share = weight < 0 ? -weight : weight;
-        const int end = weight < 0;
+        const int side = weight < 0;
         if (weight == 0)
             continue;
-        some->x[end][at] += share * *flow_tie_x(ties, view, ties->corner[i][k]);
+        one->x[side] += share * *flow_tie_x(ties, view, ties->corner[i][k]);
         if (view->v)
-            some->v[end][at] += share * *flow_tie_v(ties, view, ties->corner[i][k]);
+            one->v[side] += share * *flow_tie_v(ties, view, ties->corner[i][k]);
     }
+    return true;
 }
 
-/* Takes the next joints among the ties before `to`. Returns whether there are any. */
-static bool take_joint(const struct flow *flow, const struct flow_ties *ties,
-                       const struct flow_view *view, uint32_t to, struct some_joints *some)
+/* Adds a spring's effect on its first point to the rows of the block, by their weights. */
+static void scatter(const struct flow_ties *ties, uint32_t i, const phys_vec *add, phys_vec *y)
 {
-    uint32_t i = some->next;
-    some->n = 0;
-    for (; i < to && some->n < AT_ONCE; i++)
-        if (ties->of[i] < flow->n_ties)
-            append_joint(ties, view, i, flow->tie + ties->of[i], some);
-    some->next = i;
-    return some->n > 0;
-}
-
-/* Adds the springs' effects on their first points to the rows of the block, by their weights. */
-static void scatter(const struct flow_ties *ties, const struct some_joints *some,
-                    const phys_vec *add, phys_vec *y)
-{
-    for (uint32_t i = 0; i < some->n; i++) {
-        const uint32_t *corner = ties->corner[some->tie[i]];
-        const double *weight = ties->weight[some->tie[i]];
-        for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
-            if (weight[k] != 0 && corner[k] < ties->n_rows)
-                y[corner[k]] += weight[k] * add[i];
-    }
+    for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
+        if (ties->weight[i][k] != 0 && ties->corner[i][k] < ties->n_rows)
+            y[ties->corner[i][k]] += ties->weight[i][k] * *add;
 }
 
 void flow_ties_force(const struct flow *flow, const struct flow_view *view, phys_vec *f)
 {
     const struct flow_ties ties = flow_ties_open(view->tie_table);
-    struct some_joints some = {0};
-    while (take_joint(flow, &ties, view, ties.n, &some)) {
-        const struct phys_springs springs = springs_of(&some, 0);
-        phys_vec add[AT_ONCE] = {{0}};
-        phys_springs_force_cut(&springs, some.x[0], some.v[0], some.x[1], some.v[1], add);
-        scatter(&ties, &some, add, f);
+    for (uint32_t i = 0; i < ties.n; i++) {
+        struct one_joint one;
+        phys_vec add = {0};
+        if (!see_joint(flow, &ties, view, i, &one))
+            continue;
+        phys_springs_force(&one.spring, one.x, one.v, one.x + 1, one.v + 1, &add);
+        scatter(&ties, i, &add, f);
     }
 }
 
@@ -86,20 +60,19 @@ void flow_ties_system(const struct flow *flow, const struct flow_view *view, dou
                       phys_vec *b, phys_vec *value)
 {
     const struct flow_ties ties = flow_ties_open(view->tie_table);
-    struct some_joints some = {0};
     memset(value, 0, ties.room.ties * sizeof *value);
-    while (take_joint(flow, &ties, view, ties.n, &some)) {
-        const struct phys_springs springs = springs_of(&some, flow->model->full_slope);
-        phys_vec add[AT_ONCE] = {{0}}, made[AT_ONCE];
+    for (uint32_t i = 0; i < ties.n; i++) {
+        struct one_joint one;
+        phys_vec add = {0};
+        if (!see_joint(flow, &ties, view, i, &one))
+            continue;
         if (b)
-            phys_springs_system_cut(&springs, h, push, some.x[0], some.v[0], some.x[1], some.v[1],
-                                    add, made);
+            phys_springs_system(&one.spring, h, push, one.x, one.v, one.x + 1, one.v + 1, &add,
+                                value + i);
         else
-            phys_springs_matrix(&springs, h, some.x[0], some.x[1], made);
+            phys_springs_matrix(&one.spring, h, one.x, one.x + 1, value + i);
         if (b)
-            scatter(&ties, &some, add, b);
-        for (uint32_t i = 0; i < some.n; i++)
-            value[some.tie[i]] = made[i];
+            scatter(&ties, i, &add, b);
     }
 }
 
@@ -117,17 +90,13 @@ static double share_of(const struct flow_ties *ties, uint32_t i)
 double flow_ties_energy(const struct flow *flow, const struct flow_view *view)
 {
     const struct flow_ties ties = flow_ties_open(view->tie_table);
-    struct some_joints some = {0};
     double sum = 0;
-    while (take_joint(flow, &ties, view, ties.n, &some))
-        for (uint32_t i = 0; i < some.n; i++) {
-            struct phys_springs one = springs_of(&some, 0);
-            one.n = 1;
-            one.end += i;
-            one.stiffness += i;
-            one.length += i;
-            sum += share_of(&ties, some.tie[i]) * phys_energy_springs(&one, some.x[0], some.x[1]);
-        }
+    for (uint32_t i = 0; i < ties.n; i++) {
+        struct one_joint one;
+        if (!see_joint(flow, &ties, view, i, &one))
+            continue;
+        sum += share_of(&ties, i) * phys_energy_springs(&one.spring, one.x, one.x + 1);
+    }
     return sum;
 }
 

@@ -5,64 +5,34 @@
  * In reading order: memory, keys, records, making a table, reading it. */
 #include "cloth/flow/joints/ties.h"
 
+#include "cloth/base/order.h"
 #include "cloth/flow/state/room.h"
 
 #include <string.h>
 
 /* ---- Memory ---- */
 
-/* The head of a table. */
-struct head {
-    uint32_t n_inner, n, n_rows, n_ghosts, n_shown, n_others, n_halo;
-    struct flow_tie_room room;
-};
-
 /* The arrays while they are made. */
 struct arrays {
-    struct head *head;
-    uint32_t *other, *start, *place, *shown_start;
-    uint32_t *of, (*corner)[SOLVE_TIE_CORNERS], *ghost_other, *ghost_row, *shown, *halo, *at;
-    double (*weight)[SOLVE_TIE_CORNERS];
-    unsigned char *held;
-    /* While it is made: counts of groups, and a bit for each row. */
-    uint32_t *count;
-    uint64_t *scratch, *marks;
+    struct flow_tie_head *head;
+#define MEMBER(type, name, rows)         type *name;
+#define MEMBER_CORNERS(type, name, rows) type(*name)[SOLVE_TIE_CORNERS];
+    FLOW_TIE_ARRAYS(MEMBER, MEMBER_CORNERS)
 };
-
-static size_t marks_of(size_t n_rows)
-{
-    return (n_rows + 63) / 64;
-}
 
 static size_t lay_ties(size_t n_rows, const struct flow_tie_room *room, void *memory,
                        struct arrays *to)
 {
     struct flow_room rest = {.base = memory};
     to->head = flow_room_next(&rest, sizeof *to->head);
-    to->other = flow_room_next(&rest, room->others * sizeof *to->other);
-    to->start = flow_room_next(&rest, ((size_t)room->others + 1) * sizeof *to->start);
-    to->place = flow_room_next(&rest, room->others * sizeof *to->place);
-    to->shown_start = flow_room_next(&rest, ((size_t)room->others + 1) * sizeof *to->shown_start);
-    to->ghost_other = flow_room_next(&rest, room->rows * sizeof *to->ghost_other);
-    to->ghost_row = flow_room_next(&rest, room->rows * sizeof *to->ghost_row);
-    to->shown = flow_room_next(&rest, room->rows * sizeof *to->shown);
-    to->at = flow_room_next(&rest, room->rows * sizeof *to->at);
-    if (!room->ties)
-        return rest.used;
-    to->of = flow_room_next(&rest, room->ties * sizeof *to->of);
-    to->corner = flow_room_next(&rest, room->ties * sizeof *to->corner);
-    to->weight = flow_room_next(&rest, room->ties * sizeof *to->weight);
-    to->held = flow_room_next(&rest, room->ties);
-    to->halo = flow_room_next(&rest, n_rows * sizeof *to->halo);
-    to->count = flow_room_next(&rest, ((size_t)room->others + 3) * sizeof *to->count);
-    to->marks = flow_room_next(&rest, marks_of(n_rows) * sizeof *to->marks);
-    to->scratch = flow_room_next(&rest, flow_ties_scratch(room->ties) * sizeof *to->scratch);
+#define LAY(type, name, rows) to->name = flow_room_next(&rest, (size_t)(rows) * sizeof *to->name);
+    FLOW_TIE_ARRAYS(LAY, LAY)
     return rest.used;
 }
 
 size_t flow_ties_bytes(uint32_t n_rows, const struct flow_tie_room *room)
 {
-    struct arrays arrays = {0};
+    struct arrays arrays;
     return lay_ties(n_rows, room, NULL, &arrays);
 }
 
@@ -237,15 +207,8 @@ bool flow_ties_count(const struct flow_tie_list *list, uint32_t block, uint64_t 
 /* The index of a block among the others; n_others: it is none of them. */
 static uint32_t number_of_block(const struct arrays *to, uint32_t block)
 {
-    uint32_t low = 0, high = to->head->n_others;
-    while (low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (to->other[middle] < block)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < to->head->n_others && to->other[low] == block ? low : to->head->n_others;
+    const uint32_t n = to->head->n_others, at = cloth_first_from(to->other, 1, n, block);
+    return at < n && to->other[at] == block ? at : n;
 }
 
 /* The group of a tie, in order: 0: inner ones; then by the lowest other block, from 1. */
@@ -299,7 +262,7 @@ static size_t joints_ties_put_corners(const struct own *own, struct arrays *to)
  * is no room, or no such other block. */
 static bool put_ghosts(struct own *own, size_t n, struct arrays *to)
 {
-    struct head *head = to->head;
+    struct flow_tie_head *head = to->head;
     const uint64_t *key = sort_own(own, ROW_AT, n);
     uint32_t others = 0;
     for (size_t i = 0; i < n; i++) {
@@ -341,7 +304,7 @@ static bool put_shown(struct own *own, struct arrays *to)
 /* The rows of the block's halo and of its ties, each once. */
 static void put_halo(const struct flow_ties_of *of, struct arrays *to)
 {
-    struct head *head = to->head;
+    struct flow_tie_head *head = to->head;
     for (uint32_t i = 0; i < of->n_halo; i++)
         to->marks[of->halo[i] / 64] |= UINT64_C(1) << of->halo[i] % 64;
     for (uint32_t i = 0; i < head->n; i++)
@@ -378,7 +341,7 @@ static bool fill_table(const struct flow_ties_of *of, struct arrays *to)
 
 bool flow_ties_make(const struct flow_ties_of *of, void *memory)
 {
-    struct arrays to = {0};
+    struct arrays to;
     memset(memory, 0, flow_ties_bytes(of->n_rows, &of->room));
     lay_ties(of->n_rows, &of->room, memory, &to);
     to.head->n_rows = of->n_rows;
@@ -387,7 +350,7 @@ bool flow_ties_make(const struct flow_ties_of *of, void *memory)
         to.at[i] = i;
     const bool made = fill_table(of, &to);
     if (!made)
-        *to.head = (struct head){.n_rows = of->n_rows, .room = of->room};
+        *to.head = (struct flow_tie_head){.n_rows = of->n_rows, .room = of->room};
     return made;
 }
 
@@ -395,36 +358,21 @@ bool flow_ties_make(const struct flow_ties_of *of, void *memory)
 
 uint32_t flow_ties_others(const void *memory)
 {
-    const struct head *head = memory;
+    const struct flow_tie_head *head = memory;
     return head ? head->n_others : 0;
 }
 
 struct flow_ties flow_ties_open(const void *memory)
 {
-    const struct head *head = memory;
-    struct arrays arrays = {0};
+    const struct flow_tie_head *head = memory;
+    struct flow_ties ties = {0};
+    struct arrays arrays;
     if (!head)
-        return (struct flow_ties){0};
+        return ties;
     lay_ties(head->n_rows, &head->room, (void *)memory, &arrays); /* it is only read */
-    return (struct flow_ties){.n_inner = head->n_inner,
-                              .n = head->n,
-                              .n_rows = head->n_rows,
-                              .n_ghosts = head->n_ghosts,
-                              .n_shown = head->n_shown,
-                              .n_others = head->n_others,
-                              .n_halo = head->n_halo,
-                              .room = head->room,
-                              .of = arrays.of,
-                              .corner = (const uint32_t(*)[SOLVE_TIE_CORNERS])arrays.corner,
-                              .weight = (const double(*)[SOLVE_TIE_CORNERS])arrays.weight,
-                              .held = arrays.held,
-                              .other = arrays.other,
-                              .start = arrays.start,
-                              .place = arrays.place,
-                              .shown_start = arrays.shown_start,
-                              .ghost_other = arrays.ghost_other,
-                              .ghost_row = arrays.ghost_row,
-                              .shown = arrays.shown,
-                              .halo = arrays.halo,
-                              .at = arrays.at};
+    ties.head = *head;
+#define OPEN(type, name, rows)         ties.name = arrays.name;
+#define OPEN_CORNERS(type, name, rows) ties.name = (const type(*)[SOLVE_TIE_CORNERS])arrays.name;
+    FLOW_TIE_ARRAYS(OPEN, OPEN_CORNERS)
+    return ties;
 }

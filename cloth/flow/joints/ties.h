@@ -88,27 +88,51 @@ struct flow_tie_room {
     uint32_t ties, rows, others; /* rows: of ghosts, and of rows shown */
 };
 
+/* clang-format off */
+/* The arrays of a table, in the order of its memory: X(type, name, rows), CORNERS(type, name, rows) of
+ * a number for each corner. room: its room; n_rows: of the block. */
+#define FLOW_TIE_ARRAYS(X, CORNERS)                                                                \
+    X(uint32_t, other, room->others)       /* n_others: blocks, ascending */                       \
+    X(uint32_t, start, room->others + 1)   /* n_others + 1: ghosts of block k are start[k] .. */   \
+    X(uint32_t, place, room->others)       /* n_others: where that block shows the first of them */ \
+    X(uint32_t, shown_start, room->others + 1) /* n_others + 1: rows shown to block k are shown_start[k] .. */ \
+    X(uint32_t, ghost_other, room->rows)   /* n_ghosts: which of the others a ghost is of, */      \
+    X(uint32_t, ghost_row, room->rows)     /* n_ghosts: its row there */                           \
+    X(uint32_t, shown, room->rows)         /* n_shown: rows that others see, block after block */  \
+    X(uint32_t, at, room->rows)            /* room.rows: 0, 1, .. */                               \
+    X(uint32_t, of, room->ties)            /* n: numbers in the list */                            \
+    CORNERS(uint32_t, corner, room->ties)  /* n */                                                 \
+    CORNERS(double, weight, room->ties)    /* n */                                                 \
+    X(unsigned char, held, room->ties)     /* n: bit k: a pin holds corner k */                    \
+    X(uint32_t, halo, room->ties ? n_rows : 0) /* n_halo: rows of the block's halo and of ties, ascending */ \
+    /* while it is made: counts of groups, a bit for each row, keys */                             \
+    X(uint32_t, count, room->ties ? room->others + 3 : 0)                                          \
+    X(uint64_t, marks, room->ties ? (n_rows + 63) / 64 : 0)                                        \
+    X(uint64_t, scratch, flow_ties_scratch(room->ties))
+/* clang-format on */
+
 /* The ties of one block: inner ones, whose corners are all in the block, then the others, by their
  * lowest other block. Both are in the order of the list. Corners are rows of the block or, from
  * n_rows on, ghosts: rows of other blocks, each once, by block and row. Missing corners are row 0
  * with the weight 0. The block shows each other block the rows that are corners of ties of both,
- * ascending: they are the ghosts there, in this order. Arrays lie in the memory of the table. */
-struct flow_ties {
-    uint32_t n_inner, n, n_rows, n_ghosts, n_shown, n_others, n_halo;
+ * ascending: they are the ghosts there, in this order. Arrays lie in the memory of the table,
+ * behind its head. */
+#define FLOW_TIE_HEAD                                                                              \
+    uint32_t n_inner, n, n_rows, n_ghosts, n_shown, n_others, n_halo;                              \
     struct flow_tie_room room;
-    const uint32_t *of;                          /* n: numbers in the list */
-    const uint32_t (*corner)[SOLVE_TIE_CORNERS]; /* n */
-    const double (*weight)[SOLVE_TIE_CORNERS];   /* n */
-    const unsigned char *held;                   /* n: bit k: a pin holds corner k */
-    const uint32_t *other;                       /* n_others: blocks, ascending */
-    const uint32_t *start;       /* n_others + 1: ghosts of block k are start[k] .. */
-    const uint32_t *place;       /* n_others: where that block shows the first of them */
-    const uint32_t *shown_start; /* n_others + 1: rows shown to block k are shown_start[k] .. */
-    const uint32_t *ghost_other; /* n_ghosts: which of the others a ghost is of, */
-    const uint32_t *ghost_row;   /* n_ghosts: its row there */
-    const uint32_t *shown;       /* n_shown: rows that others see, block after block */
-    const uint32_t *halo;        /* n_halo: rows of the block's halo and of ties, ascending */
-    const uint32_t *at;          /* room.rows: 0, 1, .. */
+struct flow_tie_head {
+    FLOW_TIE_HEAD
+};
+struct flow_ties {
+    union { /* by name, or all of it */
+        struct flow_tie_head head;
+        struct {
+            FLOW_TIE_HEAD
+        };
+    };
+#define FLOW_TIE_MEMBER(type, name, rows)  const type *name;
+#define FLOW_TIE_CORNERS(type, name, rows) const type(*name)[SOLVE_TIE_CORNERS];
+    FLOW_TIE_ARRAYS(FLOW_TIE_MEMBER, FLOW_TIE_CORNERS)
 };
 
 /* The input of a table. */

@@ -16,29 +16,16 @@ struct border {
     uint32_t triangle;  /* that has these */
 };
 
-static int compare_borders(const void *va, const void *vb)
+static int compare_borders(const void *a, const void *b)
 {
-    const struct border *a = va, *b = vb;
-    int order = cloth_compare_u32(a->root[0], b->root[0]);
-    if (!order)
-        order = cloth_compare_u32(a->root[1], b->root[1]);
-    if (!order)
-        order = cloth_compare_u32(a->cloth, b->cloth);
-    return order ? order : cloth_compare_u32(a->edge, b->edge);
+    return cloth_compare_numbers(a, b, 4);
 }
 
 /* True if a root has several names. */
 static bool is_welded(const struct flow_welds *welds, uint32_t root)
 {
-    uint32_t low = 0, high = welds->n;
-    while (low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (welds->name[middle][0] < root)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < welds->n && welds->name[low][0] == root;
+    const uint32_t at = cloth_first_from(welds->name, 2, welds->n, root);
+    return at < welds->n && welds->name[at][0] == root;
 }
 
 /* Finds the borders of a cloth, the first vertex of which is `first`. */
@@ -105,11 +92,9 @@ struct stitch {
     double bending;   /* as of model_sewing */
 };
 
-static int compare_stitches(const void *va, const void *vb)
+static int compare_stitches(const void *a, const void *b)
 {
-    const struct stitch *a = va, *b = vb;
-    const int order = cloth_compare_u32(a->root[0], b->root[0]);
-    return order ? order : cloth_compare_u32(a->root[1], b->root[1]);
+    return cloth_compare_numbers(a, b, 2);
 }
 
 static int list_stitches(struct cloth_list *list, const struct model *model,

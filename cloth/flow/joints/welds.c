@@ -27,11 +27,9 @@ static int list_pairs(struct cloth_list *list, const struct model *model, const 
     return code ? code : flow_pairs_once(list, model, "a weld", error);
 }
 
-static int welds_compare_names(const void *va, const void *vb)
+static int welds_compare_names(const void *a, const void *b)
 {
-    const uint32_t *a = va, *b = vb;
-    const int order = cloth_compare_u32(a[0], b[0]);
-    return order ? order : cloth_compare_u32(a[1], b[1]);
+    return cloth_compare_numbers(a, b, 2);
 }
 
 /* The root of each vertex, and the list of all other names. */
@@ -291,24 +289,14 @@ int flow_names_make(struct flow_names *names, const struct flow_welds *welds,
 
 uint32_t flow_names_from(const struct flow_names *names, uint32_t place)
 {
-    uint32_t low = 0, high = names->n;
-    while (low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (names->name[middle][0] < place)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    return cloth_first_from(names->name, 2, names->n, place);
 }
 
 /* ---- Springs ---- */
 
-/* A spring with two welded ends, by its number among all. */
+/* A spring with two welded ends, which are its roots, and its number among all. */
 struct candidate {
-    uint32_t a, b; /* roots, a < b */
-    unsigned char stretch;
-    double length, stiffness, damping;
+    struct flow_spring spring;
     uint64_t number;
 };
 
@@ -331,21 +319,16 @@ static void welds_find_joined(void *to, const struct flow_spring *s)
     struct candidate *candidate =
         cloth_list_add(&finder->found, sizeof *candidate, 1, finder->error);
     finder->code = candidate ? CLOTH_OK : CLOTH_E_MEMORY;
-    if (candidate)
-        *candidate = (struct candidate){.a = a < b ? a : b,
-                                        .b = a < b ? b : a,
-                                        .stretch = s->stretch,
-                                        .length = s->length,
-                                        .stiffness = s->stiffness,
-                                        .damping = s->damping,
-                                        .number = number};
+    if (!candidate)
+        return;
+    *candidate = (struct candidate){*s, number};
+    candidate->spring.a = a < b ? a : b;
+    candidate->spring.b = a < b ? b : a;
 }
 
-static int compare_kinds(const struct candidate *a, const struct candidate *b)
+static int compare_kinds(const struct flow_spring *a, const struct flow_spring *b)
 {
-    int order = cloth_compare_u32(a->a, b->a);
-    if (!order)
-        order = cloth_compare_u32(a->b, b->b);
+    int order = cloth_compare_numbers(a, b, 2);
     if (!order)
         order = (a->stretch > b->stretch) - (a->stretch < b->stretch);
     return order ? order : (a->length > b->length) - (a->length < b->length);
@@ -354,7 +337,7 @@ static int compare_kinds(const struct candidate *a, const struct candidate *b)
 static int compare_candidates(const void *va, const void *vb)
 {
     const struct candidate *a = va, *b = vb;
-    const int order = compare_kinds(a, b);
+    const int order = compare_kinds(&a->spring, &b->spring);
     return order ? order : (a->number > b->number) - (a->number < b->number);
 }
 
@@ -374,10 +357,11 @@ static int merge(struct flow_springs *springs, const struct cloth_list *found,
         return CLOTH_E_MEMORY;
     for (size_t i = 0, end; i < found->n; i = end) {
         struct flow_merged *sum = springs->merged + springs->n_merged;
-        *sum = (struct flow_merged){all[i].number, 0, 0, all[i].a == all[i].b};
-        for (end = i; end < found->n && !compare_kinds(all + i, all + end); end++) {
-            sum->stiffness += all[end].stiffness;
-            sum->damping += all[end].damping;
+        const struct flow_spring *first = &all[i].spring;
+        *sum = (struct flow_merged){all[i].number, 0, 0, first->a == first->b};
+        for (end = i; end < found->n && !compare_kinds(first, &all[end].spring); end++) {
+            sum->stiffness += all[end].spring.stiffness;
+            sum->damping += all[end].spring.damping;
             springs->merged[springs->n_merged++] =
                 end > i ? (struct flow_merged){all[end].number, 0, 0, true} : *sum;
         }

@@ -54,20 +54,19 @@ static int level_body(const duite_call *call, const struct level_fields *on)
  * is off only by the square of h. */
 static int fork_level(struct flow_state *state, struct flow_step_args args)
 {
-    const int code = flow_fork_each(state, &flow_kernel_force, &args);
-    return code ? code : flow_fork_each(state, &flow_kernel_level, &args);
+    flow_fork_each(state, &flow_kernel_force, &args);
+    return flow_fork_each(state, &flow_kernel_level, &args);
 }
 
 int flow_energies(struct flow_state *state, struct flow_step_args args, enum flow_field_id sums)
 {
     const bool apart = model_scheme(state->flow->model)->staggered;
-    const struct flow_as as[] = {{FLOW_FIELD_v, apart ? FLOW_FIELD_f : FLOW_FIELD_v},
-                                 {FLOW_FIELD_energies, sums},
-                                 {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}};
-    int code = duite_set(state->rt, flow_field_object(state, sums, 0), NULL);
-    if (!code && apart)
-        code = fork_level(state, args);
-    return code ? code : flow_fork_each_as(state, &flow_kernel_energy, &args, as);
+    const enum flow_field_id speed = apart ? FLOW_FIELD_f : FLOW_FIELD_v;
+    flow_set(state, sums, NULL);
+    if (apart)
+        fork_level(state, args);
+    return flow_fork_each_as(state, &flow_kernel_energy, &args,
+                             FLOW_AS({FLOW_FIELD_v, speed}, {FLOW_FIELD_energies, sums}));
 }
 
 /* True if energies are checked after the step under way. */
@@ -87,12 +86,11 @@ int flow_energy_fork(struct flow_state *state)
 static int get_contact(struct flow_state *state, double *energy)
 {
     double held[FLOW_HELD] = {0};
-    const int code = flow_contact_mode(state->flow->model)->carries
-                         ? duite_get(state->rt, state->run.contact_energy, held)
-                         : DUITE_OK;
+    if (flow_contact_mode(state->flow->model)->carries)
+        flow_get(state, FLOW_FIELD_contact_energy, held);
     *energy = held[FLOW_HELD_ALL];
     state->guard.lent = held[FLOW_HELD_LENT];
-    return code;
+    return state->code;
 }
 
 int flow_energy_wait(struct flow_state *state)
@@ -101,11 +99,8 @@ int flow_energy_wait(struct flow_state *state)
     double sums[FLOW_SUMS];
     if (!looks(state))
         return DUITE_OK;
-    int code = duite_get(state->rt, flow_field_object(state, FLOW_FIELD_energies, 0), sums);
-    if (!code)
-        code = get_contact(state, &guard->sum);
-    if (code)
-        return code;
+    if (flow_get(state, FLOW_FIELD_energies, sums) || get_contact(state, &guard->sum))
+        return state->code;
     for (int i = 0; i < FLOW_ENERGIES; i++)
         guard->sum += sums[i];
     guard->moving = sums[FLOW_ENERGY_MOTION] + sums[FLOW_ENERGY_ELASTIC];
@@ -178,13 +173,9 @@ int flow_energy_get(struct flow_state *state, struct flow_energy *energy)
     double sums[FLOW_SUMS], contact;
     struct flow_step_args args = flow_attempt_args(state);
     args.h = args.h > 0 ? args.h : state->flow->model->h; /* before the first step */
-    int code = flow_energies(state, args, FLOW_FIELD_energy);
-    if (!code)
-        code = duite_get(state->rt, state->run.energy, sums);
-    if (!code)
-        code = get_contact(state, &contact);
-    if (code)
-        return code;
+    flow_energies(state, args, FLOW_FIELD_energy);
+    if (flow_get(state, FLOW_FIELD_energy, sums) || get_contact(state, &contact))
+        return state->code;
     *energy = (struct flow_energy){.kinetic = sums[FLOW_ENERGY_MOTION],
                                    .elastic = sums[FLOW_ENERGY_ELASTIC],
                                    .gravity = sums[FLOW_ENERGY_GRAVITY],

@@ -4,13 +4,14 @@
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/state/bodies.h"
 
+#include <endian.h>
 #include <math.h>
 #include <string.h>
 
 static int largest_stretch(struct flow_state *state)
 {
-    const int code = flow_stretch_fork(state);
-    return code ? code : flow_stretch_get(state, &state->report->max_stretch);
+    flow_stretch_fork(state);
+    return flow_stretch_get(state, &state->report->max_stretch);
 }
 
 /* Runs alone. */
@@ -33,14 +34,12 @@ static double some(double seconds)
 static int sum_seconds(struct flow_state *state)
 {
     const struct flow_block_args args = {0};
-    int code = duite_wait(state->rt);
-    for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++)
-        code = flow_fork_at(state, rank, &flow_kernel_seconds, &args, NULL);
     double sum[FLOW_PARTS];
-    if (!code)
-        code = duite_get(state->rt, state->run.seconds, sum);
-    if (code)
-        return code;
+    flow_noted(state, duite_wait(state->rt));
+    for (int rank = 0; rank < duite_ranks(state->rt); rank++)
+        flow_fork_at(state, rank, &flow_kernel_seconds, &args, NULL);
+    if (flow_get(state, FLOW_FIELD_seconds, sum))
+        return state->code;
     state->report->seconds_force = some(sum[FLOW_FORCE]);
     state->report->seconds_acceleration = some(sum[FLOW_ACCELERATION]);
     state->report->seconds_matrix = some(sum[FLOW_MATRIX]);
@@ -71,6 +70,15 @@ uint32_t flow_hash_part(const struct flow *flow)
 struct part {
     uint32_t from, to;
 };
+
+/* A double with its lowest byte first, or back. */
+static void turn_double(void *to, const void *from)
+{
+    uint64_t bits;
+    memcpy(&bits, from, sizeof bits);
+    bits = htole64(bits);
+    memcpy(to, &bits, sizeof bits);
+}
 
 /* On rank 0: copies row i of a block, if its vertex v is in the part. */
 static void place_row(const struct flow_state *state, const struct part *part, uint32_t i,
@@ -104,28 +112,26 @@ static int collect_body(const duite_call *call, const struct collect_fields *on)
         duite_resize(call, FLOW_INDEX_OF(collect, gathered), FLOW_VERTEX_BYTES * (size_t)t->n);
     for (uint32_t i = 0; i < t->n && !code; i++)
         for (int c = 0; c < 3; c++, to += 8)
-            flow_put_double(to, on->x[i][c]);
+            turn_double(to, (const double *)(on->x + i) + c);
     return code;
 }
 
 /* Sends a vector of some blocks to rank 0, which holds each only for a moment. */
-static int collect_vector(struct flow_state *state, uint32_t n, const uint32_t *block,
-                          enum flow_field_id vector, const struct part *part)
+static void collect_vector(struct flow_state *state, uint32_t n, const uint32_t *block,
+                           enum flow_field_id vector, const struct part *part)
 {
-    const struct flow_as as[] = {{FLOW_FIELD_x, vector}, {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}};
-    int code = DUITE_OK;
-    for (uint32_t k = 0; k < n && !code; k++) {
+    for (uint32_t k = 0; k < n; k++) {
         const struct flow_block_args args = {.block = block[k]};
-        code = flow_fork_one_as(state, &flow_kernel_collect, &args, as);
+        flow_fork_one_as(state, &flow_kernel_collect, &args, FLOW_AS({FLOW_FIELD_x, vector}));
     }
-    for (uint32_t k = 0; k < n && !code; k++) {
-        code = duite_get_at(state->rt, state->block[block[k]].gathered, 0, state->rows);
-        if (!code && state->bytes)
+    for (uint32_t k = 0; k < n && !state->code; k++) {
+        const duite_object gathered = state->block[block[k]].gathered;
+        if (flow_noted(state, duite_get_at(state->rt, gathered, 0, state->rows)))
+            return;
+        if (state->bytes)
             place_rows(state, block[k], part);
-        if (!code)
-            code = duite_set_sized(state->rt, state->block[block[k]].gathered, NULL, 0);
+        flow_noted(state, duite_set_sized(state->rt, gathered, NULL, 0));
     }
-    return code;
 }
 
 static int collect_part(struct flow_state *state, enum flow_field_id vector,
@@ -133,39 +139,29 @@ static int collect_part(struct flow_state *state, enum flow_field_id vector,
 {
     const struct flow_tables *tables = &state->flow->tables;
     uint32_t some[AT_ONCE], n = 0;
-    int code = DUITE_OK;
-    for (uint32_t b = 0; b < tables->n_blocks && !code; b++) {
+    for (uint32_t b = 0; b < tables->n_blocks; b++) {
         if (tables->block[b].highest >= part->from && tables->block[b].lowest < part->to)
             some[n++] = b;
         if (n < AT_ONCE && b + 1 < tables->n_blocks)
             continue;
-        code = collect_vector(state, n, some, vector, part);
+        collect_vector(state, n, some, vector, part);
         n = 0;
     }
-    const int failed = duite_wait(state->rt); /* nobody runs ahead of rank 0 with its messages */
-    return code ? code : failed;
+    /* No rank runs ahead of rank 0 with its messages. */
+    return flow_noted(state, duite_wait(state->rt));
 }
 
 /* Vertices that no face or edge uses are at their start, at rest. */
 static void place_unused(struct flow_state *state, bool at_rest, const struct part *part)
 {
+    static const double rest = 0;
     const struct flow_unused *unused = &state->flow->unused;
     for (uint32_t i = 0; i < unused->n; i++) {
         const uint32_t v = unused->vertex[i];
         unsigned char *to = state->bytes + FLOW_VERTEX_BYTES * (size_t)(v - part->from);
         for (size_t c = 0; v >= part->from && v < part->to && c < 3; c++)
-            flow_put_double(to + 8 * c, at_rest ? 0 : unused->position[i][c]);
+            turn_double(to + 8 * c, at_rest ? &rest : unused->position[i] + c);
     }
-}
-
-static double double_of(const unsigned char *bytes)
-{
-    uint64_t bits = 0;
-    double value;
-    for (int i = 8; i > 0; i--)
-        bits = bits << 8 | bytes[i - 1];
-    memcpy(&value, &bits, sizeof value);
-    return value;
 }
 
 /* Hands a part of the positions, or of the velocities, to the program. */
@@ -177,38 +173,33 @@ static void keep_end(const struct flow_state *state, enum flow_field_id vector,
     const int first = vector == FLOW_FIELD_v ? 3 : 0;
     for (uint32_t v = part->from; end && v < part->to; v++)
         for (int c = 0; c < 3; c++, from += 8)
-            end[v][first + c] = double_of(from);
+            turn_double(end[v] + first + c, from);
 }
 
-static int hash_vectors(struct flow_state *state, enum flow_field_id vector, bool at_rest,
-                        XXH64_state_t *hash)
+static void hash_vectors(struct flow_state *state, enum flow_field_id vector, bool at_rest,
+                         XXH64_state_t *hash)
 {
     const uint32_t n = state->flow->n_vertices, step = flow_hash_part(state->flow);
-    int code = DUITE_OK;
-    for (struct part part = {0}; part.from < n && !code; part.from = part.to) {
+    for (struct part part = {0}; part.from < n && !state->code; part.from = part.to) {
         part.to = n - part.from > step ? part.from + step : n;
         if (hash)
             place_unused(state, at_rest, &part);
-        code = collect_part(state, vector, &part);
-        if (!hash || code)
+        if (collect_part(state, vector, &part) || !hash)
             continue;
         XXH64_update(hash, state->bytes, FLOW_VERTEX_BYTES * (size_t)(part.to - part.from));
         keep_end(state, vector, &part);
     }
-    return code;
 }
 
-static int hash_state(struct flow_state *state)
+static void hash_state(struct flow_state *state)
 {
     XXH64_state_t *hash = state->hash;
     if (hash)
         XXH64_reset(hash, 0);
-    int code = hash_vectors(state, FLOW_FIELD_x, false, hash);
-    if (!code)
-        code = hash_vectors(state, FLOW_FIELD_v, true, hash);
+    hash_vectors(state, FLOW_FIELD_x, false, hash);
+    hash_vectors(state, FLOW_FIELD_v, true, hash);
     if (hash)
         state->flow->hash = XXH64_digest(hash);
-    return code;
 }
 
 FLOW_KERNEL(broadcast, FLOW_NO_PART, struct flow_block_args, (W(broadcast)))
@@ -222,29 +213,24 @@ static int broadcast_body(const duite_call *call, const struct broadcast_fields 
 static int broadcast_result(struct flow_state *state, uint64_t broadcast[FLOW_BROADCAST])
 {
     const struct flow_block_args args = {0};
-    int code = flow_fork_at(state, 0, &flow_kernel_broadcast, &args, NULL);
-    if (!code)
-        code = duite_get(state->rt, state->run.broadcast, broadcast);
-    return code;
+    flow_fork_at(state, 0, &flow_kernel_broadcast, &args, NULL);
+    return flow_get(state, FLOW_FIELD_broadcast, broadcast);
 }
 
 static int hash_all(struct flow_state *state)
 {
     uint64_t broadcast[FLOW_BROADCAST];
-    int code = hash_state(state);
-    if (!code)
-        code = broadcast_result(state, broadcast);
-    if (!code)
+    hash_state(state);
+    if (!broadcast_result(state, broadcast))
         state->report->state_hash = broadcast[FLOW_BROADCAST_HASH];
-    return code;
+    return state->code;
 }
 
 int flow_last_frame(struct flow_state *state)
 {
     uint64_t broadcast[FLOW_BROADCAST] = {[FLOW_BROADCAST_FRAMES] = state->next_frame};
-    const int code = flow_shows(state) ? broadcast_result(state, broadcast) : DUITE_OK;
-    if (code)
-        return code;
+    if (flow_shows(state) && broadcast_result(state, broadcast))
+        return state->code;
     state->report->frames = broadcast[FLOW_BROADCAST_FRAMES];
     state->report->last_frame =
         broadcast[FLOW_BROADCAST_FRAMES] ? broadcast[FLOW_BROADCAST_FRAMES] - 1 : 0;
@@ -256,7 +242,7 @@ static int observe_finish_count(struct flow_state *state)
 {
     duite_counters *now = &state->report->counters;
     const duite_counters *before = &state->before;
-    const int code = duite_count_all(state->rt, now);
+    flow_noted(state, duite_count_all(state->rt, now));
     now->tasks -= before->tasks;
     now->placed -= before->placed;
     now->stolen -= before->stolen;
@@ -271,25 +257,19 @@ static int observe_finish_count(struct flow_state *state)
     now->awaited -= before->awaited;
     now->exposed -= before->exposed;
     now->stolen_far -= before->stolen_far;
-    return code;
+    return state->code;
 }
 
 int flow_finish(struct flow_state *state)
 {
-    if (state->complete) { /* its report was whole */
-        const int hashed = hash_all(state);
-        return hashed ? hashed : observe_finish_count(state);
+    if (!state->complete) { /* else its report was whole */
+        largest_stretch(state);
+        flow_energy_get(state, &state->report->end);
     }
-    int code = largest_stretch(state);
-    if (!code)
-        code = flow_energy_get(state, &state->report->end);
-    if (!code)
-        code = hash_all(state);
-    if (!code)
-        code = sum_seconds(state);
-    if (!code)
-        code = flow_last_frame(state);
-    if (!code)
-        code = observe_finish_count(state);
-    return code;
+    hash_all(state);
+    if (!state->complete) {
+        sum_seconds(state);
+        flow_last_frame(state);
+    }
+    return observe_finish_count(state);
 }

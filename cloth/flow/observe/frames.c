@@ -68,55 +68,58 @@ static int show_places(struct flow *flow, uint64_t frame)
     return flow->output->places(flow->output->context, frame, &places, &flow->trouble);
 }
 
-static int not_written(const duite_call *call, struct flow *flow)
+/* Fills in vertices that no block has: zeros, or their places. */
+static void put_unused(const struct flow *flow, bool zeros)
 {
-    if (flow->output->written)
-        flow->frames = flow->output->written(flow->output->context);
-    return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
+    for (uint32_t i = 0; i < flow->unused.n; i++)
+        for (size_t c = 0; c < 3; c++)
+            flow->room[3 * (size_t)flow->unused.vertex[i] + c] =
+                zeros ? 0 : flow->unused.position[i][c];
 }
 
+/* The vector that a task shows: the positions of a frame; of one that is written, the velocities
+ * with its other fields, or the forces. */
+enum frame_shows { POSITIONS, BESIDE, FORCES };
 struct frame_args {
     uint32_t block; /* none */
+    enum frame_shows shows;
     uint64_t frame;
     double time; /* s */
 };
+
+/* Hands the vector in the room to the program. */
+static int show_vector(struct flow *flow, const struct frame_args *args)
+{
+    const struct flow_output *to = flow->output;
+    const struct flow_beside beside = {flow->room, flow->block_of, flow->rank_of};
+    if (args->shows == FORCES)
+        return to->force(to->context, args->frame, flow->room, &flow->trouble);
+    if (args->shows == BESIDE) {
+        put_places(flow);
+        return to->beside(to->context, &beside, &flow->trouble);
+    }
+    const int failed = show_places(flow, args->frame);
+    return failed ? failed
+                  : to->frame(to->context, args->frame, args->time, flow->room, &flow->trouble);
+}
 
 FLOW_KERNEL_WITH(frame, FLOW_OUTPUT, struct frame_args, (RW(token), ALL(x)), .side_effects = 1)
 static int frame_body(const duite_call *call, const struct frame_fields *on)
 {
     struct flow *flow = flow_of(call);
+    const bool places = on->args->shows == POSITIONS;
+    if (!places)
+        put_unused(flow, true);
     observe_frames_put_all(flow, on->x);
-    if (show_places(flow, on->args->frame))
-        return not_written(call, flow);
-    if (flow->output->frame(flow->output->context, on->args->frame, on->args->time, flow->room,
-                            &flow->trouble))
-        return not_written(call, flow);
+    const int failed = show_vector(flow, on->args);
+    if (!places)
+        put_unused(flow, false);
+    if (failed && flow->output->written)
+        flow->frames = flow->output->written(flow->output->context);
+    if (failed)
+        return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
     flow->frames = on->args->frame + 1;
     return 0;
-}
-
-/* Fills in vertices that no block has: zero forces, or their places. */
-static void put_unused(const struct flow *flow, bool force)
-{
-    for (uint32_t i = 0; i < flow->unused.n; i++)
-        for (size_t c = 0; c < 3; c++)
-            flow->room[3 * (size_t)flow->unused.vertex[i] + c] =
-                force ? 0 : flow->unused.position[i][c];
-}
-
-/* The other fields of a frame that is written. */
-FLOW_KERNEL_WITH(frame_beside, FLOW_OUTPUT, struct frame_args, (RW(token), ALL(v)),
-                 .side_effects = 1)
-static int frame_beside_body(const duite_call *call, const struct frame_beside_fields *on)
-{
-    struct flow *flow = flow_of(call);
-    const struct flow_beside beside = {flow->room, flow->block_of, flow->rank_of};
-    put_unused(flow, true);
-    observe_frames_put_all(flow, on->v);
-    put_places(flow);
-    const int failed = flow->output->beside(flow->output->context, &beside, &flow->trouble);
-    put_unused(flow, false);
-    return failed ? not_written(call, flow) : 0;
 }
 
 /* Called while no frame is under way. */
@@ -129,26 +132,11 @@ static void find_homes(struct flow_state *state)
     }
 }
 
-static int fork_beside(struct flow_state *state, const struct frame_args *args, bool kept)
+static void fork_vector(struct flow_state *state, struct frame_args args, enum frame_shows shows,
+                        enum flow_field_id field)
 {
-    if (!flow_shows_beside(state, args->frame))
-        return DUITE_OK;
-    return flow_fork_at(state, 0, &flow_kernel_frame_beside, args,
-                        kept ? FLOW_AS(FLOW_FOR(v, kept_v)) : NULL);
-}
-
-/* The forces of a frame that is written. */
-FLOW_KERNEL_WITH(frame_force, FLOW_OUTPUT, struct frame_args, (RW(token), ALL(contact_force)),
-                 .side_effects = 1)
-static int frame_force_body(const duite_call *call, const struct frame_force_fields *on)
-{
-    struct flow *flow = flow_of(call);
-    put_unused(flow, true);
-    observe_frames_put_all(flow, on->contact_force);
-    const int failed =
-        flow->output->force(flow->output->context, on->args->frame, flow->room, &flow->trouble);
-    put_unused(flow, false);
-    return failed ? not_written(call, flow) : 0;
+    args.shows = shows;
+    flow_fork_at(state, 0, &flow_kernel_frame, &args, FLOW_AS({FLOW_FIELD_x, field}));
 }
 
 /* Forks a frame of the state at a tick, kept or not. */
@@ -162,20 +150,17 @@ static int fork_frame(struct flow_state *state, double tick, bool kept)
     state->shown = tick;
     if (!flow_shows(state)) /* only counted */
         return DUITE_OK;
-    if (number > before.frames) {
-        const int code = duite_get(state->rt, state->run.token, &token);
-        if (code)
-            return code;
-    }
+    if (number > before.frames && flow_get(state, FLOW_FIELD_token, &token))
+        return state->code;
     if (flow_shows_places(state))
         find_homes(state);
-    int code = flow_fork_at(state, 0, &flow_kernel_frame, &args,
-                            kept ? FLOW_AS(FLOW_FOR(x, kept_x)) : NULL);
-    code = code ? code : fork_beside(state, &args, kept);
-    if (code || !flow_shows_contact(state))
-        return code;
-    return flow_fork_at(state, 0, &flow_kernel_frame_force, &args,
-                        kept ? FLOW_AS(FLOW_FOR(contact_force, kept_contact_force)) : NULL);
+    fork_vector(state, args, POSITIONS, kept ? FLOW_FIELD_kept_x : FLOW_FIELD_x);
+    if (flow_shows_beside(state, number))
+        fork_vector(state, args, BESIDE, kept ? FLOW_FIELD_kept_v : FLOW_FIELD_v);
+    if (flow_shows_contact(state))
+        fork_vector(state, args, FORCES,
+                    kept ? FLOW_FIELD_kept_contact_force : FLOW_FIELD_contact_force);
+    return state->code;
 }
 
 int flow_frame_last(struct flow_state *state)
@@ -188,15 +173,14 @@ int flow_frame_last(struct flow_state *state)
 static int fork_frames(struct flow_state *state, double begin, double behind)
 {
     const double now = (double)state->grid.now, middle = (begin + now) / 2;
-    int code = DUITE_OK;
-    while (!code) {
+    while (!state->code) {
         const double tick = frame_tick(state, state->next_frame);
         if (!(tick < now + behind))
             break;
         const bool before = tick < middle && begin < now;
-        code = fork_frame(state, before ? begin : now, before);
+        fork_frame(state, before ? begin : now, before);
     }
-    return code;
+    return state->code;
 }
 
 /* Frames within half the shortest step after now are certain: no other end can be nearer. A resumed
@@ -204,9 +188,9 @@ static int fork_frames(struct flow_state *state, double begin, double behind)
 int flow_frames(struct flow_state *state, uint64_t from)
 {
     const double most = FLOW_TICKS / 2.0, begin = (double)from;
-    int code = fork_frames(state, begin, state->flow->model->halving ? 0.5 : most);
+    fork_frames(state, begin, state->flow->model->halving ? 0.5 : most);
     state->certain = (struct flow_frames_so_far){state->next_frame, state->shown};
-    if (!code && state->grid.now == state->grid.end)
-        code = fork_frames(state, begin, most);
-    return code;
+    if (state->grid.now == state->grid.end)
+        fork_frames(state, begin, most);
+    return state->code;
 }

@@ -29,9 +29,7 @@ int flow_frames(struct flow_state *state, uint64_t from);
 /* Forks a frame of the state at grid.now, where the run ends, unless the last frame shows it. */
 int flow_frame_last(struct flow_state *state);
 
-/* Doubles that a block reports of its system; forks the tasks that hand the last step's system to
- * the program. */
-size_t flow_system_doubles(const struct flow_table *table, size_t room);
+/* Forks the task that hands the last step's system to the program. */
 int flow_system(struct flow_state *state);
 
 /* Fills the parts of the report that need the whole state, when no task runs. */

@@ -65,14 +65,13 @@ static int probe_body(const duite_call *call, const struct probe_fields *on)
 }
 
 /* On a block. */
-static int fork_probe(struct flow_state *state, uint32_t block, const struct flow_two_steps *steps)
+static void fork_probe(struct flow_state *state, uint32_t block, const struct flow_two_steps *steps)
 {
     const struct flow_step_args force = {
         .block = block, .h = steps->h, .time = steps->end, .now = steps->end};
     const struct probe_args probe = {block, *steps};
-    const int code =
-        flow_fork_one_as(state, &flow_kernel_force, &force, FLOW_AS(FLOW_FOR(f, probe_force)));
-    return code ? code : flow_fork_one(state, &flow_kernel_probe, &probe);
+    flow_fork_one_as(state, &flow_kernel_force, &force, FLOW_AS(FLOW_FOR(f, probe_force)));
+    flow_fork_one(state, &flow_kernel_probe, &probe);
 }
 
 /* ---- On rank 0 ---- */
@@ -153,11 +152,11 @@ int flow_probes_row(struct flow_state *state)
         .end = flow_time(state), .h = length * tick, .before = last * tick};
     if (number < before.goes_on) /* the run before ended with it */
         return DUITE_OK;
-    int code = number > before.goes_on ? duite_get(state->rt, state->run.token, &token) : DUITE_OK;
-    if (!code)
-        code = flow_ties_show(state);
-    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code; b++)
+    if (number > before.goes_on)
+        flow_get(state, FLOW_FIELD_token, &token);
+    flow_ties_show(state);
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
         if (state->flow->tables.block[b].n_watched)
-            code = fork_probe(state, b, &steps);
-    return code ? code : flow_fork_at(state, 0, &flow_kernel_row, &args, NULL);
+            fork_probe(state, b, &steps);
+    return flow_fork_at(state, 0, &flow_kernel_row, &args, NULL);
 }

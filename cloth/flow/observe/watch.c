@@ -42,15 +42,13 @@ static int stretch_body(const duite_call *call, const struct stretch_fields *on)
 int flow_stretch_fork(struct flow_state *state)
 {
     struct flow_block_args args;
-    const double nothing = 0;
-    const int code =
-        duite_set(state->rt, flow_field_object(state, FLOW_FIELD_stretch, 0), &nothing);
-    return code ? code : flow_fork_each(state, &flow_kernel_stretch, &args);
+    flow_set(state, FLOW_FIELD_stretch, NULL);
+    return flow_fork_each(state, &flow_kernel_stretch, &args);
 }
 
 int flow_stretch_get(struct flow_state *state, double *stretch)
 {
-    return duite_get(state->rt, flow_field_object(state, FLOW_FIELD_stretch, 0), stretch);
+    return flow_get(state, FLOW_FIELD_stretch, stretch);
 }
 
 /* ---- Watching ---- */
@@ -71,17 +69,16 @@ static int watch_body(const duite_call *call, const struct watch_fields *on)
 
 int flow_watch(struct flow_state *state)
 {
-    const int sews = flow_seams_fork(state);
-    if (sews || (!flow_writes_probes(state) && !may_rest(state)))
-        return sews;
     const double none[FLOW_PEAKS] = {0, -INFINITY, -INFINITY};
     struct flow_block_args args;
-    int code = duite_set(state->rt, flow_field_object(state, FLOW_FIELD_peaks, 0), none);
-    if (!code)
-        code = flow_fork_each(state, &flow_kernel_watch, &args);
-    if (!code && flow_writes_probes(state))
-        code = flow_energies(state, flow_attempt_args(state), FLOW_FIELD_energy);
-    return code;
+    flow_seams_fork(state);
+    if (!flow_writes_probes(state) && !may_rest(state))
+        return state->code;
+    flow_set(state, FLOW_FIELD_peaks, none);
+    flow_fork_each(state, &flow_kernel_watch, &args);
+    if (flow_writes_probes(state))
+        flow_energies(state, flow_attempt_args(state), FLOW_FIELD_energy);
+    return state->code;
 }
 
 /* Finds if the run rests, by the speeds at the end of a step. */
@@ -89,11 +86,8 @@ static int find_rest(struct flow_state *state)
 {
     const struct model *model = state->flow->model;
     double peaks[FLOW_PEAKS];
-    if (!may_rest(state) || state->resting)
-        return DUITE_OK;
-    const int code = duite_get(state->rt, flow_field_object(state, FLOW_FIELD_peaks, 0), peaks);
-    if (code)
-        return code;
+    if (!may_rest(state) || state->resting || flow_get(state, FLOW_FIELD_peaks, peaks))
+        return state->code;
     const double time = flow_time(state);
     if (model_moves_after(model, time))
         state->moved = time;
@@ -112,10 +106,9 @@ static int find_rest(struct flow_state *state)
 
 int flow_watched(struct flow_state *state)
 {
-    int code = flow_contact_watch(state);
-    if (!code && flow_writes_probes(state))
-        code = flow_probes_row(state);
-    if (!code)
-        code = flow_seams_find(state);
-    return code ? code : find_rest(state);
+    flow_noted(state, flow_contact_watch(state));
+    if (flow_writes_probes(state))
+        flow_probes_row(state);
+    flow_seams_find(state);
+    return find_rest(state);
 }

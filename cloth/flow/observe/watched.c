@@ -3,6 +3,7 @@
 #include "cloth/flow/run/source.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -47,13 +48,10 @@ static int find_all(struct flow_watched *watched, const struct flow_source *sour
         if (probe->by_obstacle)
             continue;
         finder->first = model_first(model, probe->cloth);
-        const struct flow_picking picking = {.pick = &probe->pick,
-                                             .cloth = model->cloths + probe->cloth,
-                                             .used = source->particles.used + finder->first,
-                                             .what = "a probe",
-                                             .visit = find_entry,
-                                             .to = finder};
-        int code = flow_pick(&picking, error);
+        const struct flow_picking picking = {model->cloths + probe->cloth,
+                                             source->particles.used + finder->first, "a probe",
+                                             find_entry, finder};
+        int code = flow_pick(&probe->pick, &picking, error);
         if (!code && error->code)
             code = error->code;
         if (!code)
@@ -63,12 +61,6 @@ static int find_all(struct flow_watched *watched, const struct flow_source *sour
         watched->first[p + 1] = (uint32_t)finder->entries.n;
     }
     return CLOTH_OK;
-}
-
-static int watched_compare_places(const void *va, const void *vb)
-{
-    const uint32_t a = *(const uint32_t *)va, b = *(const uint32_t *)vb;
-    return (a > b) - (a < b);
 }
 
 /* Places of the entries, ascending, each once; and where each entry's is. */
@@ -83,14 +75,14 @@ static int sort_places(struct flow_watched *watched, const struct flow_source *s
         return CLOTH_E_MEMORY;
     for (size_t i = 0; i < n; i++)
         watched->place[i] = source->blocks.place[vertex[i]];
-    qsort(watched->place, n, sizeof *watched->place, watched_compare_places);
+    qsort(watched->place, n, sizeof *watched->place, cloth_compare_items_u32);
     for (size_t i = 0; i < n; i++)
         if (i == 0 || watched->place[i] != watched->place[watched->n - 1])
             watched->place[watched->n++] = watched->place[i];
     for (size_t i = 0; i < n; i++) {
         const uint32_t place = source->blocks.place[vertex[i]];
         const uint32_t *at = bsearch(&place, watched->place, watched->n, sizeof *watched->place,
-                                     watched_compare_places);
+                                     cloth_compare_items_u32);
         watched->entry[i] = (uint32_t)(at - watched->place);
         watched->vertex[i] = vertex[i];
     }

@@ -113,14 +113,6 @@ static bool has_frames(const struct model *model, uint32_t obstacle)
     return pins_follow_body_of(model, obstacle) && pins_follow_body_of(model, obstacle)->n_frames;
 }
 
-static void pins_follow_start_of(const struct flow_particles *p, const struct model *model,
-                                 uint32_t cloth, uint32_t first, uint32_t v, phys_vec *x)
-{
-    const double *at =
-        p->start ? p->start[v] : model->cloths[cloth].mesh.position + 3 * (size_t)(v - first);
-    *x = (phys_vec){at[0], at[1], at[2], 0};
-}
-
 /* Marks all vertices that follow an obstacle, and those welded to them. */
 static int mark_followers(struct flow_particles *p, const struct model *model,
                           struct cloth_error *error)
@@ -143,7 +135,7 @@ static void add_anchors(struct flow_particles *p, const struct model *model, uin
             phys_vec x;
             if (p->attached[v] != obstacle + 1 || flow_root(&p->welds, v) != v)
                 continue;
-            pins_follow_start_of(p, model, c, first, v, &x);
+            flow_start_place(p, model->cloths + c, first, v - first, &x);
             find_anchor(model, obstacle, place, &x, p->anchor + p->n_anchors);
             p->motion[v] = model->n_motions + ++p->n_anchors;
         }

@@ -12,8 +12,9 @@
 void flow_pins_begin(const duite_call *call, const struct flow_table *t, double time,
                      struct flow_pins *pins)
 {
-    *pins = (struct flow_pins){
-        .flow = flow_of(call), .model = flow_of(call)->model, .table = t, .time = time};
+    const struct flow *flow = flow_of(call);
+    *pins =
+        (struct flow_pins){.model = flow->model, .anchor = flow->anchor, .table = t, .time = time};
 }
 
 /* The pose of a motion, by number from 1, at the time of the pins. */
@@ -28,14 +29,11 @@ static const struct phys_pose *pose_of(struct flow_pins *pins, uint32_t motion)
     return &pins->pose;
 }
 
-/* The place, at the time of the pins, of a vertex that starts at x, by a motion or by an anchor,
- * numbered behind all motions. */
-static void place_vertex_at(struct flow_pins *pins, uint32_t motion, const phys_vec *x,
-                            phys_vec *to)
+void flow_pins_place(struct flow_pins *pins, uint32_t motion, const phys_vec *x, phys_vec *to)
 {
     const uint32_t n = pins->model->n_motions;
     if (motion > n) {
-        flow_anchor_place(pins->model, pins->flow->anchor + (motion - n - 1), pins->time, to);
+        flow_anchor_place(pins->model, pins->anchor + (motion - n - 1), pins->time, to);
         return;
     }
     *to = *x;
@@ -51,7 +49,7 @@ void flow_pins_slider(struct flow_pins *pins, uint32_t i, struct flow_slider *sl
 {
     const uint32_t *row = pins->table->sliding[i];
     const struct model_slider *is = pins->model->sliders + row[1] - 1;
-    phys_vec d = {is->direction[0], is->direction[1], is->direction[2], 0};
+    phys_vec d = PHYS_VEC(is->direction);
     slider->at = pins->table->position[row[0]];
     if (is->motion) {
         const struct phys_pose *pose = pose_of(pins, is->motion);
@@ -104,13 +102,12 @@ void flow_sliders_keep(const duite_call *call, const struct flow_table *t, doubl
 static int fork_moved(struct flow_state *state, const struct flow_kernel *kernel)
 {
     struct flow_step_args args = flow_attempt_args(state);
-    int code = DUITE_OK;
-    for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
+    for (; args.block < state->flow->tables.n_blocks; args.block++) {
         const struct flow_table *t = state->flow->tables.block + args.block;
         if (t->n_moved || t->n_sliding)
-            code = flow_fork_one(state, kernel, &args);
+            flow_fork_one(state, kernel, &args);
     }
-    return code;
+    return state->code;
 }
 
 FLOW_KERNEL(prescribe_velocity, FLOW_VELOCITY, struct flow_step_args,
@@ -128,7 +125,7 @@ static int prescribe_velocity_body(const duite_call *call,
     for (uint32_t i = 0; i < t->n_moved; i++) {
         const uint32_t row = t->moved[i][0];
         phys_vec to;
-        place_vertex_at(&pins, t->moved[i][1], t->position + row, &to);
+        flow_pins_place(&pins, t->moved[i][1], t->position + row, &to);
         v[row] = (to - x[row]) / h;
     }
     for (uint32_t i = 0; i < t->n_sliding; i++) {
@@ -157,7 +154,7 @@ static int prescribe_position_body(const duite_call *call,
     flow_pins_begin(call, t, on->args->time, &pins);
     for (uint32_t i = 0; i < t->n_moved; i++) {
         const uint32_t row = t->moved[i][0];
-        place_vertex_at(&pins, t->moved[i][1], t->position + row, x + row);
+        flow_pins_place(&pins, t->moved[i][1], t->position + row, x + row);
     }
     for (uint32_t i = 0; i < t->n_sliding; i++) {
         flow_pins_slider(&pins, i, &slider);
@@ -196,7 +193,7 @@ void flow_due_acceleration(const duite_call *call, const struct flow_two_steps *
     phys_vec x[3];
     pins_of(call, steps, pins);
     for (int i = 0; i < 3; i++)
-        place_vertex_at(pins + i, motion, start, x + i);
+        flow_pins_place(pins + i, motion, start, x + i);
     second_difference(steps, x, a);
 }
 

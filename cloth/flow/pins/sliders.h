@@ -35,9 +35,9 @@ PHYS_INLINE bool flow_slider_way(const phys_vec *filter, phys_vec *up)
 
 /* The pins of a block at one time, and the place of a walk through its rows. */
 struct flow_pins {
-    const struct flow *flow;
     const struct model *model;
-    const struct flow_table *table;
+    const struct flow_anchor *anchor;
+    const struct flow_table *table; /* for sliders */
     double time;
     uint32_t motion;              /* that the pose is of; 0: none yet */
     struct phys_pose pose, begin; /* now; where the run starts, of one that follows an obstacle */
@@ -47,6 +47,9 @@ struct flow_pins {
 /* At a time, s: in a step its end. */
 void flow_pins_begin(const duite_call *call, const struct flow_table *t, double time,
                      struct flow_pins *pins);
+/* The place then of a vertex that starts at x, by a motion or by an anchor, numbered behind all
+ * motions. */
+void flow_pins_place(struct flow_pins *pins, uint32_t motion, const phys_vec *x, phys_vec *to);
 /* The slider of sliding row i. */
 void flow_pins_slider(struct flow_pins *pins, uint32_t i, struct flow_slider *slider);
 /* The part of S of a row, NULL without a slider; for rows in ascending order. Valid until the next

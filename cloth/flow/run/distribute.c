@@ -6,6 +6,7 @@
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/state/bodies.h"
+#include "cloth/flow/state/room.h"
 
 #include "cloth/base/order.h"
 
@@ -21,54 +22,74 @@ enum {
 /* Bytes of a block's table that are broadcast: its shape; the neighbours of all blocks follow. */
 static const size_t SHAPE = offsetof(struct flow_table, neighbour);
 
-/* ---- Broadcasts ---- */
+/* ---- The arrays that all ranks share ---- */
 
-/* Frictions of all sides; bytes of the marks of sides that do not meet. */
+/* Frictions of all sides. */
 static size_t n_frictions(const struct model *model)
 {
     return (size_t)model->n_cloths * ((size_t)model->n_cloths + model->n_obstacles);
 }
-static size_t apart_bytes(const struct model *model)
+
+/* In the order of their memory: type, name, how many, and where rank 0 has them; NULL: they are
+ * made on the way. head, m: their head and its model; flow, source: of rank 0. */
+#define SHARED(X)                                                                                  \
+    X(unsigned char, bodies, m->bodies.bytes, flow->model->bodies.memory)                          \
+    X(struct contact_shape, obstacles, m->n_obstacles, flow->model->obstacles)                     \
+    X(struct phys_key, keys, m->n_keys, flow->model->keys)                                         \
+    X(struct model_slider, sliders, m->n_sliders, flow->model->sliders)                            \
+    X(struct phys_curve_key, curve_keys, m->n_curve_keys, flow->model->curve_keys)                 \
+    X(struct model_curve, curves, m->n_curves, flow->model->curves)                                \
+    X(struct model_motion, motions, m->n_motions, flow->model->motions)                            \
+    X(uint32_t, apart_end, m->contact.apart.apart ? m->n_cloths : 0,                               \
+      flow->model->contact.apart.end)                                                              \
+    X(unsigned char, apart, m->contact.apart.apart ? n_frictions(m) : 0,                           \
+      flow->model->contact.apart.apart)                                                            \
+    X(double, friction, n_frictions(m), NULL)                                                      \
+    X(struct flow_anchor, anchor, head->n_anchors, source->particles.anchor)                       \
+    X(struct flow_tie, tie, head->n_ties, NULL)                                                    \
+    X(unsigned char, shape, head->n_blocks *SHAPE, NULL)                                           \
+    X(uint32_t, neighbour, head->n_neighbours, source->neighbours.neighbour)                       \
+    X(uint32_t, ghost_start, (size_t)head->n_neighbours + head->n_blocks,                          \
+      source->neighbours.ghost_start)                                                              \
+    X(uint32_t, ghost, head->n_ghosts, source->neighbours.ghost)                                   \
+    X(uint32_t, joins, head->n_neighbours, source->neighbours.joins)
+
+struct shared_arrays {
+#define SHARED_MEMBER(type, name, n, from) type *name;
+    SHARED(SHARED_MEMBER)
+};
+
+/* Finds them in memory; NULL: none. Returns how many bytes they have. */
+static size_t lay_shared(const struct flow_head *head, void *memory, struct shared_arrays *to)
 {
-    return model->contact.apart.apart ? model->n_cloths * sizeof(uint32_t) + n_frictions(model) : 0;
+    const struct model *m = &head->model;
+    struct flow_room room = {.base = memory};
+#define SHARED_LAY(type, name, n, from) to->name = flow_room_next(&room, (n) * sizeof *to->name);
+    SHARED(SHARED_LAY)
+    return room.used;
 }
 
-FLOW_KERNEL(broadcast_head, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(head)))
-static int broadcast_head_body(const duite_call *call, const struct broadcast_head_fields *on)
+static void put_frictions(const struct model *model, double *to)
 {
-    const struct flow *flow = flow_of(call);
-    const struct flow_source *source = &flow->source;
-    struct flow_head *head = on->head;
-    memset(head, 0, sizeof *head);
-    memcpy(&head->model, flow->model, sizeof head->model);
-    head->n_steps = flow->n_steps;
-    head->inertia = flow->inertia;
-    head->release = flow->release;
-    head->contact_stiffness = flow->contact_stiffness;
-    head->vertex_mass = flow->vertex_mass;
-    head->feels_contact = flow->feels_contact;
-    head->partition_hash = flow->partition_hash;
-    if (flow->from.bytes)
-        head->resumed_bytes = ((const struct flow_saved *)flow->from.bytes)->main_bytes;
-    head->n_vertices = flow->n_vertices;
-    head->n_pieces = source->particles.n_pieces;
-    head->n_ties = source->springs.n_timed;
-    head->n_anchors = source->particles.n_anchors;
-    head->n_triangles = flow->n_triangles;
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        for (uint32_t i = 0; i < model->n_cloths + model->n_obstacles; i++)
+            *to++ = model_meets(model, c, i) ? model_friction(model, c, i) : FLOW_APART;
+}
+
+static void put_bytes(void *to, const void *from, size_t bytes)
+{
+    if (from && bytes)
+        memcpy(to, from, bytes);
+}
+
+/* ---- Broadcasts ---- */
+
+/* The sizes of all blocks, and the largest of any. */
+static void measure_blocks(const struct flow_source *source, struct flow_head *head)
+{
     head->n_blocks = source->blocks.n_blocks;
     head->n_neighbours = source->neighbours.n_neighbours;
     head->n_ghosts = source->neighbours.n_ghosts;
-    head->shared_bytes =
-        flow->model->bodies.bytes + flow->model->n_obstacles * sizeof *flow->model->obstacles +
-        flow->model->n_keys * sizeof *flow->model->keys +
-        flow->model->n_motions * sizeof *flow->model->motions +
-        n_frictions(flow->model) * sizeof *flow->friction + apart_bytes(flow->model) +
-        head->n_anchors * sizeof *flow->anchor +
-        flow->model->n_sliders * sizeof *flow->model->sliders +
-        flow->model->n_curve_keys * sizeof *flow->model->curve_keys +
-        flow->model->n_curves * sizeof *flow->model->curves +
-        head->n_ties * sizeof(struct flow_tie) + head->n_blocks * (SHAPE + sizeof(uint32_t)) +
-        (3 * (uint64_t)head->n_neighbours + head->n_ghosts) * sizeof(uint32_t);
     for (uint32_t b = 0; b < head->n_blocks; b++) {
         const struct flow_table *t = source->shape + b;
         head->max_rows = (uint32_t)cloth_larger(t->n, head->max_rows);
@@ -80,253 +101,190 @@ static int broadcast_head_body(const duite_call *call, const struct broadcast_he
         head->max_entries =
             (uint32_t)cloth_larger(t->n_entries + t->n_cut_entries, head->max_entries);
     }
-    return 0;
 }
 
-static char *distribute_put_bytes(char *to, const void *from, size_t bytes)
+/* On rank 0, which alone has a source. */
+static void make_head(const struct flow *flow, struct flow_head *head)
 {
-    if (bytes)
-        memcpy(to, from, bytes);
-    return to + bytes;
-}
-
-static char *put_frictions(char *to, const struct model *model)
-{
-    for (uint32_t c = 0; c < model->n_cloths; c++)
-        for (uint32_t i = 0; i < model->n_cloths + model->n_obstacles; i++) {
-            const double friction =
-                model_meets(model, c, i) ? model_friction(model, c, i) : FLOW_APART;
-            to = distribute_put_bytes(to, &friction, sizeof friction);
-        }
-    return to;
-}
-
-static char *distribute_put_ties(char *to, const struct flow_source *source)
-{
-    for (uint32_t i = 0; i < source->springs.n_timed; i++) {
-        const struct flow_tie tie = flow_joints_tie(source, source->springs.timed + i);
-        to = distribute_put_bytes(to, &tie, sizeof tie);
-    }
-    return to;
-}
-
-/* Packs everything but blocks. */
-static char *put_model(char *to, const struct flow *flow)
-{
-    const struct model *model = flow->model;
     const struct flow_source *source = &flow->source;
-    to = distribute_put_bytes(to, model->bodies.memory,
-                              model->bodies.bytes); /* first, as it is aligned */
-    to = distribute_put_bytes(to, model->obstacles, model->n_obstacles * sizeof *model->obstacles);
-    to = distribute_put_bytes(to, model->keys, model->n_keys * sizeof *model->keys);
-    to = distribute_put_bytes(to, model->sliders, model->n_sliders * sizeof *model->sliders);
-    to = distribute_put_bytes(to, model->curve_keys,
-                              model->n_curve_keys * sizeof *model->curve_keys);
-    to = distribute_put_bytes(to, model->curves, model->n_curves * sizeof *model->curves);
-    to = distribute_put_bytes(to, model->motions, model->n_motions * sizeof *model->motions);
-    to = put_frictions(to, model);
-    to = distribute_put_bytes(to, source->particles.anchor,
-                              source->particles.n_anchors * sizeof *source->particles.anchor);
-    return distribute_put_ties(to, source);
+    struct shared_arrays nowhere;
+    memset(head, 0, sizeof *head);
+    memcpy(&head->model, flow->model, sizeof head->model);
+    memcpy(&head->numbers, &flow->numbers, sizeof head->numbers);
+    if (flow->from.bytes)
+        head->resumed_bytes = ((const struct flow_saved *)flow->from.bytes)->main_bytes;
+    head->n_pieces = source->particles.n_pieces;
+    head->n_ties = source->springs.n_timed;
+    head->n_anchors = source->particles.n_anchors;
+    measure_blocks(source, head);
+    head->shared_bytes = lay_shared(head, NULL, &nowhere);
 }
 
-static char *put_blocks(char *to, const struct flow_source *source)
+FLOW_KERNEL(broadcast_head, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(head)))
+static int broadcast_head_body(const duite_call *call, const struct broadcast_head_fields *on)
 {
-    const uint32_t n_blocks = source->blocks.n_blocks;
-    const struct flow_neighbours *all = &source->neighbours;
-    for (uint32_t b = 0; b < n_blocks; b++)
-        to = distribute_put_bytes(to, source->shape + b, SHAPE);
-    to = distribute_put_bytes(to, all->neighbour, all->n_neighbours * sizeof *all->neighbour);
-    to = distribute_put_bytes(to, all->ghost_start,
-                              ((size_t)all->n_neighbours + n_blocks) * sizeof *all->ghost_start);
-    to = distribute_put_bytes(to, all->ghost, all->n_ghosts * sizeof *all->ghost);
-    return distribute_put_bytes(to, all->joins, all->n_neighbours * sizeof *all->joins);
+    make_head(flow_of(call), on->head);
+    return 0;
 }
 
 FLOW_KERNEL(broadcast_shared, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(shared)))
 static int broadcast_shared_body(const duite_call *call, const struct broadcast_shared_fields *on)
 {
     const struct flow *flow = flow_of(call);
-    const struct contact_apart *apart = &flow->model->contact.apart;
-    char *to = put_model(on->shared, flow);
-    to = put_blocks(to, &flow->source);
-    if (apart->apart) {
-        to = distribute_put_bytes(to, apart->end, flow->model->n_cloths * sizeof *apart->end);
-        distribute_put_bytes(to, apart->apart, n_frictions(flow->model));
-    }
+    const struct flow_source *source = &flow->source;
+    struct flow_head made, *head = &made;
+    const struct model *m = &head->model;
+    struct shared_arrays to;
+    make_head(flow, head);
+    memset(on->shared, 0, head->shared_bytes);
+    lay_shared(head, on->shared, &to);
+#define SHARED_PUT(type, name, n, from) put_bytes(to.name, from, (n) * sizeof *to.name);
+    SHARED(SHARED_PUT)
+    put_frictions(flow->model, to.friction);
+    for (uint32_t i = 0; i < head->n_ties; i++)
+        to.tie[i] = flow_joints_tie(source, source->springs.timed + i);
+    for (uint32_t b = 0; b < head->n_blocks; b++)
+        memcpy(to.shape + b * SHAPE, source->shape + b, SHAPE);
     return 0;
 }
 
-/* Gives all ranks an object of so many bytes, which a task on rank 0 writes. */
-static int broadcast_all(struct flow_state *state, const struct flow_kernel *kernel, size_t bytes,
-                         void *received)
+int flow_broadcast(struct flow_state *state, const struct flow_kernel *kernel, size_t bytes,
+                   void *received)
 {
     const struct flow_block_args all = {0};
     duite_object object;
-    int code = duite_new(state->rt, DUITE_BYTE, bytes, &object);
-    if (!code)
-        code = flow_fork_given_at(state, 0, kernel, &all, &(struct flow_given){.one = &object});
-    if (!code)
-        code = duite_get(state->rt, object, received);
-    const int freed = object.generation ? duite_free(state->rt, object) : DUITE_OK;
-    return code ? code : freed;
+    flow_noted(state, duite_new(state->rt, DUITE_BYTE, bytes, &object));
+    flow_fork_given_at(state, 0, kernel, &all, &(struct flow_given){.one = &object});
+    if (!state->code)
+        flow_noted(state, duite_get(state->rt, object, received));
+    if (object.generation)
+        flow_noted(state, duite_free(state->rt, object));
+    return state->code;
+}
+
+/* A model without what rank 0 alone has. */
+static struct model received_model(const struct flow_head *head)
+{
+    struct model model = head->model;
+    model.n_materials = model.n_cloths = model.n_joints = model.n_welds = 0;
+    model.contact.n_pairs = 0;
+    model.name = model.h_place = model.fps_place = model.hdf5_place = NULL;
+    model.materials = NULL;
+    model.cloths = NULL;
+    model.obstacle_names = NULL;
+    model.contact.pairs = NULL;
+    model.contact.apart.joined = NULL;
+    model.joints = NULL;
+    model.welds = NULL;
+    model.probes = NULL;
+    return model;
 }
 
 int flow_share_head(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     const struct flow_head *head = &state->head;
-    const int code = broadcast_all(state, &flow_kernel_broadcast_head, sizeof *head, &state->head);
+    const int code = flow_broadcast(state, &flow_kernel_broadcast_head, sizeof *head, &state->head);
     flow->n_ties = code ? 0 : head->n_ties;
     if (code || duite_rank(state->rt) == 0)
         return code;
-    flow->received = head->model;
-    flow->received.name = flow->received.h_place = flow->received.fps_place = NULL;
-    flow->received.hdf5_place = NULL;
-    flow->received.n_materials = flow->received.n_cloths = 0;
-    flow->received.n_joints = flow->received.n_welds = 0;
-    flow->received.materials = NULL;
-    flow->received.cloths = NULL;
-    flow->received.obstacles = NULL;
-    flow->received.obstacle_names = NULL;
-    flow->received.contact.n_pairs = 0;
-    flow->received.contact.pairs = NULL;
-    flow->received.contact.apart.joined = NULL;
-    flow->received.contact.apart.end = NULL;
-    flow->received.bodies.memory = NULL;
-    flow->received.joints = NULL;
-    flow->received.welds = NULL;
-    flow->received.probes = NULL;
-    flow->received.keys = NULL;
-    flow->received.motions = NULL;
-    flow->received.sliders = NULL;
-    flow->received.curve_keys = NULL;
-    flow->received.curves = NULL;
+    flow->received = received_model(head);
     flow->model = &flow->received;
-    flow->n_steps = head->n_steps;
-    flow->inertia = head->inertia;
-    flow->release = head->release;
-    flow->contact_stiffness = head->contact_stiffness;
-    flow->vertex_mass = head->vertex_mass;
-    flow->feels_contact = head->feels_contact;
-    flow->partition_hash = head->partition_hash;
-    flow->n_vertices = head->n_vertices;
-    flow->n_triangles = head->n_triangles;
+    flow->numbers = head->numbers;
     return DUITE_OK;
 }
 
-/* Unpacks everything but blocks. Returns its end. */
-static const void *unpack_model(struct flow_state *state)
+/* Points the members of the flow into the arrays. */
+static void open_shared(struct flow *flow, const struct flow_head *head,
+                        const struct shared_arrays *arrays)
 {
-    struct flow *flow = state->flow;
-    flow->received.bodies.memory = flow->shared;
-    flow->received.obstacles = (void *)((char *)flow->shared + flow->model->bodies.bytes);
-    flow->received.keys = (void *)(flow->received.obstacles + flow->model->n_obstacles);
-    flow->received.sliders = (void *)(flow->received.keys + flow->model->n_keys);
-    flow->received.curve_keys = (void *)(flow->received.sliders + flow->model->n_sliders);
-    flow->received.curves = (void *)(flow->received.curve_keys + flow->model->n_curve_keys);
-    flow->received.motions = (void *)(flow->received.curves + flow->model->n_curves);
-    flow->friction = (const void *)(flow->received.motions + flow->model->n_motions);
-    flow->n_cloths = state->head.model.n_cloths;
-    flow->n_anchors = state->head.n_anchors;
-    flow->anchor = (const void *)(flow->friction + n_frictions(&state->head.model));
-    flow->tie = (const void *)(flow->anchor + flow->n_anchors);
-    return flow->tie + flow->n_ties;
+    struct model *model = &flow->received;
+    model->bodies.memory = arrays->bodies;
+    model->obstacles = arrays->obstacles;
+    model->keys = arrays->keys;
+    model->sliders = arrays->sliders;
+    model->curve_keys = arrays->curve_keys;
+    model->curves = arrays->curves;
+    model->motions = arrays->motions;
+    model->contact.apart.end = arrays->apart_end;
+    model->contact.apart.apart = head->model.contact.apart.apart ? arrays->apart : NULL;
+    flow->friction = arrays->friction;
+    flow->n_cloths = head->model.n_cloths;
+    flow->n_anchors = head->n_anchors;
+    flow->anchor = arrays->anchor;
+    flow->tie = arrays->tie;
+    flow->tables.neighbour = arrays->neighbour;
+    flow->tables.ghost = arrays->ghost;
 }
 
-static void unpack(struct flow_state *state)
+/* Points the shapes into them. */
+static void open_shapes(struct flow *flow, struct shared_arrays at)
 {
-    struct flow *flow = state->flow;
     struct flow_tables *tables = &flow->tables;
-    const char *shape = unpack_model(state);
-    const uint32_t *neighbour = (const void *)(shape + tables->n_blocks * SHAPE);
-    const uint32_t *ghost_start = neighbour + state->head.n_neighbours;
-    const uint32_t *ghost = ghost_start + state->head.n_neighbours + tables->n_blocks;
-    const uint32_t *joins = ghost + state->head.n_ghosts;
     uint32_t first = 0;
-    if (state->head.model.contact.apart.apart) {
-        flow->received.contact.apart.end = (void *)(joins + state->head.n_neighbours);
-        flow->received.contact.apart.apart =
-            (void *)(joins + state->head.n_neighbours + flow->n_cloths);
-    }
-    tables->neighbour = neighbour;
-    tables->ghost = ghost;
     for (uint32_t b = 0; b < tables->n_blocks; b++) {
         struct flow_table *table = tables->block + b;
-        *table = (struct flow_table){
-            .joins = joins, .neighbour = neighbour, .ghost_start = ghost_start, .ghost = ghost};
-        memcpy(table, shape + b * SHAPE, SHAPE);
+        *table = (struct flow_table){.joins = at.joins,
+                                     .neighbour = at.neighbour,
+                                     .ghost_start = at.ghost_start,
+                                     .ghost = at.ghost};
+        memcpy(table, at.shape + b * SHAPE, SHAPE);
         table->first = first;
         table->format = flow->model->format;
-        joins += table->n_neighbours;
         first += table->n;
-        neighbour += table->n_neighbours;
-        ghost_start += table->n_neighbours + 1;
-        ghost += table->n_ghosts;
+        at.joins += table->n_neighbours;
+        at.neighbour += table->n_neighbours;
+        at.ghost_start += table->n_neighbours + 1;
+        at.ghost += table->n_ghosts;
     }
 }
 
 int flow_share(struct flow_state *state)
 {
-    const int code = broadcast_all(state, &flow_kernel_broadcast_shared, state->head.shared_bytes,
-                                   state->flow->shared);
-    if (!code)
-        unpack(state);
-    return code;
+    struct shared_arrays arrays;
+    const int code = flow_broadcast(state, &flow_kernel_broadcast_shared, state->head.shared_bytes,
+                                    state->flow->shared);
+    if (code)
+        return code;
+    lay_shared(&state->head, state->flow->shared, &arrays);
+    open_shared(state->flow, &state->head, &arrays);
+    open_shapes(state->flow, arrays);
+    return DUITE_OK;
 }
 
 /* ---- Dealing ---- */
 
-FLOW_KERNEL(table_make, FLOW_NO_PART, struct flow_block_args, (W(table)))
+FLOW_KERNEL_IF(table_make, skin, FLOW_NO_PART, struct flow_block_args, (W(table), W_IF(skin)),
+               .side_effects = 0)
 static int table_make_body(const duite_call *call, const struct table_make_fields *on)
 {
     const struct flow *flow = flow_of(call);
+    struct cloth_error error = {0};
     if (!flow->source.side)
         return duite_fail(call, FLOW_NO_MEMORY, "rank %d: %s", call->rank, flow->trouble.text);
     flow_source_table(&flow->source, on->args->block, on->table);
+    if (on->skin && flow_source_skin(&flow->source, on->args->block, on->skin, &error))
+        return duite_fail(call, FLOW_NO_MEMORY, "rank %d: %s", call->rank, error.text);
     return 0;
 }
 
 /* Does nothing: the rank that writes an object last holds it. */
-FLOW_KERNEL(table_keep, FLOW_NO_PART, struct flow_block_args, (RW(table)))
+FLOW_KERNEL_IF(table_keep, skin, FLOW_NO_PART, struct flow_block_args, (RW(table), RW_IF(skin)),
+               .side_effects = 0)
 static int table_keep_body(const duite_call *call, const struct table_keep_fields *on)
 {
     (void)call, (void)on;
     return 0;
 }
 
-FLOW_KERNEL(skin_make, FLOW_NO_PART, struct flow_block_args, (W(skin)))
-static int skin_make_body(const duite_call *call, const struct skin_make_fields *on)
+static void distribute(struct flow_state *state, uint32_t from, uint32_t to)
 {
-    struct cloth_error error = {0};
-    if (flow_source_skin(&flow_of(call)->source, on->args->block, on->skin, &error))
-        return duite_fail(call, FLOW_NO_MEMORY, "rank %d: %s", call->rank, error.text);
-    return 0;
-}
-
-FLOW_KERNEL(skin_keep, FLOW_NO_PART, struct flow_block_args, (RW(skin)))
-static int skin_keep_body(const duite_call *call, const struct skin_keep_fields *on)
-{
-    (void)call, (void)on;
-    return 0;
-}
-
-static int distribute(struct flow_state *state, uint32_t from, uint32_t to)
-{
-    const bool skins = model_seeks(state->flow->model);
     struct flow_block_args args = {.block = from};
-    int code = DUITE_OK;
-    for (; args.block < to && !code; args.block++) {
-        code = flow_fork_at(state, 0, &flow_kernel_table_make, &args, NULL);
-        if (!code)
-            code = flow_fork_one(state, &flow_kernel_table_keep, &args);
-        if (!code && skins)
-            code = flow_fork_at(state, 0, &flow_kernel_skin_make, &args, NULL);
-        if (!code && skins)
-            code = flow_fork_one(state, &flow_kernel_skin_keep, &args);
+    for (; args.block < to; args.block++) {
+        flow_fork_at(state, 0, &flow_kernel_table_make, &args, NULL);
+        flow_fork_one(state, &flow_kernel_table_keep, &args);
     }
-    const int failed = duite_wait(state->rt);
-    return code ? code : failed;
+    flow_noted(state, duite_wait(state->rt));
 }
 
 static void forget_source(struct flow_state *state)
@@ -352,15 +310,14 @@ int flow_distribute(struct flow_state *state)
     const uint32_t n = flow->tables.n_blocks, part = n / GROUPS + 1;
     const uint32_t group = part > GROUP ? part : GROUP;
     const bool makes = duite_rank(state->rt) == 0;
-    int code = DUITE_OK;
-    for (uint32_t from = 0; from < n && !code; from += group) {
+    for (uint32_t from = 0; from < n && !state->code; from += group) {
         const uint32_t to = from + (uint32_t)cloth_smaller(group, n - from);
         if (makes) /* tasks report its failures */
             flow_source_gather(&flow->source, from, to, &flow->trouble);
-        for (uint32_t b = from; b < to && !code; b += TRAVEL)
-            code = distribute(state, b, b + (uint32_t)cloth_smaller(TRAVEL, to - b));
+        for (uint32_t b = from; b < to && !state->code; b += TRAVEL)
+            distribute(state, b, b + (uint32_t)cloth_smaller(TRAVEL, to - b));
     }
     if (makes)
         forget_source(state);
-    return code;
+    return state->code;
 }

@@ -7,21 +7,26 @@
 static void add_springs(const struct flow_table *t, const struct flow_view *view, phys_vec *f)
 {
     struct phys_springs springs = flow_table_inner(t);
-    phys_springs_force(&springs, view->x, view->v, f);
+    phys_springs_force(&springs, view->x, view->v, NULL, NULL, f);
     for (uint32_t s = 0; s < t->n_neighbours; s++) {
         springs = flow_table_cut(t, s);
-        phys_springs_force_cut(&springs, view->x, view->v, flow_rows_of(view->halo_x, s),
-                               flow_rows_of(view->halo_v, s), f);
+        phys_springs_force(&springs, view->x, view->v, flow_rows_of(view->halo_x, s),
+                           flow_rows_of(view->halo_v, s), f);
     }
 }
 
-/* Adds the forces inside the cloth. */
-static void add_inner(const duite_call *call, const struct flow_table *t,
-                      const struct flow_step_args *step, const struct flow_view *view, phys_vec *f)
+void flow_forces(const duite_call *call, const struct flow_table *t,
+                 const struct flow_step_args *step, const struct flow_view *view, bool drag,
+                 phys_vec *f)
 {
+    if (drag)
+        phys_outside(t->n, t->load, t->drag, view->v, f);
+    else
+        memcpy(f, t->load, t->n * sizeof *f);
+    flow_varying_add(call, t, step->now, f);
     if (flow_has_elements(t)) {
         const struct phys_sight sight = flow_elements_see(call, t, view);
-        flow_elements_force(call, t, step->now, &sight, f);
+        flow_elements_force(call, t, step->now, false, &sight, f);
     }
     if (t->n_stiff)
         add_springs(t, view, f);
@@ -31,22 +36,6 @@ static void add_inner(const duite_call *call, const struct flow_table *t,
         flow_contact_force(flow_of(call), view, step, f);
 }
 
-void flow_forces(const duite_call *call, const struct flow_table *t,
-                 const struct flow_step_args *step, const struct flow_view *view, phys_vec *f)
-{
-    phys_outside(t->n, t->load, t->drag, view->v, f);
-    flow_varying_add(call, t, step->now, f);
-    add_inner(call, t, step, view, f);
-}
-
-void flow_forces_free(const duite_call *call, const struct flow_table *t,
-                      const struct flow_step_args *step, const struct flow_view *view, phys_vec *f)
-{
-    memcpy(f, t->load, t->n * sizeof *f);
-    flow_varying_add(call, t, step->now, f);
-    add_inner(call, t, step, view, f);
-}
-
 FLOW_KERNEL(force, FLOW_FORCE, struct flow_step_args,
             (R(table), R(x), R(v), W(f), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table),
              IF_MADE(contact_rows), TIED(tie_halo)))
@@ -54,7 +43,7 @@ static int force_body(const duite_call *call, const struct force_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = FLOW_VIEW(on);
-    flow_forces(call, &table, on->args, &view, on->f);
+    flow_forces(call, &table, on->args, &view, true, on->f);
     return 0;
 }
 
@@ -66,6 +55,6 @@ static int force_free_body(const duite_call *call, const struct force_free_field
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = FLOW_VIEW(on);
-    flow_forces_free(call, &table, on->args, &view, on->f);
+    flow_forces(call, &table, on->args, &view, false, on->f);
     return 0;
 }

@@ -5,6 +5,7 @@
 #include "cloth/flow/state/bodies.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -19,40 +20,22 @@ struct loader {
     const char *place;
     uint32_t curve;
     phys_vec force; /* N */
-    bool failed;    /* there was no memory */
+    struct cloth_error *error;
+    bool failed; /* there was no memory */
 };
 
 static const uint32_t NO_TRIANGLES[2] = {UINT32_MAX, UINT32_MAX};
 
-static void to_vector(const double *x, phys_vec *y)
-{
-    *y = (phys_vec){x[0], x[1], x[2], 0};
-}
-
-/* Doubles the room where it is full. */
-static bool has_room(struct flow_particles *p)
-{
-    const uint32_t n = p->n_varying;
-    if (n & (n - 1))
-        return true;
-    struct flow_varying *more =
-        n < UINT32_MAX / 4 ? realloc(p->varying, (n ? 2 * (size_t)n : 1) * sizeof *more) : NULL;
-    p->varying = more ? more : p->varying;
-    return more;
-}
-
 static void add_varying(struct loader *loader, uint32_t vertex)
 {
-    struct flow_particles *p = loader->particles;
-    if (loader->failed || !has_room(p)) {
-        loader->failed = true;
+    struct cloth_list *list = &loader->particles->varying;
+    struct flow_varying *to = cloth_list_add(list, sizeof *to, 1, loader->error);
+    loader->failed = loader->failed || !to;
+    if (!to)
         return;
-    }
-    struct flow_varying *to = p->varying + p->n_varying;
-    *to = (struct flow_varying){.at = vertex, .curve = loader->curve, .number = p->n_varying};
+    *to = (struct flow_varying){.at = vertex, .number = (uint32_t)list->n, .curve = loader->curve};
     for (int c = 0; c < 3; c++)
         to->force[c] = loader->force[c];
-    p->n_varying++;
 }
 
 static void add_load(void *to, uint32_t vertex)
@@ -75,8 +58,7 @@ static int load_edges(struct loader *loader, const struct model_load *load,
     struct mesh_edges edges = {0}; /* found where ends alone do not say the length */
     int code =
         mesh->placed_by_uv && mesh->triangle_uv ? mesh_edges_find(&edges, mesh, error) : CLOTH_OK;
-    phys_vec force;
-    to_vector(load->force, &force);
+    const phys_vec force = PHYS_VEC(load->force);
     for (uint32_t i = 0; i < load->n_edges && !code; i++) {
         const uint32_t *end = load->edges[i];
         for (int k = 0; k < 2 && !code; k++)
@@ -105,55 +87,44 @@ int flow_loads_make(struct flow_particles *p, uint32_t first, const struct model
                                 .first = first,
                                 .cloth = cloth,
                                 .place = load->pick.place,
-                                .curve = load->curve};
-        const struct flow_picking picking = {.pick = &load->pick,
-                                             .cloth = cloth,
-                                             .used = p->used + first,
-                                             .what = "a load",
-                                             .visit = add_load,
-                                             .to = &loader};
-        to_vector(load->force, &loader.force);
-        code = load->n_edges ? load_edges(&loader, load, error) : flow_pick(&picking, error);
+                                .curve = load->curve,
+                                .error = error};
+        const struct flow_picking picking = {cloth, p->used + first, "a load", add_load, &loader};
+        loader.force = PHYS_VEC(load->force);
+        code = load->n_edges ? load_edges(&loader, load, error)
+                             : flow_pick(&load->pick, &picking, error);
         if (!code && loader.failed)
-            code = cloth_fail(error, CLOTH_E_MEMORY, "out of memory for loads that vary");
+            code = CLOTH_E_MEMORY;
     }
     return code;
 }
 
-static int compare_varying(const void *va, const void *vb)
+static int compare_varying(const void *a, const void *b)
 {
-    const struct flow_varying *a = va, *b = vb;
-    const int order = (a->at > b->at) - (a->at < b->at);
-    return order ? order : (a->number > b->number) - (a->number < b->number);
+    return cloth_compare_numbers(a, b, 2);
 }
 
 void flow_varying_settle(struct flow_source *source)
 {
-    struct flow_particles *p = &source->particles;
-    uint32_t n = 0;
-    for (uint32_t i = 0; i < p->n_varying; i++) {
-        struct flow_varying load = p->varying[i];
+    struct cloth_list *list = &source->particles.varying;
+    struct flow_varying *all = list->items;
+    size_t n = 0;
+    for (size_t i = 0; i < list->n; i++) {
+        struct flow_varying load = all[i];
         load.at = source->blocks.place[load.at];
         if (load.at != MESH_NO_PLACE)
-            p->varying[n++] = load;
+            all[n++] = load;
     }
-    p->n_varying = n;
+    list->n = n;
     if (n)
-        qsort(p->varying, n, sizeof *p->varying, compare_varying);
+        qsort(all, n, sizeof *all, compare_varying);
 }
 
 uint32_t flow_varying_from(const struct flow_source *source, uint32_t place)
 {
-    const struct flow_particles *p = &source->particles;
-    uint32_t low = 0, high = p->n_varying;
-    while (low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (p->varying[middle].at < place)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    const struct cloth_list *list = &source->particles.varying;
+    return cloth_first_from(list->items, sizeof(struct flow_varying) / sizeof(uint32_t),
+                            (uint32_t)list->n, place);
 }
 
 /* ---- In bodies ---- */

@@ -3,53 +3,62 @@
 #include "cloth/flow/contact/mode.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/run/setup.h"
-#include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/state/bodies.h"
+#include "cloth/flow/state/room.h"
 
 #include "cloth/base/memory.h"
 #include "cloth/base/order.h"
 
+#include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 
-/* Takes room on rank 0 to gather a frame, and a part of the state to be hashed. */
+void *flow_take(struct flow *flow, size_t n, size_t size)
+{
+    void **taken = cloth_list_add(&flow->taken, sizeof *taken, 1, &flow->trouble);
+    if (!taken)
+        return NULL;
+    *taken = cloth_alloc(n + FLOW_LINE / size + 1, size, &flow->trouble);
+    return *taken ? (char *)*taken + (FLOW_LINE - (uintptr_t)*taken % FLOW_LINE) : NULL;
+}
+
+/* Room on rank 0 to gather a frame, and a part of the state to be hashed. */
 static void run_memory_take_room(struct flow_state *state)
 {
     struct flow *flow = state->flow;
+    const struct flow_watched *watched = &flow->source.watched; /* tables are not distributed yet */
     if (flow_shows(state))
-        flow->room = cloth_alloc(flow->n_vertices, 3 * sizeof *flow->room, &flow->trouble);
+        flow->room = flow_take(flow, flow->n_vertices, 3 * sizeof *flow->room);
     if (flow_shows_places(state)) {
-        flow->block_of = cloth_alloc(flow->n_vertices, sizeof *flow->block_of, &flow->trouble);
-        flow->rank_of = cloth_alloc(flow->n_vertices, sizeof *flow->rank_of, &flow->trouble);
-        flow->home = cloth_alloc(state->head.n_blocks, sizeof *flow->home, &flow->trouble);
+        flow->block_of = flow_take(flow, flow->n_vertices, sizeof *flow->block_of);
+        flow->rank_of = flow_take(flow, flow->n_vertices, sizeof *flow->rank_of);
+        flow->home = flow_take(flow, state->head.n_blocks, sizeof *flow->home);
     }
-    const struct flow_watched *watched =
-        &flow->source.watched; /* the tables are not distributed yet */
     if (state->output && state->output->row && watched->n_columns) {
-        flow->row = cloth_alloc(watched->n_columns, sizeof *flow->row, &flow->trouble);
+        flow->row = flow_take(flow, watched->n_columns, sizeof *flow->row);
         flow->probe_values =
-            cloth_alloc(watched->n, FLOW_PROBE_VALUES * sizeof *flow->probe_values, &flow->trouble);
+            flow_take(flow, watched->n, FLOW_PROBE_VALUES * sizeof *flow->probe_values);
     }
-    state->bytes = cloth_alloc(flow_hash_part(flow), FLOW_VERTEX_BYTES, &flow->trouble);
+    state->bytes = flow_take(flow, flow_hash_part(flow), FLOW_VERTEX_BYTES);
     state->hash = XXH64_createState();
     if (!state->hash)
         cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for a hash");
 }
 
-static void take_sums(struct flow *flow)
+/* Room of each worker; one that a run does not need is NULL. */
+static void take_workers(struct flow *flow, const struct flow_head *head)
 {
-    flow->sums =
-        aligned_alloc(sizeof(phys_vec), flow->n_clocks * flow->n_sums * sizeof *flow->sums);
-    if (!flow->sums)
-        cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for the entries of a matrix");
-}
-
-static void take_forces(struct flow *flow)
-{
-    flow->forces = aligned_alloc(64, flow->n_clocks * flow->n_forces * sizeof *flow->forces);
-    if (!flow->forces)
-        cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for the forces of a block");
+    const size_t n = flow->n_clocks;
+    flow->clock = flow_take(flow, n, sizeof *flow->clock);
+    flow->n_sums = head->max_entries;
+    if (flow->model->format != SOLVE_SPRINGS && head->max_entries)
+        flow->sums = flow_take(flow, n * flow->n_sums, sizeof *flow->sums);
+    flow->n_ghosts = 2 * ((size_t)head->max_ghosts + 1);
+    if (head->n_elements)
+        flow->ghost_room = flow_take(flow, n * flow->n_ghosts, sizeof *flow->ghost_room);
+    flow->n_forces = 2 * ((size_t)head->max_rows / 2 + 1); /* whole cache lines */
+    if (!model_is_implicit(flow->model))
+        flow->forces = flow_take(flow, n * flow->n_forces, sizeof *flow->forces);
 }
 
 static void take_all(struct flow_state *state)
@@ -60,42 +69,18 @@ static void take_all(struct flow_state *state)
                             ? head->n_blocks
                             : cloth_smaller(head->n_blocks, 2 * (size_t)head->n_ties);
     const size_t groups = head->n_blocks; /* fewer than that, on all levels */
-    const size_t refs = cloth_larger(head->n_blocks, 2 * (size_t)head->max_neighbours) + 4 * tied +
-                        groups + DUITE_MAX_ACCESS;
     flow->n_clocks = duite_threads(state->rt);
-    flow->clock = aligned_alloc(sizeof *flow->clock, flow->n_clocks * sizeof *flow->clock);
-    if (flow->clock)
-        memset(flow->clock, 0, flow->n_clocks * sizeof *flow->clock);
-    else
-        cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for %u clocks", flow->n_clocks);
-    flow->n_sums = head->max_entries;
-    if (flow->model->format != SOLVE_SPRINGS && head->max_entries)
-        take_sums(flow);
-    flow->n_ghosts = 2 * ((size_t)head->max_ghosts + 1);
-    if (head->n_elements) {
-        flow->ghost_room = aligned_alloc(sizeof *flow->ghost_room, flow->n_clocks * flow->n_ghosts *
-                                                                       sizeof *flow->ghost_room);
-        if (!flow->ghost_room)
-            cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for ghosts");
-    }
-    flow->n_forces = 2 * ((size_t)head->max_rows / 2 + 1); /* whole cache lines */
-    if (!model_is_implicit(flow->model))
-        take_forces(flow);
-    flow->shared =
-        aligned_alloc(CONTACT_ALIGN, (head->shared_bytes / CONTACT_ALIGN + 1) * CONTACT_ALIGN);
-    if (!flow->shared)
-        cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for what all ranks share");
-    flow->tables.block = cloth_alloc(head->n_blocks, sizeof *flow->tables.block, &flow->trouble);
+    take_workers(flow, head);
+    flow->shared = flow_take(flow, head->shared_bytes, 1);
+    flow->tables.block = flow_take(flow, head->n_blocks, sizeof *flow->tables.block);
     flow->tables.n_blocks = head->n_blocks;
-    state->block = cloth_alloc(head->n_blocks, sizeof *state->block, &flow->trouble);
-    state->max_refs = refs;
-    state->refs = cloth_alloc(FLOW_FORKS_AHEAD * refs, sizeof *state->refs, &flow->trouble);
-    state->rows = cloth_alloc(cloth_larger(4 * (size_t)head->max_rows, head->max_neighbours),
-                              sizeof *state->rows, &flow->trouble);
-    state->seam_peaks =
-        cloth_alloc(flow->model->n_pulled, sizeof *state->seam_peaks, &flow->trouble);
-    state->seam_squares =
-        cloth_alloc(flow->model->n_pulled, sizeof *state->seam_squares, &flow->trouble);
+    state->block = flow_take(flow, head->n_blocks, sizeof *state->block);
+    state->max_refs = cloth_larger(head->n_blocks, 2 * (size_t)head->max_neighbours) + 4 * tied +
+                      groups + DUITE_MAX_ACCESS;
+    state->refs = flow_take(flow, FLOW_FORKS_AHEAD * state->max_refs, sizeof *state->refs);
+    state->rows = flow_take(flow, cloth_larger(4 * (size_t)head->max_rows, head->max_neighbours),
+                            sizeof *state->rows);
+    state->seam_squares = flow_take(flow, flow->model->n_pulled, sizeof *state->seam_squares);
     flow_halo_take(state);
     flow_ties_take(state);
     flow_contact_take(state);
@@ -118,14 +103,13 @@ int flow_memory_agree(struct flow_state *state)
     const struct flow_block_args none = {0};
     duite_object lacks;
     int32_t nothing;
-    int code = duite_new(state->rt, DUITE_I32, 1, &lacks);
-    for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++)
-        code = flow_fork_given_at(state, rank, &flow_kernel_ready, &none,
-                                  &(struct flow_given){.one = &lacks});
-    if (!code)
-        code = duite_get(state->rt, lacks, &nothing);
-    const int freed = duite_free(state->rt, lacks);
-    return code ? code : freed;
+    flow_noted(state, duite_new(state->rt, DUITE_I32, 1, &lacks));
+    for (int rank = 0; rank < duite_ranks(state->rt); rank++)
+        flow_fork_given_at(state, rank, &flow_kernel_ready, &none,
+                           &(struct flow_given){.one = &lacks});
+    if (!state->code)
+        flow_noted(state, duite_get(state->rt, lacks, &nothing));
+    return flow_noted(state, duite_free(state->rt, lacks));
 }
 
 int flow_memory_take(struct flow_state *state)
@@ -137,26 +121,12 @@ int flow_memory_take(struct flow_state *state)
 void flow_memory_free(struct flow_state *state)
 {
     struct flow *flow = state->flow;
-    flow_levels_free(state);
+    void **taken = flow->taken.items;
     flow_preconditioner_free(flow);
-    free(flow->clock);
-    free(flow->sums);
-    free(flow->ghost_room);
-    free(flow->forces);
-    free(flow->room);
-    free(flow->block_of);
-    free(flow->rank_of);
-    free(flow->home);
-    free(flow->row);
-    free(flow->probe_values);
-    free(state->block);
-    free(state->refs);
-    free(state->rows);
-    free(state->seam_peaks);
-    free(state->seam_squares);
-    flow_halo_free(state);
-    flow_ties_free(state);
     flow_contact_free(state);
-    free(state->bytes);
     XXH64_freeState(state->hash);
+    for (size_t i = 0; i < flow->taken.n; i++)
+        free(taken[i]);
+    free(taken);
+    flow->taken = (struct cloth_list){0};
 }

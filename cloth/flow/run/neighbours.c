@@ -115,13 +115,9 @@ static void number_halo(const struct flow_source *source, struct flow_table *sha
     shape->halo_start[SOLVE_MAX_PATCHES] = shape->n_halo;
 }
 
-static int compare_needs(const void *va, const void *vb)
+static int compare_needs(const void *a, const void *b)
 {
-    const struct need *a = va, *b = vb;
-    int order = cloth_compare_u32(a->reader, b->reader);
-    if (!order)
-        order = cloth_compare_u32(a->other, b->other);
-    return order ? order : cloth_compare_u32(a->place, b->place);
+    return cloth_compare_numbers(a, b, 3);
 }
 
 /* Keeps each of the sorted needs once, and counts neighbours and ghosts. Returns how many are left.
@@ -157,32 +153,29 @@ static uint32_t joins_of(const struct flow_source *source, const struct need *ne
 /* Fills the arrays, and lets the shapes point into them. */
 static void fill_neighbour(struct flow_source *source, const struct need *need)
 {
-    uint32_t *neighbour = source->neighbours.neighbour,
-             *ghost_start = source->neighbours.ghost_start;
-    uint32_t *ghost = source->neighbours.ghost, *joins = source->neighbours.joins;
+    struct flow_neighbours at = source->neighbours; /* of the block */
     size_t first = 0; /* of the block's needs; there may be none at all */
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
         struct flow_table *shape = source->shape + b;
         uint32_t s = 0;
-        shape->neighbour = neighbour;
-        shape->ghost_start = ghost_start;
-        shape->ghost = ghost;
-        shape->joins = joins;
+        shape->neighbour = at.neighbour;
+        shape->ghost_start = at.ghost_start;
+        shape->ghost = at.ghost;
+        shape->joins = at.joins;
         for (uint32_t i = 0; i < shape->n_ghosts; i++) {
             const struct need *one = &need[first + i];
             if (i == 0 || one->other != one[-1].other) {
-                ghost_start[s] = i;
-                joins[s] = 0;
-                neighbour[s++] = one->other;
+                at.ghost_start[s] = i;
+                at.joins[s] = 0;
+                at.neighbour[s++] = one->other;
             }
-            joins[s - 1] |= joins_of(source, one);
-            ghost[i] = source->halo[one->place];
+            at.joins[s - 1] |= joins_of(source, one);
+            *at.ghost++ = source->halo[one->place];
         }
-        ghost_start[s] = shape->n_ghosts;
-        neighbour += s;
-        joins += s;
-        ghost_start += s + 1;
-        ghost += shape->n_ghosts;
+        at.ghost_start[s] = shape->n_ghosts;
+        at.ghost_start += s + 1;
+        at.neighbour += s;
+        at.joins += s;
         first += shape->n_ghosts;
     }
 }

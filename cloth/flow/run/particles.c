@@ -12,11 +12,6 @@
 /* kg of a vertex: squares of momenta beyond these would vanish or be infinite. */
 static const double MIN_MASS = 1e-30, MAX_MASS = 1e30;
 
-PHYS_INLINE void to_vector(const double *x, phys_vec *y)
-{
-    *y = (phys_vec){x[0], x[1], x[2], 0};
-}
-
 /* A pin and whom it holds. */
 struct holder {
     struct flow_particles *particles;
@@ -64,13 +59,8 @@ static int pins(struct flow_particles *p, uint32_t first, const struct model *mo
     int code = CLOTH_OK;
     for (uint32_t i = 0; i < cloth->n_pins && !code; i++) {
         struct holder holder = {p, first, model, cloth, cloth->pins + i, UINT32_MAX};
-        const struct flow_picking picking = {.pick = &cloth->pins[i].pick,
-                                             .cloth = cloth,
-                                             .used = p->used + first,
-                                             .what = "a pin",
-                                             .visit = hold,
-                                             .to = &holder};
-        code = flow_pick(&picking, error);
+        const struct flow_picking picking = {cloth, p->used + first, "a pin", hold, &holder};
+        code = flow_pick(&cloth->pins[i].pick, &picking, error);
         if (!code && holder.torn != UINT32_MAX)
             code = model_fail(cloth->pins[i].pick.place, error,
                               "vertex %u of cloth '%.60s' is held by two pins that do not hold "
@@ -107,13 +97,8 @@ static int more_masses(struct flow_particles *p, uint32_t first, const struct mo
     int code = CLOTH_OK;
     for (uint32_t i = 0; i < cloth->n_masses && !code; i++) {
         struct weigher weigher = {p, first, cloth->masses[i].mass};
-        const struct flow_picking picking = {.pick = &cloth->masses[i].pick,
-                                             .cloth = cloth,
-                                             .used = p->used + first,
-                                             .what = "a mass",
-                                             .visit = add_mass,
-                                             .to = &weigher};
-        code = flow_pick(&picking, error);
+        const struct flow_picking picking = {cloth, p->used + first, "a mass", add_mass, &weigher};
+        code = flow_pick(&cloth->masses[i].pick, &picking, error);
     }
     return code;
 }
@@ -162,8 +147,7 @@ static int masses(struct flow_particles *p, uint32_t first, const struct model *
 static int weights(struct flow_particles *p, uint32_t first, const struct model *model,
                    const struct model_cloth *cloth, struct cloth_error *error)
 {
-    phys_vec gravity;
-    to_vector(model->gravity, &gravity);
+    const phys_vec gravity = PHYS_VEC(model->gravity);
     for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
         const uint32_t v = first + i;
         const double mass = p->mass[flow_root(&p->welds, v)];
@@ -185,8 +169,7 @@ static int weights(struct flow_particles *p, uint32_t first, const struct model 
 static int check_start(const struct model_cloth *cloth, struct cloth_error *error)
 {
     for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
-        phys_vec x;
-        to_vector(cloth->mesh.position + 3 * (size_t)i, &x);
+        const phys_vec x = PHYS_VEC(cloth->mesh.position + 3 * (size_t)i);
         if (phys_diverged(1, FLOW_BOUND, &x) == 0)
             return model_fail(cloth->mesh_place, error,
                               "vertex %u of cloth '%.60s' starts at (%g, %g, %g) m, after the "
@@ -194,8 +177,7 @@ static int check_start(const struct model_cloth *cloth, struct cloth_error *erro
                               "expected (vertices count from 1)",
                               i + 1, cloth->name, x[0], x[1], x[2], FLOW_BOUND);
     }
-    phys_vec v;
-    to_vector(cloth->velocity, &v);
+    const phys_vec v = PHYS_VEC(cloth->velocity);
     if (phys_diverged(1, FLOW_BOUND, &v) == 0)
         return model_fail(cloth->velocity_place, error,
                           "cloth '%.60s' starts with the velocity (%g, %g, %g) m/s; less than %g "
@@ -239,27 +221,26 @@ static int each_cloth(struct flow_particles *p, const struct model *model,
                       struct cloth_error *error)
 {
     int code = CLOTH_OK;
-    for (uint32_t c = 0, first = 0; c < model->n_cloths && !code; c++) {
-        code = make(p, first, model, model->cloths + c, error);
-        first += model->cloths[c].mesh.n_vertices;
-    }
+    for (uint32_t c = 0; c < model->n_cloths && !code; c++)
+        code = make(p, model_first(model, c), model, model->cloths + c, error);
     return code;
 }
 
-static int particles_allocate(struct flow_particles *p, uint32_t n, bool loaded,
+static int particles_allocate(struct flow_particles *p, uint32_t n, bool loaded, bool starts,
                               const struct model *model, struct cloth_error *error)
 {
-    const bool moved = model->n_motions, sliding = model->n_sliders;
+    const bool moved = model->n_motions, sliding = model->n_sliders, welded = model->n_welds;
     p->n = n;
     p->used = cloth_alloc(n, 1, error);
     p->free = cloth_alloc(n, 1, error);
     p->mass = cloth_alloc(n, sizeof *p->mass, error);
     p->motion = moved ? cloth_alloc(n, sizeof *p->motion, error) : NULL;
     p->slider = sliding ? cloth_alloc(n, sizeof *p->slider, error) : NULL;
-    p->own = model->n_welds ? cloth_alloc(n, sizeof *p->own, error) : NULL;
-    p->drag = model->n_welds ? cloth_alloc(n, sizeof *p->drag, error) : NULL;
+    p->own = welded ? cloth_alloc(n, sizeof *p->own, error) : NULL;
+    p->drag = welded ? cloth_alloc(n, sizeof *p->drag, error) : NULL;
+    p->start = starts ? cloth_alloc(n, sizeof *p->start, error) : NULL;
     if (!p->used || !p->free || !p->mass || (moved && !p->motion) || (sliding && !p->slider) ||
-        (model->n_welds && (!p->own || !p->drag)))
+        (welded && (!p->own || !p->drag)) || (starts && !p->start))
         return CLOTH_E_MEMORY;
     if (!loaded)
         return CLOTH_OK;
@@ -270,11 +251,8 @@ static int particles_allocate(struct flow_particles *p, uint32_t n, bool loaded,
 
 static int find_used(struct flow_particles *p, const struct model *model, struct cloth_error *error)
 {
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < model->n_cloths; c++) {
-        mesh_used(&model->cloths[c].mesh, p->used + first);
-        first += model->cloths[c].mesh.n_vertices;
-    }
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        mesh_used(&model->cloths[c].mesh, p->used + model_first(model, c));
     return flow_joints_use(model, p->used, error);
 }
 
@@ -292,23 +270,14 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
     if (n >= UINT32_MAX)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%zu vertices are too many; at most 4294967294 are possible", n);
-    int code = particles_allocate(particles, (uint32_t)n, loaded, model, error);
-    if (!code && starts) {
-        particles->start = cloth_alloc(n, sizeof *particles->start, error);
-        code = particles->start ? CLOTH_OK : CLOTH_E_MEMORY;
-    }
-    if (!code)
-        code = find_used(particles, model, error);
-    if (!code)
-        code = flow_welds_make(&particles->welds, model, particles->n, particles->used, error);
-    if (!code)
-        code = each_cloth(particles, model, cloth_particles, error);
-    if (!code)
-        code = flow_welds_settle(particles, model, error);
-    if (!code)
-        code = each_cloth(particles, model, cloth_forces, error);
-    if (!code)
-        code = flow_follow_make(particles, model, error);
+    struct flow_welds *welds = &particles->welds;
+    int code = particles_allocate(particles, (uint32_t)n, loaded, starts, model, error);
+    code = code ? code : find_used(particles, model, error);
+    code = code ? code : flow_welds_make(welds, model, particles->n, particles->used, error);
+    code = code ? code : each_cloth(particles, model, cloth_particles, error);
+    code = code ? code : flow_welds_settle(particles, model, error);
+    code = code ? code : each_cloth(particles, model, cloth_forces, error);
+    code = code ? code : flow_follow_make(particles, model, error);
     if (!code && particles->unused.n == particles->n)
         code = model_fail(model->n_cloths ? model->cloths[0].mesh_place : NULL, error,
                           "nothing to simulate: no face, edge or joint uses a vertex");
@@ -320,8 +289,7 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
 /* Takes out of a velocity what a slider forbids. */
 static void constrain_velocity(const struct model_slider *slider, phys_vec *v)
 {
-    phys_vec filter;
-    to_vector(slider->direction, &filter);
+    phys_vec filter = PHYS_VEC(slider->direction);
     filter[3] = slider->kind == MODEL_PLANE;
     solve_filter(&filter, v);
 }
@@ -338,17 +306,12 @@ void flow_particle_of(const struct flow_particles *particles, const struct model
                          ? particles->drag[vertex]
                          : material->damping_viscous + material->damping_mass * particle->mass;
     particle->free = moves ? 1 : 0;
-    to_vector(cloth->mesh.position + 3 * (size_t)(vertex - first), &particle->position);
-    to_vector(moves ? cloth->velocity : (const double[3]){0}, &particle->velocity);
-    if (particles->start) {
-        const double *start = particles->start[vertex];
-        to_vector(start, &particle->position);
-        to_vector(moves ? start + 3 : (const double[3]){0}, &particle->velocity);
-    }
+    flow_start_place(particles, cloth, first, own, &particle->position);
+    const double *velocity = particles->start ? particles->start[vertex] + 3 : cloth->velocity;
+    particle->velocity = moves ? PHYS_VEC(velocity) : (phys_vec){0};
     if (particles->slider && particles->slider[vertex])
         constrain_velocity(model->sliders + particles->slider[vertex] - 1, &particle->velocity);
-    to_vector(model->gravity, &particle->load);
-    particle->load *= particle->mass;
+    particle->load = PHYS_VEC(model->gravity) * particle->mass;
     if (particles->load)
         particle->load = particles->load[vertex];
 }
@@ -379,15 +342,18 @@ static double release(const struct flow_particles *p, const struct model *model,
     return sum;
 }
 
+/* Rounding moves what is at rest by less, m/s, and nothing slower is seen. */
+static const double ROUNDS = 1e-6;
+
 double flow_source_release(const struct flow_source *source)
 {
-    double sum = 0;
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < source->model->n_cloths; c++) {
-        sum += release(&source->particles, source->model, source->model->cloths + c, first);
-        first += source->model->cloths[c].mesh.n_vertices;
-    }
-    return sum;
+    const struct model *model = source->model;
+    double sum = 0, mass = 0;
+    for (uint32_t v = 0; v < source->particles.n; v++)
+        mass += source->particles.mass[v];
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        sum += release(&source->particles, model, model->cloths + c, model_first(model, c));
+    return fmax(sum, 0.5 * mass * ROUNDS * ROUNDS);
 }
 
 void flow_particles_free(struct flow_particles *particles)
@@ -402,7 +368,7 @@ void flow_particles_free(struct flow_particles *particles)
     free(particles->motion);
     free(particles->anchor);
     free(particles->attached);
-    free(particles->varying);
+    free(particles->varying.items);
     free(particles->slider);
     free(particles->piece);
     free(particles->load);

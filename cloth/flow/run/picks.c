@@ -10,9 +10,9 @@ int flow_no_vertex(const struct model_cloth *cloth, const char *what, uint32_t v
                       what, cloth->name, vertex, cloth->mesh.n_vertices - 1);
 }
 
-static int pick_vertices(const struct flow_picking *picking, struct cloth_error *error)
+static int pick_vertices(const struct model_pick *pick, const struct flow_picking *picking,
+                         struct cloth_error *error)
 {
-    const struct model_pick *pick = picking->pick;
     for (uint32_t i = 0; i < pick->n_vertices; i++) {
         if (pick->vertices[i] >= picking->cloth->mesh.n_vertices)
             return flow_no_vertex(picking->cloth, picking->what, pick->vertices[i], pick->place,
@@ -32,42 +32,41 @@ static double square_distance(const double *a, const double *b)
 static const double ROUNDED = 1 + 1e-9;
 
 /* The used vertex nearest to the point, the first of equals, and all within the radius. */
-static int pick_nearest(const struct flow_picking *picking, struct cloth_error *error)
+static int pick_nearest(const struct model_pick *pick, const struct flow_picking *picking,
+                        struct cloth_error *error)
 {
     const struct mesh *mesh = &picking->cloth->mesh;
     uint32_t best = UINT32_MAX;
     double least = 0;
     for (uint32_t v = 0; v < mesh->n_vertices; v++) {
-        const double distance =
-            square_distance(mesh->position + 3 * (size_t)v, picking->pick->point);
+        const double distance = square_distance(mesh->position + 3 * (size_t)v, pick->point);
         if (picking->used[v] && (best == UINT32_MAX || distance < least)) {
             best = v;
             least = distance;
         }
     }
     if (best == UINT32_MAX)
-        return model_fail(picking->pick->place, error,
-                          "cloth '%.60s' has %s but neither a face nor an edge",
+        return model_fail(pick->place, error, "cloth '%.60s' has %s but neither a face nor an edge",
                           picking->cloth->name, picking->what);
-    const double radius = picking->pick->radius * ROUNDED;
+    const double radius = pick->radius * ROUNDED;
     for (uint32_t v = 0; v < mesh->n_vertices; v++) {
-        const double distance =
-            square_distance(mesh->position + 3 * (size_t)v, picking->pick->point);
+        const double distance = square_distance(mesh->position + 3 * (size_t)v, pick->point);
         if (v == best || (radius > 0 && picking->used[v] && distance <= radius * radius))
             picking->visit(picking->to, v);
     }
     return CLOTH_OK;
 }
 
-static int pick_box(const struct flow_picking *picking, struct cloth_error *error)
+static int pick_box(const struct model_pick *pick, const struct flow_picking *picking,
+                    struct cloth_error *error)
 {
     const struct mesh *mesh = &picking->cloth->mesh;
     uint32_t inside = 0;
     for (uint32_t v = 0; v < mesh->n_vertices; v++) {
         bool in = picking->used[v];
         for (size_t c = 0; c < 3; c++) { /* any two opposite corners */
-            const double x = mesh->position[3 * (size_t)v + c], from = picking->pick->box[0][c],
-                         to = picking->pick->box[1][c];
+            const double x = mesh->position[3 * (size_t)v + c], from = pick->box[0][c],
+                         to = pick->box[1][c];
             in = in && ((x >= from && x <= to) || (x <= from && x >= to));
         }
         if (!in)
@@ -78,20 +77,21 @@ static int pick_box(const struct flow_picking *picking, struct cloth_error *erro
     if (inside)
         return CLOTH_OK;
     return model_fail(
-        picking->pick->place, error,
+        pick->place, error,
         "the box of %s of cloth '%.60s' holds no vertex that a face, edge or joint uses",
         picking->what, picking->cloth->name);
 }
 
-int flow_pick(const struct flow_picking *picking, struct cloth_error *error)
+int flow_pick(const struct model_pick *pick, const struct flow_picking *picking,
+              struct cloth_error *error)
 {
-    switch (picking->pick->kind) {
+    switch (pick->kind) {
     case MODEL_PICK_VERTICES:
-        return pick_vertices(picking, error);
+        return pick_vertices(pick, picking, error);
     case MODEL_PICK_NEAREST:
-        return pick_nearest(picking, error);
+        return pick_nearest(pick, picking, error);
     case MODEL_PICK_BOX:
         break;
     }
-    return pick_box(picking, error);
+    return pick_box(pick, picking, error);
 }

@@ -46,9 +46,9 @@ static int keep_unused(struct flow *flow, const struct flow_particles *particles
     unused->position = cloth_alloc(particles->unused.n, sizeof *unused->position, error);
     if (!unused->vertex || !unused->position)
         return CLOTH_E_MEMORY;
-    uint32_t first = 0;
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct mesh *mesh = &model->cloths[c].mesh;
+        const uint32_t first = model_first(model, c);
         for (uint32_t v = 0; v < mesh->n_vertices; v++) {
             if (particles->used[first + v])
                 continue;
@@ -56,7 +56,6 @@ static int keep_unused(struct flow *flow, const struct flow_particles *particles
             memcpy(unused->position[unused->n++], mesh->position + 3 * (size_t)v,
                    sizeof *unused->position);
         }
-        first += mesh->n_vertices;
     }
     return CLOTH_OK;
 }
@@ -119,8 +118,6 @@ void flow_free(struct flow *flow)
     if (!flow)
         return;
     flow_source_free(&flow->source);
-    free(flow->tables.block);
-    free(flow->shared);
     free(flow->vertex);
     free(flow->cloth_first);
     free(flow->names.name);
@@ -135,16 +132,12 @@ void flow_free(struct flow *flow)
 void flow_start(const struct flow *flow, double *position)
 {
     const struct flow_particles *particles = &flow->source.particles;
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < flow->model->n_cloths; c++) {
-        const struct model_cloth *cloth = flow->model->cloths + c;
-        for (uint32_t v = first; v < first + cloth->mesh.n_vertices; v++) {
-            struct flow_particle at;
-            flow_particle_of(particles, flow->model, cloth, first, v, &at);
-            for (int k = 0; k < 3; k++)
-                position[3 * (size_t)v + (size_t)k] = at.position[k];
-        }
-        first += cloth->mesh.n_vertices;
+    struct flow_cloths at = {0};
+    for (uint32_t v = 0; v < particles->n; v++) {
+        struct flow_particle particle;
+        flow_particle_at(particles, flow->model, &at, v, &particle);
+        for (size_t k = 0; k < 3; k++)
+            position[3 * (size_t)v + k] = particle.position[k];
     }
 }
 
@@ -205,10 +198,9 @@ static int make_objects(struct flow_state *state)
     if (model_is_implicit(state->flow->model))
         flow_halo_make(state);
     flow_levels_make(state);
-    int code = flow_distribute(state);
-    if (!code)
-        code = duite_count_all(state->rt, &state->before);
-    return code;
+    if (!flow_distribute(state))
+        flow_noted(state, duite_count_all(state->rt, &state->before));
+    return state->code;
 }
 
 int flow_run_begin(struct flow_state *state)
@@ -218,50 +210,45 @@ int flow_run_begin(struct flow_state *state)
     flow->output = state->output;
     flow->frames = flow_before(state).frames;
     flow->hash = 0;
-    int code = flow_share_head(state);
-    if (code)
-        return code;
+    if (flow_share_head(state))
+        return state->code;
     describe_cloth(state);
     state->report->rest_seconds = state->report->sewn_seconds = NAN;
     state->report->seams = flow->model->n_pulled;
     state->report->correction_excess = flow->model->correction_rounds ? 0 : NAN;
-    code = flow_memory_take(state);
-    if (!code)
-        code = flow_share(state);
-    if (!code)
-        code = flow_preconditioner_prepare(state);
-    if (!code)
-        code = make_objects(state);
+    state->begun = !flow_memory_take(state) && !flow_share(state) &&
+                   !flow_preconditioner_prepare(state) && !make_objects(state);
     for (uint32_t i = 0; flow->room && i < flow->unused.n; i++)
         memcpy(flow->room + 3 * (size_t)flow->unused.vertex[i], flow->unused.position[i],
                sizeof flow->unused.position[i]);
-    state->begun = !code;
-    return code;
+    return state->code;
 }
 
 /* Starts a run that does not go on from a checkpoint. */
-static int start_anew(struct flow_state *state)
+static void start_anew(struct flow_state *state)
 {
-    const int code = flow_initialise(state);
-    return code ? code : flow_contact_start(state);
+    if (!flow_initialise(state))
+        flow_noted(state, flow_contact_start(state));
 }
 
 /* All steps, or until a stop that was asked for. */
-static int run_steps(struct flow_state *state)
+static void run_steps(struct flow_state *state)
 {
-    const bool implicit = model_is_implicit(state->flow->model);
-    int code = state->head.resumed_bytes ? flow_resume_main(state) : DUITE_OK;
-    if (!code)
-        code = flow_ties_choose(state);
-    if (!code && implicit && !state->solve.generation)
-        code = flow_cg_record(state);
-    if (!code)
-        code = state->head.resumed_bytes ? flow_resume_blocks(state) : start_anew(state);
-    if (!code && !state->complete)
-        code = flow_steps(state);
-    if (!code && implicit && state->report->steps && state->output && state->output->system)
-        code = flow_system(state);
-    return code;
+    const bool implicit = model_is_implicit(state->flow->model),
+               goes_on = state->head.resumed_bytes;
+    if (goes_on && flow_resume_main(state))
+        return;
+    flow_ties_choose(state);
+    if (!state->code && implicit && !state->solve.generation)
+        flow_cg_record(state);
+    if (goes_on)
+        flow_resume_blocks(state);
+    else
+        start_anew(state);
+    if (!state->code && !state->complete)
+        flow_steps(state);
+    if (implicit && state->report->steps && state->output && state->output->system)
+        flow_system(state);
 }
 
 static int code_of_cloth(int code)
@@ -311,6 +298,7 @@ static int explain(struct flow_state *state, int code)
     if (code < 0) /* the runtime itself failed: no more is asked of it */
         return cloth_fail(state->error, why.code, "%s", why.text);
     duite_wait(state->rt); /* its error is the one in hand */
+    state->code = DUITE_OK;
     if (!flow_shows(state))
         return cloth_fail(state->error, why.code, "%s", why.text);
     if (!state->begun || flow_last_frame(state) || !state->report->frames)
@@ -327,20 +315,20 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
         .flow = flow, .rt = rt, .output = output, .report = report, .error = error};
     *report = (struct flow_report){0};
     flow->progress = progress;
-    int code = flow_run_begin(&state);
+    flow_run_begin(&state);
     state.from = flow_now();
-    if (!code)
-        code = run_steps(&state);
-    if (!code)
-        code = duite_wait(rt); /* the last frame is written, too */
+    if (!state.code)
+        run_steps(&state);
+    if (!state.code)
+        flow_noted(&state, duite_wait(rt)); /* the last frame is written, too */
     report->wall_seconds = state.saved_wall + flow_now() - state.from;
-    if (!code)
-        code = flow_finish(&state);
-    if (!code && !report->stopped && !state.complete)
-        code = flow_save(&state, true);
-    if (!code)
-        code = duite_wait(rt);
-    int failed = code ? explain(&state, code) : CLOTH_OK;
+    if (!state.code)
+        flow_finish(&state);
+    if (!state.code && !report->stopped && !state.complete)
+        flow_save(&state, true);
+    if (!state.code)
+        flow_noted(&state, duite_wait(rt));
+    int failed = state.code ? explain(&state, state.code) : CLOTH_OK;
     const int contacts = flow_contact_free_objects(&state);
     const int objects = flow_objects_free(&state);
     if (!failed && (objects || contacts))

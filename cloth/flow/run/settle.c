@@ -124,19 +124,17 @@ static int await_step(struct flow_state *state, double status[FLOW_STATUS],
                       struct flow_verdict *verdict)
 {
     const struct model *model = state->flow->model;
-    const unsigned parity = state->attempt.parity;
     *verdict = (struct flow_verdict){.before = state->longest,
                                      .after = state->longest,
                                      .max = model->stretch_limit,
                                      .growth = model->stretch_growth};
-    int code = duite_get(state->rt, state->run.status[parity], status);
-    state->saving = state->saving || (!code && status[FLOW_DUE] > 0);
-    if (!code && flow_is_judged(model))
-        code = flow_stretch_get(state, &verdict->after);
-    if (!code)
-        code = flow_energy_wait(state);
-    if (code)
-        return code;
+    if (flow_get(state, FLOW_FIELD_status, status))
+        return state->code;
+    state->saving = state->saving || status[FLOW_DUE] > 0;
+    if (flow_is_judged(model))
+        flow_stretch_get(state, &verdict->after);
+    if (flow_energy_wait(state))
+        return state->code;
     flow_implicit_status(state, status);
     flow_contact_status(state, status);
     verdict->failed = status[FLOW_FAILED] + status[FLOW_BEYOND] > 0 || state->contact.failed;
@@ -164,8 +162,8 @@ static int accept_step(struct flow_state *state, const double status[FLOW_STATUS
                                        attempt.begin + attempt.length >= state->guard.calm);
     note_step(state, status);
     flow_energy_note(state, is_disturbed(state, status));
-    const int code = flow_watched(state);
-    return code ? code : flow_frames(state, attempt.begin);
+    flow_watched(state);
+    return flow_frames(state, attempt.begin);
 }
 
 /* Waits for the step that was forked whole and accepts or refuses it. */
@@ -173,15 +171,15 @@ static int settle_step(struct flow_state *state)
 {
     struct flow_verdict verdict;
     double status[FLOW_STATUS];
-    const int code = await_step(state, status, &verdict);
-    if (code)
-        return code;
+    if (await_step(state, status, &verdict))
+        return state->code;
     const bool refused = flow_verdict_refuses(&verdict), second = flow_implicit_is_second(state);
     const bool gained =
         !refused && flow_energy_gained(state, is_disturbed(state, status)) && can_lose(state);
     flow_implicit_settle(state, !refused && !gained, status);
-    flow_contact_settled(state, !refused && !gained);
     state->attempt.forked = false;
+    if (flow_noted(state, flow_contact_settled(state, status, !refused && !gained)))
+        return state->code;
     if (!refused && !gained)
         return accept_step(state, status, &verdict);
     state->settled_forces = false;
@@ -205,7 +203,6 @@ static int settle_overlapped(struct flow_state *state, bool *begun)
 {
     const struct flow_attempt before = state->attempt;
     const struct flow_attempt next = next_attempt(state);
-    int code = DUITE_OK;
     *begun = !before.forked ||
              (before.length == FLOW_TICKS && !state->stopping && !state->saving &&
               !state->resting && !state->sewn && !flow_step_is_driven(state->flow->model) &&
@@ -213,16 +210,16 @@ static int settle_overlapped(struct flow_state *state, bool *begun)
     *begun = *begun && next.begin < state->grid.end;
     if (*begun) {
         state->attempt = next;
-        code = flow_step_begin(state);
+        flow_step_begin(state);
     }
-    if (!code && before.forked) {
+    if (!state->code && before.forked) {
         state->attempt = before;
-        code = settle_step(state);
+        flow_noted(state, settle_step(state));
         *begun = *begun && state->grid.now == next.begin;
     }
     if (*begun)
         state->attempt = next;
-    return code;
+    return state->code;
 }
 
 static int first_stretch(struct flow_state *state)
@@ -230,40 +227,30 @@ static int first_stretch(struct flow_state *state)
     state->report->stretch_highest = NAN;
     if (!flow_is_judged(state->flow->model))
         return DUITE_OK;
-    int code = flow_stretch_fork(state);
-    if (!code)
-        code = flow_stretch_get(state, &state->longest);
+    flow_stretch_fork(state);
+    flow_stretch_get(state, &state->longest);
     state->report->stretch_highest = state->longest;
-    return code;
-}
-
-static int watch_start(struct flow_state *state)
-{
-    const double nothing[FLOW_STATUS] = {0};
-    int code = duite_set(state->rt, state->run.status[state->attempt.parity], nothing);
-    if (!code)
-        code = flow_watch(state);
-    return code ? code : flow_watched(state);
+    return state->code;
 }
 
 /* Ends the run early, on request. */
 static int stop_early(struct flow_state *state)
 {
-    const int code = flow_save(state, false);
+    flow_save(state, false);
     state->report->stopped = true;
-    return code ? code : flow_frame_last(state);
+    return flow_frame_last(state);
 }
 
 static int begin_steps(struct flow_state *state)
 {
     flow_grid_begin(&state->grid, state->flow->n_steps);
     state->next_frame = flow_before(state).frames;
-    int code = watch_start(state);
-    if (!code)
-        code = flow_energy_begin(state);
-    if (!code)
-        code = flow_frames(state, 0);
-    return code ? code : first_stretch(state);
+    flow_set(state, FLOW_FIELD_status, NULL);
+    flow_watch(state);
+    flow_watched(state);
+    flow_energy_begin(state);
+    flow_frames(state, 0);
+    return first_stretch(state);
 }
 
 /* The work between two steps. frame: the next one before the last step. */
@@ -278,20 +265,22 @@ static int pause_between(struct flow_state *state, uint64_t frame)
 
 int flow_steps(struct flow_state *state)
 {
-    int code = state->head.resumed_bytes ? DUITE_OK : begin_steps(state);
-    while (!code && !state->over && state->grid.now < state->grid.end) {
+    if (!state->head.resumed_bytes)
+        begin_steps(state);
+    while (!state->code && !state->over && state->grid.now < state->grid.end) {
         const uint64_t frame = state->next_frame;
         bool begun;
-        code = settle_overlapped(state, &begun);
-        if (!code && begun)
-            code = flow_step_end(state);
-        else if (!code && state->grid.now < state->grid.end) {
+        if (settle_overlapped(state, &begun))
+            break;
+        if (begun)
+            flow_step_end(state);
+        else if (state->grid.now < state->grid.end) {
             if (state->stopping)
                 return stop_early(state);
-            code = pause_between(state, frame);
+            pause_between(state, frame);
         }
     }
-    if (!code && state->flow->model->sewn > 0 && !state->sewn)
-        return flow_seams_fail(state);
-    return code;
+    if (!state->code && state->flow->model->sewn > 0 && !state->sewn)
+        flow_noted(state, flow_seams_fail(state));
+    return state->code;
 }

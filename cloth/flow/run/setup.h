@@ -7,11 +7,18 @@
 
 /* Fills flow->warning; on rank 0, which makes the source. Errors: CLOTH_E_MEMORY. Local. */
 int flow_warn(struct flow *flow, struct cloth_error *error);
+/* Says a warning, the place before it unless that is NULL; if there is one of the kind, it stays.
+ */
+void flow_warn_say(struct flow *flow, int kind, const char *place, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 
 /* Functions of the main program. Collective. They return 0 or what duite returned, which flow_run
  * turns into a sentence. */
 /* Takes all steps below: the run is ready for its first task. End it as flow_run does. */
 int flow_run_begin(struct flow_state *state);
+/* Gives all ranks an object of so many bytes, which a kernel with one GIVEN_W writes on rank 0. */
+int flow_broadcast(struct flow_state *state, const struct flow_kernel *kernel, size_t bytes,
+                   void *received);
 /* Broadcasts the sizes for all later ones (struct flow_head). */
 int flow_share_head(struct flow_state *state);
 /* Broadcasts the shapes of all blocks; fills flow->tables. */

@@ -2,6 +2,7 @@
 #include "cloth/flow/run/source.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 #include "cloth/base/sets.h"
 
 #include <stdlib.h>
@@ -10,15 +11,7 @@ uint32_t flow_source_block(const struct mesh_blocks *blocks, uint32_t place, uin
 {
     if (blocks->start[guess] <= place && place < blocks->start[guess + 1])
         return guess;
-    uint32_t low = 0, high = blocks->n_blocks;
-    while (high - low > 1) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (blocks->start[middle] <= place)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
+    return cloth_first_from(blocks->start, 1, blocks->n_blocks + 1, place + 1) - 1;
 }
 
 void flow_source_cloth(struct flow_cloths *at, const struct model *model, uint32_t vertex)
@@ -27,6 +20,13 @@ void flow_source_cloth(struct flow_cloths *at, const struct model *model, uint32
         *at = (struct flow_cloths){0};
     while (vertex - at->first >= model->cloths[at->cloth].mesh.n_vertices)
         at->first += model->cloths[at->cloth++].mesh.n_vertices;
+}
+
+void flow_particle_at(const struct flow_particles *particles, const struct model *model,
+                      struct flow_cloths *at, uint32_t vertex, struct flow_particle *particle)
+{
+    flow_source_cloth(at, model, vertex);
+    flow_particle_of(particles, model, model->cloths + at->cloth, at->first, vertex, particle);
 }
 
 /* ---- Pieces ----
@@ -199,34 +199,23 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
                      struct cloth_error *error)
 {
     *source = (struct flow_source){.model = model};
-    int code = model_seeks(model) ? flow_thickness_check(model, error) : CLOTH_OK;
-    if (!code)
-        code = flow_particles_make(&source->particles, model, error);
-    if (!code)
-        code = element_cloths_make(&source->elements, model, error);
-    if (!code)
-        code = flow_welds_check(&source->particles.welds, &source->elements, error);
-    if (!code)
-        code = flow_seams_make(&source->elements, &source->particles.welds, error);
-    if (!code)
-        code = element_folds_check(&source->elements, error);
-    if (!code)
-        code = flow_springs_make(&source->springs, model, &source->particles.welds,
-                                 &source->elements, error);
-    if (!code)
-        code = flow_springs_merge(&source->springs, source->particles.n, error);
-    if (!code)
-        code = flow_joints_make(&source->springs, &source->particles, error);
-    if (!code && model_is_implicit(model))
-        code = make_pieces(source, error);
-    if (!code)
-        code = cut_blocks(source, ranks, error);
-    if (!code)
-        code = flow_watched_make(&source->watched, source, error);
-    if (!code)
-        code = find_shapes(source, error);
-    if (!code && model_seeks(model))
-        code = flow_skins_make(source, error);
+    const struct flow_welds *welds = &source->particles.welds;
+    const bool seeks = model_seeks(model);
+    int code = seeks ? flow_thickness_check(model, error) : CLOTH_OK;
+    code = code ? code : flow_particles_make(&source->particles, model, error);
+    code = code ? code : element_cloths_make(&source->elements, model, error);
+    code = code ? code : flow_welds_check(welds, &source->elements, error);
+    code = code ? code : flow_seams_make(&source->elements, welds, error);
+    code = code ? code : element_folds_check(&source->elements, error);
+    code =
+        code ? code : flow_springs_make(&source->springs, model, welds, &source->elements, error);
+    code = code ? code : flow_springs_merge(&source->springs, source->particles.n, error);
+    code = code ? code : flow_joints_make(&source->springs, &source->particles, error);
+    code = code || !model_is_implicit(model) ? code : make_pieces(source, error);
+    code = code ? code : cut_blocks(source, ranks, error);
+    code = code ? code : flow_watched_make(&source->watched, source, error);
+    code = code ? code : find_shapes(source, error);
+    code = code || !seeks ? code : flow_skins_make(source, error);
     if (code)
         flow_source_free(source);
     return code;

@@ -37,8 +37,8 @@ struct flow_anchor {
 /* A load that varies, on one vertex. */
 struct flow_varying {
     uint32_t at;     /* its vertex, of all cloths; when blocks are there, its place */
-    uint32_t curve;  /* of the model, from 1 */
     uint32_t number; /* in the scene's order */
+    uint32_t curve;  /* of the model, from 1 */
     double force[3]; /* N, times the curve */
 };
 
@@ -64,13 +64,12 @@ struct flow_particles {
     uint32_t *attached; /* obstacle, from 1, that the vertex follows, 0: none; of all names; NULL */
     uint32_t n_pieces, *piece; /* free ones: the same */
     struct flow_welds welds;
-    double *mass;       /* kg */
-    double *own, *drag; /* kg, of each name alone; kg/s; NULL: there are no welds */
-    phys_vec *load;     /* N, gravity included; NULL: gravity alone */
-    uint32_t n_varying;
-    struct flow_varying *varying; /* in the scene's order; then by place */
-    double (*start)[6];           /* m, m/s; NULL: all start where the meshes have them */
-    double (*unwelded)[3];        /* m: before the welds; NULL: no weld is of a seam */
+    double *mass;              /* kg */
+    double *own, *drag;        /* kg, of each name alone; kg/s; NULL: there are no welds */
+    phys_vec *load;            /* N, gravity included; NULL: gravity alone */
+    struct cloth_list varying; /* struct flow_varying: in the scene's order; then by place */
+    double (*start)[6];        /* m, m/s; NULL: all start where the meshes have them */
+    double (*unwelded)[3];     /* m: before the welds; NULL: no weld is of a seam */
 };
 
 /* Errors: CLOTH_E_INPUT for pins and loads outside their mesh, boxes without a vertex, starts
@@ -84,6 +83,16 @@ void flow_particles_free(struct flow_particles *particles);
  * Local. */
 int flow_starts_make(struct flow_particles *particles, uint32_t first,
                      const struct model_cloth *cloth, struct cloth_error *error);
+
+/* Where a vertex of a cloth starts, m. Local. */
+static inline void flow_start_place(const struct flow_particles *particles,
+                                    const struct model_cloth *cloth, uint32_t first,
+                                    uint32_t vertex, phys_vec *x)
+{
+    const double *at = particles->start ? particles->start[first + vertex]
+                                        : cloth->mesh.position + 3 * (size_t)vertex;
+    *x = PHYS_VEC(at);
+}
 
 /* Copies the starts of all vertices, as they have been made. Local. */
 void flow_starts_take(const struct flow_particles *particles, const struct model *model,
@@ -151,9 +160,8 @@ int flow_names_make(struct flow_names *names, const struct flow_welds *welds,
 /* The first of them at or after a place. */
 uint32_t flow_names_from(const struct flow_names *names, uint32_t place);
 
-/* A part of the scene that picks vertices, and the function that gets each. */
+/* The thing that picks vertices of a cloth, and the function that gets each. */
 struct flow_picking {
-    const struct model_pick *pick;
     const struct model_cloth *cloth;
     const unsigned char *used;                /* of the cloth's vertices */
     const char *what;                         /* in sentences: "a pin" */
@@ -161,7 +169,8 @@ struct flow_picking {
     void *to;
 };
 /* Errors: CLOTH_E_INPUT for vertices outside the mesh and boxes without a vertex. Local. */
-int flow_pick(const struct flow_picking *picking, struct cloth_error *error);
+int flow_pick(const struct model_pick *pick, const struct flow_picking *picking,
+              struct cloth_error *error);
 /* The error of a vertex outside the mesh. */
 int flow_no_vertex(const struct model_cloth *cloth, const char *what, uint32_t vertex,
                    const char *place, struct cloth_error *error);
@@ -281,7 +290,8 @@ struct flow_skins {
                             * contact_skin_source has it; */
     unsigned char *shared; /* and which of those edges others have, too */
     uint32_t
-        *joined; /* by place: one of those that pulled seams join it with; NULL: there are none */
+        *joined;  /* by place: one of those that pulled seams join it with; NULL: there are none */
+    double *area; /* by place: a third of its triangles' areas at rest, m^2 */
 };
 
 /* The sides of a block's springs, while its table is due. */
@@ -379,7 +389,8 @@ double flow_source_inertia(const struct flow_source *source);
 
 /* A scale of the energy, J: twice the sum of |force| times distance from the cloth's centre at the
  * start, over weights and constant loads of free vertices. These forces do no more work where each
- * vertex moves to the centre and as far on. 0 without weights and loads. Local. */
+ * vertex moves to the centre and as far on. At least that of a motion too slow to be seen. Local.
+ */
 double flow_source_release(const struct flow_source *source);
 
 /* The scales of contacts (contact/scales.c): the stiffness of a contact, N/m; the mean mass of a
@@ -392,11 +403,14 @@ double flow_source_mass(const struct flow_source *source);
 void flow_varying_settle(struct flow_source *source);
 uint32_t flow_varying_from(const struct flow_source *source, uint32_t place);
 
-/* The cloth of a vertex, and its first vertex; looked for from the last one found. */
+/* The cloth of a vertex, and its first vertex; looked for from the last one found, zero at first.
+ * The particle there. */
 struct flow_cloths {
     uint32_t cloth, first;
 };
 void flow_source_cloth(struct flow_cloths *at, const struct model *model, uint32_t vertex);
+void flow_particle_at(const struct flow_particles *particles, const struct model *model,
+                      struct flow_cloths *at, uint32_t vertex, struct flow_particle *particle);
 
 /* The block of a place; looked for in block `guess` first. */
 uint32_t flow_source_block(const struct mesh_blocks *blocks, uint32_t place, uint32_t guess);

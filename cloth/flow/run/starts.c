@@ -18,7 +18,7 @@ struct starter {
 
 static bool is_bounded(const double start[6])
 {
-    const phys_vec x = {start[0], start[1], start[2], 0}, v = {start[3], start[4], start[5], 0};
+    const phys_vec x = PHYS_VEC(start), v = {start[3], start[4], start[5], 0};
     return phys_diverged(1, FLOW_BOUND, &x) != 0 && phys_diverged(1, FLOW_BOUND, &v) != 0;
 }
 
@@ -86,13 +86,9 @@ int flow_starts_make(struct flow_particles *particles, uint32_t first,
     for (uint32_t i = 0; i < cloth->n_starts && !code; i++) {
         const struct model_pick *pick = &cloth->starts[i].pick;
         struct starter starter = {start, cloth->mesh.position, cloth->starts + i, UINT32_MAX};
-        const struct flow_picking picking = {.pick = pick,
-                                             .cloth = cloth,
-                                             .used = particles->used + first,
-                                             .what = "a start",
-                                             .visit = move_start,
-                                             .to = &starter};
-        code = flow_pick(&picking, error);
+        const struct flow_picking picking = {cloth, particles->used + first, "a start", move_start,
+                                             &starter};
+        code = flow_pick(pick, &picking, error);
         if (!code && starter.lost != UINT32_MAX)
             code = refuse_start(cloth, starter.lost, start, pick->place, error);
     }
@@ -102,11 +98,8 @@ int flow_starts_make(struct flow_particles *particles, uint32_t first,
 void flow_starts_take(const struct flow_particles *particles, const struct model *model,
                       double (*start)[6])
 {
-    uint32_t first = 0;
     if (particles->start)
         memcpy(start, particles->start, particles->n * sizeof *start);
-    for (uint32_t c = 0; c < model->n_cloths && !particles->start; c++) {
-        at_mesh(model->cloths + c, start + first);
-        first += model->cloths[c].mesh.n_vertices;
-    }
+    for (uint32_t c = 0; c < model->n_cloths && !particles->start; c++)
+        at_mesh(model->cloths + c, start + model_first(model, c));
 }

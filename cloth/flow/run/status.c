@@ -4,7 +4,8 @@
 
 #include "cloth/physics/particle.h"
 
-void flow_note_stop(const duite_call *call, double *status)
+/* This rank is asked to stop. */
+static void status_note_stop(const duite_call *call, double *status)
 {
     const struct flow_progress *progress = flow_of(call)->progress;
     if (progress && progress->stop && progress->stop(progress->context))
@@ -16,7 +17,7 @@ int flow_check(const duite_call *call, const struct flow_table *t,
                double *status)
 {
     const size_t bad = phys_diverged(t->n, FLOW_BOUND, y);
-    flow_note_stop(call, status);
+    status_note_stop(call, status);
     if (bad < t->n)
         status[FLOW_BEYOND] = 1;
     if (bad == t->n || !step->last)
@@ -39,7 +40,7 @@ static void note_due(const duite_call *call, double *status)
 FLOW_KERNEL(status, FLOW_NO_PART, struct flow_block_args, (SUM(status)))
 static int status_body(const duite_call *call, const struct status_fields *on)
 {
-    flow_note_stop(call, on->status);
+    status_note_stop(call, on->status);
     note_due(call, on->status);
     return 0;
 }
@@ -48,8 +49,7 @@ static int status_body(const duite_call *call, const struct status_fields *on)
 int flow_status_fork(struct flow_state *state)
 {
     const struct flow_block_args args = {0};
-    int code = DUITE_OK;
-    for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++)
-        code = flow_fork_at(state, rank, &flow_kernel_status, &args, NULL);
-    return code;
+    for (int rank = 0; rank < duite_ranks(state->rt); rank++)
+        flow_fork_at(state, rank, &flow_kernel_status, &args, NULL);
+    return state->code;
 }

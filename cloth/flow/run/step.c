@@ -98,22 +98,19 @@ static const struct stage stages[] = {
 /* Forks the stages of the parts from .. to. */
 static int fork_stages(struct flow_state *state, enum stage_part from, enum stage_part to)
 {
-    int code = DUITE_OK;
-    for (size_t i = 0; i < sizeof stages / sizeof *stages && !code; i++) {
+    for (size_t i = 0; i < sizeof stages / sizeof *stages && !state->code; i++) {
         const struct stage *stage = stages + i;
         if (stage->part >= from && stage->part <= to && stage->enabled(state->flow->model))
-            code = stage->fork(state);
+            flow_noted(state, stage->fork(state));
     }
-    return code;
+    return state->code;
 }
 
 int flow_step_begin(struct flow_state *state)
 {
-    const double nothing[FLOW_STATUS] = {0};
-    int code = duite_trace_step(state->rt, state->attempt.begin / FLOW_TICKS);
-    if (!code)
-        code = duite_set(state->rt, flow_field_object(state, FLOW_FIELD_status, 0), nothing);
-    return code ? code : fork_stages(state, TIE, SOLVE);
+    flow_noted(state, duite_trace_step(state->rt, state->attempt.begin / FLOW_TICKS));
+    flow_set(state, FLOW_FIELD_status, NULL);
+    return fork_stages(state, TIE, SOLVE);
 }
 
 int flow_step_again(struct flow_state *state)
@@ -132,6 +129,6 @@ int flow_step(struct flow_state *state)
 {
     state->attempt.length = FLOW_TICKS;
     state->guessed = 0;
-    const int code = flow_step_begin(state);
-    return code ? code : flow_step_end(state);
+    flow_step_begin(state);
+    return flow_step_end(state);
 }

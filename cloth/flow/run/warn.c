@@ -1,34 +1,42 @@
-/* Warnings about a model. Each kind has its place in flow->warning, and says at most one thing. */
+/* Warnings about a model. Each kind has its place in flow->warning, and says one thing at
+ * most, the first. */
 #include "cloth/flow/integrators/integrator.h"
+#include "cloth/flow/pins/sliders.h"
 #include "cloth/flow/run/setup.h"
-#include "cloth/flow/state/state.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 
 static const double LEAST_EXTENT = 0.01, MAX_EXTENT = 10; /* m: of a garment */
 static const double DEEP = 1e-6; /* m: a point on a surface is less deep in it */
 
-static void describe_unusual(char *text, size_t size, const char *what,
-                             const struct flow_unusual *unusual, const char *effect)
+void flow_warn_say(struct flow *flow, int kind, const char *place, const char *format, ...)
 {
-    if (unusual->n)
-        snprintf(text, size,
-                 "%.200s%s%s that no face, edge or joint uses: %u, the first is vertex %u of cloth "
-                 "'%.60s' (vertices count from 1); %s",
-                 unusual->place ? unusual->place : "", unusual->place ? ": " : "", what, unusual->n,
-                 unusual->vertex + 1, unusual->cloth->name, effect);
+    char *text = flow->warning[kind];
+    const size_t size = sizeof flow->warning[kind];
+    va_list list;
+    if (*text)
+        return;
+    const size_t n = place ? (size_t)snprintf(text, size, "%.200s: ", place) : 0;
+    va_start(list, format);
+    vsnprintf(text + n, size - n, format, list);
+    va_end(list);
 }
 
-static void warn_warn(struct flow *flow, const struct flow_particles *particles)
+static void warn_of_unusual(struct flow *flow, int kind, const struct flow_unusual *unusual,
+                            const char *what, const char *effect)
 {
-    const size_t size = sizeof flow->warning[FLOW_WARN_UNUSED];
-    describe_unusual(flow->warning[FLOW_WARN_UNUSED], size, "vertices", &particles->unused,
-                     "they are kept and stay where they are");
-    describe_unusual(flow->warning[FLOW_WARN_PINNED], size, "pinned vertices", &particles->pinned,
-                     "they stay where they are without a pin");
-    describe_unusual(flow->warning[FLOW_WARN_LOADED], size, "loads on vertices", &particles->loaded,
-                     "they move nothing");
+    if (unusual->n)
+        flow_warn_say(flow, kind, unusual->place,
+                      "%s that no face, edge or joint uses: %u, the first is vertex %u of cloth "
+                      "'%.60s' (vertices count from 1); %s",
+                      what, unusual->n, unusual->vertex + 1, unusual->cloth->name, effect);
+}
+
+static const char *name_of(const struct model_cloth *cloth)
+{
+    return cloth->name ? cloth->name : "";
 }
 
 /* Files are often in centimetres or millimetres. Chains, which no garment is, may have any length.
@@ -36,18 +44,16 @@ static void warn_warn(struct flow *flow, const struct flow_particles *particles)
 static void warn_of_extent(struct flow *flow)
 {
     const struct model *model = flow->model;
-    for (uint32_t c = 0; c < model->n_cloths && !flow->warning[FLOW_WARN_EXTENT][0]; c++) {
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct model_cloth *cloth = model->cloths + c;
         double low[3], high[3];
         const double extent = mesh_box(&cloth->mesh, low, high);
-        if (!cloth->mesh.n_triangles || (extent >= LEAST_EXTENT && extent <= MAX_EXTENT))
-            continue;
-        snprintf(flow->warning[FLOW_WARN_EXTENT], sizeof flow->warning[FLOW_WARN_EXTENT],
-                 "%.200s%scloth '%.60s' is %g m long in its largest extent, %s than %g m: is its "
-                 "mesh in metres? transform.scale changes that (0.01 for centimetres)",
-                 cloth->mesh_place ? cloth->mesh_place : "", cloth->mesh_place ? ": " : "",
-                 cloth->name ? cloth->name : "", extent, extent > MAX_EXTENT ? "more" : "less",
-                 extent > MAX_EXTENT ? MAX_EXTENT : LEAST_EXTENT);
+        if (cloth->mesh.n_triangles && !(extent >= LEAST_EXTENT && extent <= MAX_EXTENT))
+            flow_warn_say(flow, FLOW_WARN_EXTENT, cloth->mesh_place,
+                          "cloth '%.60s' is %g m long in its largest extent, %s than %g m: is its "
+                          "mesh in metres? transform.scale changes that (0.01 for centimetres)",
+                          name_of(cloth), extent, extent > MAX_EXTENT ? "more" : "less",
+                          extent > MAX_EXTENT ? MAX_EXTENT : LEAST_EXTENT);
     }
 }
 
@@ -61,12 +67,11 @@ static double find_deepest(const struct flow *flow, const struct contact_shape *
     double gap = INFINITY;
     contact_pose_over(shape, flow->model->keys, &flow->model->bodies, 0, 0, &pose);
     for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
-        const double *start =
-            particles->start ? particles->start[first + i] : cloth->mesh.position + 3 * (size_t)i;
-        const phys_vec x = {start[0], start[1], start[2], 0};
         struct contact_hit hit;
+        phys_vec x;
         if (!particles->used[first + i] || !particles->free[first + i])
             continue;
+        flow_start_place(particles, cloth, first, i, &x);
         contact_closest(shape, &pose, 1, &x, &hit);
         if (hit.gap < gap) {
             gap = hit.gap;
@@ -81,25 +86,23 @@ static double find_deepest(const struct flow *flow, const struct contact_shape *
 static void warn_of_inside(struct flow *flow)
 {
     const struct model *model = flow->model;
-    const size_t size = sizeof flow->warning[FLOW_WARN_INSIDE];
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < model->n_cloths; first += model->cloths[c++].mesh.n_vertices)
+    for (uint32_t c = 0; c < model->n_cloths; c++)
         for (uint32_t i = 0; i < model->n_obstacles && !flow->warning[FLOW_WARN_INSIDE][0]; i++) {
             const struct model_cloth *cloth = model->cloths + c;
             uint32_t deepest = 0;
             if (!model_meets(model, c, model->n_cloths + i))
                 continue;
-            const double gap = find_deepest(flow, model->obstacles + i, cloth, first, &deepest);
+            const double gap =
+                find_deepest(flow, model->obstacles + i, cloth, model_first(model, c), &deepest);
             if (gap < -DEEP)
-                snprintf(flow->warning[FLOW_WARN_INSIDE], size,
-                         "%.200s%scloth '%.60s' starts inside obstacles[%u], a %s: vertex %u is %g "
-                         "m deep in it (vertices count from 1)%s",
-                         cloth->place ? cloth->place : "", cloth->place ? ": " : "",
-                         cloth->name ? cloth->name : "", i,
-                         contact_kinds[model->obstacles[i].kind]->name, deepest + 1, -gap,
-                         model_promise(model).apart
-                             ? ""
-                             : "; the first step puts it out by the nearest way");
+                flow_warn_say(flow, FLOW_WARN_INSIDE, cloth->place,
+                              "cloth '%.60s' starts inside obstacles[%u], a %s: vertex %u is %g m "
+                              "deep in it (vertices count from 1)%s",
+                              name_of(cloth), i, contact_kinds[model->obstacles[i].kind]->name,
+                              deepest + 1, -gap,
+                              model_promise(model).apart
+                                  ? ""
+                                  : "; the first step puts it out by the nearest way");
         }
 }
 
@@ -114,38 +117,12 @@ static void warn_of_windings(struct flow *flow, const struct model_cloth *cloth,
             first = edges->edge + e;
             n++;
         }
-    if (first && !flow->warning[FLOW_WARN_WINDING][0])
-        snprintf(flow->warning[FLOW_WARN_WINDING], sizeof flow->warning[FLOW_WARN_WINDING],
-                 "%.200s%scloth '%.60s' has %u edges whose two triangles are wound against each "
-                 "other, the first is between vertices %u and %u (counted from 1): which side is "
-                 "its outside differs there; turn the faces of one side round",
-                 cloth->mesh_place ? cloth->mesh_place : "", cloth->mesh_place ? ": " : "",
-                 cloth->name ? cloth->name : "", n, first->a + 1, first->b + 1);
-}
-
-/* The place of a vertex that follows an obstacle, at a time, s; x: its start. */
-static void follow_obstacle(const struct flow *flow, uint32_t motion, double time, phys_vec *x)
-{
-    const struct model *model = flow->model;
-    if (motion > model->n_motions) {
-        flow_anchor_place(model, flow->source.particles.anchor + (motion - model->n_motions - 1),
-                          time, x);
-        return;
-    }
-    const struct model_motion *m = model->motions + motion - 1;
-    struct phys_pose begin, pose;
-    if (!m->n)
-        return; /* the obstacle stands still */
-    phys_pose_at(m->n, model->keys + m->first, m->about, 0, &begin);
-    phys_pose_at(m->n, model->keys + m->first, m->about, time, &pose);
-    phys_pose_back(&begin, x, x);
-    phys_pose_point(&pose, x, x);
-}
-
-static double distance_between(const double *a, const double *b)
-{
-    const phys_vec way = {b[0] - a[0], b[1] - a[1], b[2] - a[2], 0};
-    return sqrt(phys_dot(&way, &way));
+    if (first)
+        flow_warn_say(flow, FLOW_WARN_WINDING, cloth->mesh_place,
+                      "cloth '%.60s' has %u edges whose two triangles are wound against each "
+                      "other, the first is between vertices %u and %u (counted from 1): which side "
+                      "is its outside differs there; turn the faces of one side round",
+                      name_of(cloth), n, first->a + 1, first->b + 1);
 }
 
 /* The distance of two ends of an edge that follow obstacles at a time, m. */
@@ -154,12 +131,11 @@ static double length_at(const struct flow *flow, uint32_t first, const struct mo
 {
     const struct flow_particles *p = &flow->source.particles;
     const uint32_t end[2] = {edge->a, edge->b};
-    phys_vec x[2];
+    struct flow_pins pins = {.model = flow->model, .anchor = p->anchor, .time = time};
+    phys_vec x[2], start;
     for (int k = 0; k < 2; k++) {
-        const double *at =
-            p->start ? p->start[first + end[k]] : cloth->mesh.position + 3 * (size_t)end[k];
-        x[k] = (phys_vec){at[0], at[1], at[2], 0};
-        follow_obstacle(flow, p->motion[flow_root(&p->welds, first + end[k])], time, x + k);
+        flow_start_place(p, cloth, first, end[k], &start);
+        flow_pins_place(&pins, p->motion[flow_root(&p->welds, first + end[k])], &start, x + k);
     }
     const phys_vec way = x[1] - x[0];
     return sqrt(phys_dot(&way, &way));
@@ -181,8 +157,9 @@ static void find_stretched(const struct flow *flow, const struct model_cloth *cl
         const struct mesh_edge *edge = edges->edge + e;
         if (!attached[edge->a] || !attached[edge->b])
             continue;
-        const double rest =
-            distance_between(position + 3 * (size_t)edge->a, position + 3 * (size_t)edge->b);
+        const phys_vec way =
+            PHYS_VEC(position + 3 * (size_t)edge->b) - PHYS_VEC(position + 3 * (size_t)edge->a);
+        const double rest = sqrt(phys_dot(&way, &way));
         const double length = fmax(rest, length_at(flow, first, cloth, edge, 0));
         for (int i = 1; i <= TIMES; i++) {
             const double time = flow->model->end * i / TIMES;
@@ -199,13 +176,11 @@ static void warn_of_follow(struct flow *flow, const struct model_cloth *cloth, u
 {
     struct stretched most = {.by = 0.2}; /* a body's skin stretches by so much at its joints */
     find_stretched(flow, cloth, first, edges, &most);
-    if (most.edge && !flow->warning[FLOW_WARN_FOLLOW][0])
-        snprintf(flow->warning[FLOW_WARN_FOLLOW], sizeof flow->warning[FLOW_WARN_FOLLOW],
-                 "%.200s%spins that follow obstacles stretch cloth '%.60s' by %.0f %% at %.3g s: "
-                 "the edge between vertices %u and %u (counted from 1); pin fewer of its vertices",
-                 cloth->place ? cloth->place : "", cloth->place ? ": " : "",
-                 cloth->name ? cloth->name : "", 100 * most.by, most.time, most.edge->a + 1,
-                 most.edge->b + 1);
+    if (most.edge)
+        flow_warn_say(flow, FLOW_WARN_FOLLOW, cloth->place,
+                      "pins that follow obstacles stretch cloth '%.60s' by %.0f %% at %.3g s: the "
+                      "edge between vertices %u and %u (counted from 1); pin fewer of its vertices",
+                      name_of(cloth), 100 * most.by, most.time, most.edge->a + 1, most.edge->b + 1);
 }
 
 /* Grids are wound in one direction. Cloths without elements have no edges of their own. */
@@ -213,8 +188,7 @@ static void run_warn_of_edges(struct flow *flow)
 {
     const struct model *model = flow->model;
     const bool attached = flow->source.particles.attached != NULL;
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < model->n_cloths; first += model->cloths[c++].mesh.n_vertices) {
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct model_cloth *cloth = model->cloths + c;
         const struct mesh_edges *edges = flow->source.elements.edges + c;
         struct mesh_edges found = {0};
@@ -225,15 +199,21 @@ static void run_warn_of_edges(struct flow *flow)
             edges = &found;
         warn_of_windings(flow, cloth, edges);
         if (attached)
-            warn_of_follow(flow, cloth, first, edges);
+            warn_of_follow(flow, cloth, model_first(model, c), edges);
         mesh_edges_free(&found);
     }
 }
 
 int flow_warn(struct flow *flow, struct cloth_error *error)
 {
+    const struct flow_particles *particles = &flow->source.particles;
     run_warn_of_edges(flow);
-    warn_warn(flow, &flow->source.particles);
+    warn_of_unusual(flow, FLOW_WARN_UNUSED, &particles->unused, "vertices",
+                    "they are kept and stay where they are");
+    warn_of_unusual(flow, FLOW_WARN_PINNED, &particles->pinned, "pinned vertices",
+                    "they stay where they are without a pin");
+    warn_of_unusual(flow, FLOW_WARN_LOADED, &particles->loaded, "loads on vertices",
+                    "they move nothing");
     warn_of_extent(flow);
     warn_of_inside(flow);
     return flow_warn_of_steps(flow, error);

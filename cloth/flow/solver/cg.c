@@ -39,13 +39,11 @@ static int solver_cg_fork_begin(struct flow_state *state, bool guess)
 {
     const struct begin_args args = {.step = flow_attempt_args(state),
                                     .phase = guess ? SOLVE_OPEN : SOLVE_ON};
-    int code = flow_fork_one(state, &flow_kernel_cg_begin, &args);
-    if (code || guess || !state->flow->conditioner.coarse)
-        return code;
-    code = flow_levels_start(state);
-    return code ? code
-                : flow_levels_fork_top(state, &flow_kernel_cg_motion, &(struct flow_block_args){0},
-                                       false);
+    flow_fork_one(state, &flow_kernel_cg_begin, &args);
+    if (guess || !state->flow->conditioner.coarse)
+        return state->code;
+    flow_levels_solve(state);
+    return flow_levels_fork_top(state, &flow_kernel_cg_motion, &(struct flow_block_args){0}, false);
 }
 
 /* The number of blocks whose two tasks are forked together: the second still finds the data of the
@@ -56,60 +54,54 @@ int flow_cg_start(struct flow_state *state)
 {
     const uint32_t n_blocks = state->flow->tables.n_blocks;
     const double guess = guess_of(state);
-    int code = flow_coarse_start(state);
-    for (uint32_t first = 0; first < n_blocks && !code; first += BLOCKS_TOGETHER) {
+    flow_coarse_start(state);
+    for (uint32_t first = 0; first < n_blocks; first += BLOCKS_TOGETHER) {
         const uint32_t left = n_blocks - first;
         const uint32_t end = first + (left < BLOCKS_TOGETHER ? left : BLOCKS_TOGETHER);
-        code = flow_pass_factor(state, first, end);
-        if (!code)
-            code = flow_pass_start(state, first, end, guess);
+        flow_pass_factor(state, first, end);
+        flow_pass_start(state, first, end, guess);
     }
-    return code ? code : solver_cg_fork_begin(state, guess != 0);
+    return solver_cg_fork_begin(state, guess != 0);
 }
 
 int flow_cg_iterate(struct flow_state *state)
 {
     const uint64_t passes = (uint64_t)state->flow->model->max_iterations + SOLVE_EXTRA;
     const uint64_t rounds = (passes + 1) / 2;
-    const int code = duite_replay_while(state->rt, state->solve, state->run.scalars[0], rounds);
-    return code ? code : flow_pieces_fork(state);
+    if (!state->code)
+        flow_noted(state,
+                   duite_replay_while(state->rt, state->solve, state->run.scalars[0], rounds));
+    return flow_pieces_fork(state);
 }
 
 int flow_cg(struct flow_state *state)
 {
     state->guessed = 0;
-    const int code = flow_cg_start(state);
-    return code ? code : flow_cg_iterate(state);
+    flow_cg_start(state);
+    return flow_cg_iterate(state);
 }
 
 /* ---- Its recorded round ---- */
 
-static int fork_scalars(struct flow_state *state)
-{
-    const struct flow_block_args args = {0};
-    const int code = flow_levels_solve(state);
-    return code ? code : flow_levels_fork_top(state, &flow_kernel_cg_scalars, &args, false);
-}
-
 static int build_round(duite *rt, void *context)
 {
+    const struct flow_block_args args = {0};
     struct flow_state *state = context;
-    int code = DUITE_OK;
-    for (state->pass = 0; state->pass < 2 && !code; state->pass++) {
+    (void)rt;
+    for (state->pass = 0; state->pass < 2; state->pass++) {
         if (!flow_is_preconditioned(state->flow))
-            code = duite_set(rt, state->run.sums[state->pass], NULL);
-        if (!code)
-            code = flow_pass_fork(state);
-        if (!code)
-            code = fork_scalars(state);
+            flow_set(state, FLOW_FIELD_sums, NULL);
+        flow_pass_fork(state);
+        flow_levels_solve(state);
+        flow_levels_fork_top(state, &flow_kernel_cg_scalars, &args, false);
     }
     state->pass = 0;
-    return code;
+    return state->code;
 }
 
 int flow_cg_record(struct flow_state *state)
 {
-    return duite_graph_new(state->rt, build_round, state, &state->solve);
+    return flow_noted(state, duite_graph_new(state->rt, build_round, state, &state->solve));
 }
 
 /* ---- The scalars, on every rank ---- */

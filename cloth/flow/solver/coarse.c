@@ -50,8 +50,8 @@ int flow_coarse_initialise(struct flow_state *state)
     struct flow_block_args args;
     if (!state->flow->conditioner.coarse)
         return DUITE_OK;
-    const int code = flow_fork_each(state, &flow_kernel_basis, &args);
-    return code ? code : flow_fork_each(state, &flow_kernel_basis_ghosts, &args);
+    flow_fork_each(state, &flow_kernel_basis, &args);
+    return flow_fork_each(state, &flow_kernel_basis_ghosts, &args);
 }
 
 /* ---- The matrix C and its factor ---- */
@@ -228,24 +228,18 @@ static int factor_coarse_body(const duite_call *call, const struct factor_coarse
 }
 
 /* The coarse factor is made while blocks factorise theirs. */
-static int fork_factor(struct flow_state *state)
-{
-    struct flow_block_args args;
-    int code = flow_fork_each(state, &flow_kernel_couple, &args);
-    args.block = 0;
-    if (!code)
-        code = flow_levels_factor(state);
-    return code ? code : flow_levels_fork_top(state, &flow_kernel_factor_coarse, &args, true);
-}
-
 int flow_coarse_start(struct flow_state *state)
 {
+    struct flow_block_args args;
     if (!state->flow->conditioner.coarse)
         return DUITE_OK;
-    int code = model_is_filtered(state->flow->model) ? flow_coarse_initialise(state) : DUITE_OK;
-    if (!code)
-        code = flow_ties_show_basis(state);
-    return code ? code : fork_factor(state);
+    if (model_is_filtered(state->flow->model))
+        flow_coarse_initialise(state);
+    flow_ties_show_basis(state);
+    flow_fork_each(state, &flow_kernel_couple, &args);
+    args.block = 0;
+    flow_levels_factor(state);
+    return flow_levels_fork_top(state, &flow_kernel_factor_coarse, &args, true);
 }
 
 /* ---- In a pass ---- */

@@ -85,9 +85,8 @@ static int fork_groups(struct flow_state *state, const struct flow_kernel *kerne
 {
     const struct flow *flow = state->flow;
     duite_object *rest = state->refs + FLOW_MAX_PARAMETERS;
-    int code = DUITE_OK;
     for (uint32_t level = 0; level < flow->n_levels; level++)
-        for (uint32_t g = 0; g < flow->level[level].n_groups && !code; g++) {
+        for (uint32_t g = 0; g < flow->level[level].n_groups; g++) {
             const struct group_args args = {.level = level, .group = g};
             const struct flow_group *group = state->groups.all + flow->first_group[level] + g;
             const duite_object made[] = {group->factor, group->coupling};
@@ -95,9 +94,9 @@ static int fork_groups(struct flow_state *state, const struct flow_kernel *kerne
             const struct flow_given given = {.one = makes ? made : solved,
                                              .n = list_covered(state, &args, makes, rest),
                                              .rest = rest};
-            code = flow_fork_given(state, kernel, &args, &given);
+            flow_fork_given(state, kernel, &args, &given);
         }
-    return code;
+    return state->code;
 }
 
 /* ---- Factors ---- */
@@ -171,47 +170,21 @@ static void solve_group(const struct group *group, const double *factor, const d
     }
 }
 
-FLOW_KERNEL(group_start, FLOW_CG, struct group_args,
-            (GIVEN_W(group_motion), GIVEN_W(group_part), GIVEN_R(group_factor), R(lift),
-             REST_R(covered)))
+/* Before the first pass of a solve, too, whose scalars say that it makes a new q. */
 FLOW_KERNEL(group_solve, FLOW_CG, struct group_args,
             (GIVEN_W(group_motion), GIVEN_W(group_part), GIVEN_R(group_factor), R(lift), R(scalars),
              REST_R(covered)))
-
-/* Both kernels begin with the same parameters. moves: there is a motion to solve for. */
-static void solve_or_sum(const duite_call *call, bool moves, const struct group_start_fields *on)
+static int group_solve_body(const duite_call *call, const struct group_solve_fields *on)
 {
     const struct group group = solver_groups_group_of(call, on->args, on->lift);
     double *motion = on->group_motion, *part = on->group_part;
-    memset(part, 0, duite_count(call, FLOW_INDEX_OF(group_start, group_part)) * sizeof *part);
-    memset(motion, 0, duite_count(call, FLOW_INDEX_OF(group_start, group_motion)) * sizeof *motion);
+    memset(part, 0, duite_count(call, FLOW_INDEX_OF(group_solve, group_part)) * sizeof *part);
+    memset(motion, 0, duite_count(call, FLOW_INDEX_OF(group_solve, group_motion)) * sizeof *motion);
     motion[0] = group.among_all;
     add_dots(&group, on->covered, part);
-    if (moves)
+    if (flow_coarse_moves(on->scalars))
         solve_group(&group, on->group_factor, on->covered, motion + FLOW_MOTION, part);
-}
-
-static int group_start_body(const duite_call *call, const struct group_start_fields *on)
-{
-    solve_or_sum(call, true, on);
     return 0;
-}
-
-static int group_solve_body(const duite_call *call, const struct group_solve_fields *on)
-{
-    const struct group_start_fields start = {.args = on->args,
-                                             .group_motion = on->group_motion,
-                                             .group_part = on->group_part,
-                                             .group_factor = on->group_factor,
-                                             .lift = on->lift,
-                                             .covered = on->covered};
-    solve_or_sum(call, flow_coarse_moves(on->scalars), &start);
-    return 0;
-}
-
-int flow_levels_start(struct flow_state *state)
-{
-    return fork_groups(state, &flow_kernel_group_start, false);
 }
 
 int flow_levels_solve(struct flow_state *state)

@@ -6,40 +6,23 @@
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/state/bodies.h"
 
-#include "cloth/base/memory.h"
-
-#include <stdlib.h>
 #include <string.h>
 
 void flow_halo_take(struct flow_state *state)
 {
     const struct flow_head *head = &state->head;
-    struct cloth_error *trouble = &state->flow->trouble;
+    struct flow *flow = state->flow;
     struct flow_packed *packed = &state->packed;
-    const size_t neighbours = head->n_neighbours, ghosts = head->n_ghosts, halo = head->max_halo;
+    const size_t neighbours = head->n_neighbours;
     for (int i = 0; i < 2; i++)
-        packed->read[i] = cloth_alloc(neighbours, sizeof *packed->read[i], trouble);
-    packed->halo = cloth_alloc(neighbours, sizeof *packed->halo, trouble);
-    packed->first = cloth_alloc((size_t)head->n_blocks + 1, sizeof *packed->first, trouble);
-    packed->home = cloth_alloc(head->n_blocks, sizeof *packed->home, trouble);
-    packed->number = cloth_alloc(halo, sizeof *packed->number, trouble);
-    state->flow->at = cloth_alloc(ghosts, sizeof *state->flow->at, trouble);
-    state->flow->packed_row = cloth_alloc(ghosts, sizeof *state->flow->packed_row, trouble);
-    state->flow->packed_halo = cloth_alloc(neighbours, sizeof *state->flow->packed_halo, trouble);
-}
-
-void flow_halo_free(struct flow_state *state)
-{
-    struct flow_packed *packed = &state->packed;
-    for (int i = 0; i < 2; i++)
-        free(packed->read[i]);
-    free(packed->halo);
-    free(packed->first);
-    free(packed->home);
-    free(packed->number);
-    free(state->flow->at);
-    free(state->flow->packed_row);
-    free(state->flow->packed_halo);
+        packed->read[i] = flow_take(flow, neighbours, sizeof *packed->read[i]);
+    packed->halo = flow_take(flow, neighbours, sizeof *packed->halo);
+    packed->first = flow_take(flow, (size_t)head->n_blocks + 1, sizeof *packed->first);
+    packed->home = flow_take(flow, head->n_blocks, sizeof *packed->home);
+    packed->number = flow_take(flow, head->max_halo, sizeof *packed->number);
+    flow->at = flow_take(flow, head->n_ghosts, sizeof *flow->at);
+    flow->packed_row = flow_take(flow, head->n_ghosts, sizeof *flow->packed_row);
+    flow->packed_halo = flow_take(flow, neighbours, sizeof *flow->packed_halo);
 }
 
 /* Neighbour s of block b, for a reader: the neighbour's place among all, its rows. */
@@ -167,12 +150,10 @@ static int cg_pack_body(const duite_call *call, const struct cg_pack_fields *on)
 int flow_halo_pack(struct flow_state *state, uint32_t b, int to)
 {
     const struct flow_packed *packed = &state->packed;
-    int code = DUITE_OK;
-    for (uint32_t i = packed->first[b]; i < packed->first[b + 1] && !code; i++) {
+    for (uint32_t i = packed->first[b]; i < packed->first[b + 1]; i++) {
         const struct pack_args args = {.block = b, .halo = i};
         const duite_object one[] = {state->block[b].halo_q[to], packed->halo[i].object[to]};
-        code =
-            flow_fork_given(state, &flow_kernel_cg_pack, &args, &(struct flow_given){.one = one});
+        flow_fork_given(state, &flow_kernel_cg_pack, &args, &(struct flow_given){.one = one});
     }
-    return code;
+    return state->code;
 }

@@ -8,9 +8,6 @@
 #include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solver.h"
 
-#include "cloth/base/memory.h"
-
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- Objects ---- */
@@ -20,21 +17,13 @@ static uint32_t count_groups(const struct flow *flow)
     return flow->first_group[flow->n_levels];
 }
 
-int flow_levels_take(struct flow_state *state)
+void flow_levels_take(struct flow_state *state)
 {
     const uint32_t n = count_groups(state->flow);
     struct flow_groups *groups = &state->groups;
-    groups->all = cloth_alloc(n, sizeof *groups->all, &state->flow->trouble);
-    groups->mark = cloth_alloc(n, sizeof *groups->mark, &state->flow->trouble);
+    groups->all = flow_take(state->flow, n, sizeof *groups->all);
+    groups->mark = flow_take(state->flow, n, sizeof *groups->mark);
     groups->n = groups->all ? n : 0;
-    return groups->all && groups->mark ? CLOTH_OK : CLOTH_E_MEMORY;
-}
-
-void flow_levels_free(struct flow_state *state)
-{
-    free(state->groups.all);
-    free(state->groups.mark);
-    state->groups = (struct flow_groups){0};
 }
 
 static uint32_t first_block(const struct flow *flow, uint32_t level, uint32_t group)
@@ -125,9 +114,9 @@ int flow_levels_initialise(struct flow_state *state)
     struct flow_block_args args;
     if (!state->flow->n_levels)
         return DUITE_OK;
-    const int code = flow_fork_each(state, &flow_kernel_patch_frame, &args);
+    flow_fork_each(state, &flow_kernel_patch_frame, &args);
     args.block = 0;
-    return code ? code : flow_fork_one(state, &flow_kernel_lift, &args);
+    return flow_fork_one(state, &flow_kernel_lift, &args);
 }
 
 /* ---- The places of a node's numbers ---- */
@@ -163,7 +152,7 @@ int flow_levels_fork_top(struct flow_state *state, const struct flow_kernel *ker
     }
     for (uint32_t g = 0; top && g < flow_parts(flow); g++)
         state->refs[n++] = couplings ? top[g].coupling : top[g].part;
-    return duite_fork(state->rt, flow_task_of(state, kernel), args, n, state->refs);
+    return flow_fork_listed(state, kernel, args, n);
 }
 
 /* ---- The motions that a pass reads ---- */

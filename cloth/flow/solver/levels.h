@@ -7,17 +7,15 @@
 /* The coarse part by groups (cloth/solve/levels.h), on flow->n_levels levels. Without levels these
  * functions do nothing. Collective unless they say local; they return the runtime's code. */
 
-/* Take and free the memory of groups; errors go to flow->trouble. Make their objects, when those of
- * blocks are made; the next get returns a failure. Local. */
-int flow_levels_take(struct flow_state *state);
-void flow_levels_free(struct flow_state *state);
+/* Take the memory of groups (flow_take). Make their objects, when those of blocks are made; the
+ * next get returns a failure. Local. */
+void flow_levels_take(struct flow_state *state);
 void flow_levels_make(struct flow_state *state);
 
 /* Fork the tasks of all groups: the lifts of nodes into their groups, once a run; the factors, in
- * each step; the motions, before the first pass of a solve; the motions after a recorded pass. */
+ * each step; the motions, before the first pass of a solve and after each recorded one. */
 int flow_levels_initialise(struct flow_state *state);
 int flow_levels_factor(struct flow_state *state);
-int flow_levels_start(struct flow_state *state);
 int flow_levels_solve(struct flow_state *state);
 
 /* Forks a kernel on top. Its last parameter is ALL of `part`, or of `coupling`. With levels it gets

@@ -346,23 +346,16 @@ static int cg_pass_body(const duite_call *call, const struct cg_pass_fields *on)
 
 /* ---- Forks ---- */
 
-/* Forks the vectors of blocks. */
-static int fork_vectors(struct flow_state *state, uint32_t first, uint32_t end, double guess)
-{
-    struct guess_args args = {.guess = guess};
-    return flow_fork_range_as(state, guess != 0 ? &flow_kernel_cg_guess : &flow_kernel_cg_start,
-                              first, end, &args, NULL);
-}
-
 int flow_pass_start(struct flow_state *state, uint32_t first, uint32_t end, double guess)
 {
-    int code = fork_vectors(state, first, end, guess);
-    for (uint32_t b = first; b < end && !code; b++) {
-        code = flow_ties_pack_start(state, b, guess != 0);
-        if (!code)
-            code = flow_halo_pack(state, b, 0);
+    struct guess_args args = {.guess = guess};
+    flow_fork_range_as(state, guess != 0 ? &flow_kernel_cg_guess : &flow_kernel_cg_start, first,
+                       end, &args, NULL);
+    for (uint32_t b = first; b < end; b++) {
+        flow_ties_pack_start(state, b, guess != 0);
+        flow_halo_pack(state, b, 0);
     }
-    return code;
+    return state->code;
 }
 
 /* Reads the neighbours' halos or packed ones (halo.c). Motions of groups, if any, come last. */
@@ -377,7 +370,7 @@ static int fork_block(struct flow_state *state, const struct flow_block_args *ar
         halos++;
     memcpy(state->refs + halos, read, t->n_neighbours * sizeof *read);
     n = flow_levels_seen(state, args->block, n);
-    return duite_fork(state->rt, task, args, n, state->refs);
+    return flow_fork_listed(state, &flow_kernel_cg_pass, args, n);
 }
 
 /* Passes go to and fro over the blocks: the last blocks of one, still in caches, come first in the
@@ -386,14 +379,11 @@ int flow_pass_fork(struct flow_state *state)
 {
     const uint32_t n = state->flow->tables.n_blocks;
     struct flow_block_args args;
-    int code = DUITE_OK;
-    for (uint32_t i = 0; i < n && !code; i++) {
+    for (uint32_t i = 0; i < n; i++) {
         args.block = state->pass ? n - 1 - i : i;
-        code = fork_block(state, &args);
-        if (!code)
-            code = flow_halo_pack(state, args.block, 1 - (int)state->pass);
-        if (!code)
-            code = flow_ties_pack(state, args.block);
+        fork_block(state, &args);
+        flow_halo_pack(state, args.block, 1 - (int)state->pass);
+        flow_ties_pack(state, args.block);
     }
-    return code;
+    return state->code;
 }

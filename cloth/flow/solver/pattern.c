@@ -35,7 +35,8 @@ static uint32_t *solver_pattern_add_neighbours(const struct flow *flow, uint32_t
     return to;
 }
 
-uint32_t flow_patch_of(const struct flow *flow, uint32_t block, uint32_t row)
+/* The patch of a row of a block. */
+static uint32_t solver_pattern_patch_of(const struct flow *flow, uint32_t block, uint32_t row)
 {
     const struct solve_patches patches =
         solve_patches_of(flow->tables.block[block].n, flow->patches);
@@ -63,9 +64,9 @@ static uint32_t *insert_tied(const struct flow *flow, uint32_t b, uint32_t p, ui
         const struct flow_tie_corners *at = &tie->at;
         bool has = false;
         for (uint32_t k = 0; k < at->n; k++)
-            has = has || (at->block[k] == b && flow_patch_of(flow, b, at->row[k]) == p);
+            has = has || (at->block[k] == b && solver_pattern_patch_of(flow, b, at->row[k]) == p);
         for (uint32_t k = 0; k < at->n && has; k++) {
-            const uint32_t patch = flow_patch_of(flow, at->block[k], at->row[k]);
+            const uint32_t patch = solver_pattern_patch_of(flow, at->block[k], at->row[k]);
             if (patch != p)
                 end = insert_patch(from, end, patch);
         }
@@ -89,10 +90,9 @@ static bool join_patches(struct flow *flow)
 {
     const uint32_t n_blocks = flow->tables.n_blocks;
     const size_t n = (size_t)flow->patches * n_blocks;
-    struct cloth_error *trouble = &flow->trouble;
-    flow->patch_first = cloth_alloc(n + 1, sizeof *flow->patch_first, trouble);
+    flow->patch_first = flow_take(flow, n + 1, sizeof *flow->patch_first);
     flow->patch_neighbour =
-        cloth_alloc(max_patch_neighbours(flow), sizeof *flow->patch_neighbour, trouble);
+        flow_take(flow, max_patch_neighbours(flow), sizeof *flow->patch_neighbour);
     if (!flow->patch_first || !flow->patch_neighbour)
         return false;
     for (uint32_t b = 0; b < n_blocks; b++)
@@ -224,6 +224,4 @@ void flow_preconditioner_free(struct flow *flow)
     solve_pattern_free(&flow->pattern);
     for (uint32_t l = 0; l < flow->n_levels; l++)
         solve_level_free(flow->level + l);
-    free(flow->patch_first);
-    free(flow->patch_neighbour);
 }

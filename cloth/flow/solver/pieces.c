@@ -98,13 +98,12 @@ int flow_pieces_fork(struct flow_state *state)
 {
     if (!state->head.n_pieces)
         return DUITE_OK;
+    const struct flow_kernel *const kernel[] = {&flow_kernel_piece_sums, &flow_kernel_piece_shift};
     struct flow_block_args here;
-    int code = duite_set(state->rt, state->run.pieces, NULL);
-    for (here.block = 0; here.block < state->flow->tables.n_blocks && !code; here.block++)
-        if (state->flow->tables.block[here.block].n_loose)
-            code = flow_fork_one(state, &flow_kernel_piece_sums, &here);
-    for (here.block = 0; here.block < state->flow->tables.n_blocks && !code; here.block++)
-        if (state->flow->tables.block[here.block].n_loose)
-            code = flow_fork_one(state, &flow_kernel_piece_shift, &here);
-    return code;
+    flow_set(state, FLOW_FIELD_pieces, NULL);
+    for (int k = 0; k < 2; k++)
+        for (here.block = 0; here.block < state->flow->tables.n_blocks; here.block++)
+            if (state->flow->tables.block[here.block].n_loose)
+                flow_fork_one(state, kernel[k], &here);
+    return state->code;
 }

@@ -15,12 +15,11 @@ int flow_cg_start(struct flow_state *state);
 int flow_cg_iterate(struct flow_state *state);
 int flow_cg(struct flow_state *state);
 
-/* The halos that a solve reads. The first two take and free their memory, as parts of
- * flow_memory_take and flow_memory_free. The third finds the objects and makes packed halos, when
- * the other objects are made; the next get returns a failure. The last forks the tasks that pack a
- * block's packed halos, for even passes (0) or odd ones (1). */
+/* The halos that a solve reads. The first takes their memory, a part of flow_memory_take. The
+ * second finds the objects and makes packed halos, when the other objects are made; the next get
+ * returns a failure. The last forks the tasks that pack a block's packed halos, for even passes (0)
+ * or odd ones (1). */
 void flow_halo_take(struct flow_state *state);
-void flow_halo_free(struct flow_state *state);
 void flow_halo_make(struct flow_state *state); /* flow_run_begin does */
 int flow_halo_pack(struct flow_state *state, uint32_t block, int to);
 

@@ -95,9 +95,6 @@ static inline size_t flow_motion_doubles(const struct flow *flow)
     return SOLVE_COARSE_STRIDE * (size_t)flow->pattern.n;
 }
 
-/* The patch of a row of a block. */
-uint32_t flow_patch_of(const struct flow *flow, uint32_t block, uint32_t row);
-
 /* True if the pattern has room for the coupling of two patches, or of a patch with itself. */
 bool flow_patches_joined(const struct flow *flow, uint32_t p, uint32_t q);
 

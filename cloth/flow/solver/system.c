@@ -47,11 +47,9 @@ static void some_springs(const struct making *m, const struct phys_springs *spri
     const phys_vec *x = m->view.x, *x_other = inner ? x : flow_rows_of(m->view.halo_x, s);
     if (!m->b)
         phys_springs_matrix(springs, m->h, x, x_other, value);
-    else if (inner)
-        phys_springs_system(springs, m->h, m->push, x, m->view.v, m->b, value);
     else
-        phys_springs_system_cut(springs, m->h, m->push, x, m->view.v, x_other,
-                                flow_rows_of(m->view.halo_v, s), m->b, value);
+        phys_springs_system(springs, m->h, m->push, x, m->view.v, inner ? NULL : x_other,
+                            inner ? NULL : flow_rows_of(m->view.halo_v, s), m->b, value);
 }
 
 /* Springs from .. to - 1; in half storage so many at once that they stay in the nearest cache. */
@@ -91,7 +89,7 @@ static void begin_right_side(const struct making *m, const struct phys_sight *si
         phys_outside(t->n, t->load, t->drag, m->view.v, m->b);
         flow_varying_add(m->call, t, m->now, m->b);
         if (sight->x)
-            flow_elements_force_beside(m->call, t, m->now, sight, m->b);
+            flow_elements_force(m->call, t, m->now, true, sight, m->b);
     }
     for (uint32_t i = 0; i < t->n; i++)
         m->b[i] = m->h * m->b[i];

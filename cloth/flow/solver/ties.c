@@ -112,30 +112,31 @@ static enum flow_field_id product_of(const struct flow_state *state)
     return flow_is_preconditioned(state->flow) ? FLOW_FIELD_s : FLOW_FIELD_q;
 }
 
-int flow_ties_pack_start(struct flow_state *state, uint32_t block, bool guess)
+static int fork_pack(struct flow_state *state, const struct flow_kernel *kernel, uint32_t block,
+                     enum flow_field_id shown)
 {
     const struct flow_block_args args = {block};
-    const struct flow_as as[] = {{FLOW_FIELD_q, guess ? FLOW_FIELD_dv : product_of(state)},
-                                 {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}};
-    return is_tied(state, block) ? flow_fork_one_as(state, &flow_kernel_tie_pack, &args, as)
-                                 : DUITE_OK;
+    if (is_tied(state, block))
+        flow_fork_one_as(state, kernel, &args, FLOW_AS({FLOW_FIELD_q, shown}));
+    return state->code;
+}
+
+int flow_ties_pack_start(struct flow_state *state, uint32_t block, bool guess)
+{
+    return fork_pack(state, &flow_kernel_tie_pack, block,
+                     guess ? FLOW_FIELD_dv : product_of(state));
 }
 
 int flow_ties_pack(struct flow_state *state, uint32_t block)
 {
-    const struct flow_block_args args = {block};
-    const struct flow_as as[] = {{FLOW_FIELD_q, product_of(state)},
-                                 {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}};
-    return is_tied(state, block) ? flow_fork_one_as(state, &flow_kernel_tie_pack_pass, &args, as)
-                                 : DUITE_OK;
+    return fork_pack(state, &flow_kernel_tie_pack_pass, block, product_of(state));
 }
 
 int flow_ties_show_basis(struct flow_state *state)
 {
     struct flow_block_args args = {0};
-    int code = DUITE_OK;
-    for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
+    for (; args.block < state->flow->tables.n_blocks; args.block++)
         if (is_tied(state, args.block))
-            code = flow_fork_one(state, &flow_kernel_tie_show_basis, &args);
-    return code;
+            flow_fork_one(state, &flow_kernel_tie_show_basis, &args);
+    return state->code;
 }

@@ -5,6 +5,7 @@
  * one after the other in the order of the table. Two rounds are recorded once a run and replayed
  * until their scalars, which every rank makes alike, say that they are done. The main thread waits
  * for none of them. x moves in the rounds; v and the halos follow when they are over. */
+#include "cloth/base/order.h"
 #include "cloth/flow/pins/sliders.h"
 #include "cloth/flow/run/step.h"
 
@@ -86,19 +87,12 @@ static void split_base(const phys_vec *base, struct solve_end *end)
 static void find_filter(struct block *block, uint32_t row, phys_vec *filter)
 {
     const struct flow_table *t = block->t;
-    uint32_t low = 0, high = t->n_sliding;
+    const uint32_t at = cloth_first_from(t->sliding, 2, t->n_sliding, row);
     *filter = (phys_vec){0, 0, 0, 1};
-    while (low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (t->sliding[middle][0] < row)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    if (low == t->n_sliding || t->sliding[low][0] != row)
+    if (at == t->n_sliding || t->sliding[at][0] != row)
         return;
     struct flow_slider slider;
-    flow_pins_slider(&block->pins, low, &slider);
+    flow_pins_slider(&block->pins, at, &slider);
     *filter = slider.filter;
 }
 
@@ -226,20 +220,17 @@ static int edge_next_body(const duite_call *call, const struct edge_next_fields 
 /* Two rounds. */
 static int build_rounds(duite *rt, void *context)
 {
-    const double nothing[2] = {0};
     const struct flow_block_args first = {0};
     struct flow_state *state = context;
     struct flow_block_args args;
-    int code = DUITE_OK;
-    for (state->pass = 0; state->pass < 2 && !code; state->pass++) {
-        code = duite_set(rt, flow_field_object(state, FLOW_FIELD_edge_excess, 0), nothing);
-        if (!code)
-            code = flow_fork_each(state, &flow_kernel_edge_round, &args);
-        if (!code)
-            code = flow_fork_one(state, &flow_kernel_edge_next, &first);
+    (void)rt;
+    for (state->pass = 0; state->pass < 2; state->pass++) {
+        flow_set(state, FLOW_FIELD_edge_excess, NULL);
+        flow_fork_each(state, &flow_kernel_edge_round, &args);
+        flow_fork_one(state, &flow_kernel_edge_next, &first);
     }
     state->pass = 0;
-    return code;
+    return state->code;
 }
 
 /* ---- The end of the rounds ---- */
@@ -276,16 +267,13 @@ int flow_correct(struct flow_state *state)
     struct flow_block_args block;
     const uint64_t passes = (uint64_t)state->flow->model->correction_rounds + 1;
     args.t = flow_implicit_is_second(state) ? args.step.h * (2.0 / 3) : args.step.h;
-    int code = DUITE_OK;
     if (!state->correct.generation)
-        code = duite_graph_new(state->rt, build_rounds, state, &state->correct);
-    if (!code)
-        code = flow_fork_each(state, &flow_kernel_edge_start, &args);
+        flow_noted(state, duite_graph_new(state->rt, build_rounds, state, &state->correct));
+    flow_fork_each(state, &flow_kernel_edge_start, &args);
     args.block = 0;
-    if (!code)
-        code = flow_fork_one(state, &flow_kernel_edge_begin, &args);
-    if (!code)
-        code = duite_replay_while(state->rt, state->correct, state->run.edge_rounds[0],
-                                  (passes + 1) / 2);
-    return code ? code : flow_fork_each(state, &flow_kernel_edge_end, &block);
+    flow_fork_one(state, &flow_kernel_edge_begin, &args);
+    if (!state->code)
+        flow_noted(state, duite_replay_while(state->rt, state->correct, state->run.edge_rounds[0],
+                                             (passes + 1) / 2));
+    return flow_fork_each(state, &flow_kernel_edge_end, &block);
 }

@@ -12,22 +12,13 @@
 struct flow_side {
     uint32_t other;       /* the neighbour plus one, 0 for inner springs */
     uint32_t here, there; /* places; inner: the lower is here */
-    uint32_t spring;      /* its number: springs that join the same rows keep their order */
-    double stiffness, damping, length;
-    unsigned char stretch;
-    uint32_t seam;
-    const struct model_correction *correction;
+    uint32_t number;      /* of the spring: those that join the same rows keep their order */
+    struct flow_spring spring;
 };
 
-static int compare_sides(const void *va, const void *vb)
+static int compare_sides(const void *a, const void *b)
 {
-    const struct flow_side *a = va, *b = vb;
-    int order = cloth_compare_u32(a->other, b->other);
-    if (!order)
-        order = cloth_compare_u32(a->here, b->here);
-    if (!order)
-        order = cloth_compare_u32(a->there, b->there);
-    return order ? order : cloth_compare_u32(a->spring, b->spring);
+    return cloth_compare_numbers(a, b, 4);
 }
 
 /* The sides of the group: counted from the shapes, then put where their block's part goes on. */
@@ -43,8 +34,7 @@ static void springs_sides_put_side(struct gatherer *gatherer, uint32_t block, ui
 {
     struct flow_source *source = gatherer->source;
     source->side[source->start[block - source->from]++] =
-        (struct flow_side){other,      here,      there,      gatherer->spring, s->stiffness,
-                           s->damping, s->length, s->stretch, s->seam,          s->correction};
+        (struct flow_side){other, here, there, gatherer->spring, *s};
 }
 
 static void gather_spring(void *to, const struct flow_spring *s)
@@ -114,13 +104,11 @@ int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
 static void fill_rows(const struct flow_source *source, const struct flow_table *t,
                       const struct flow_layout *layout)
 {
-    const struct model *model = source->model;
     struct flow_cloths at = {0};
     for (uint32_t i = 0; i < t->n; i++) {
         const uint32_t v = source->blocks.vertex[t->first + i], halo = source->halo[t->first + i];
         struct flow_particle p;
-        flow_source_cloth(&at, model, v);
-        flow_particle_of(&source->particles, model, model->cloths + at.cloth, at.first, v, &p);
+        flow_particle_at(&source->particles, source->model, &at, v, &p);
         layout->vertex[i] = v;
         layout->mass[i] = p.mass;
         layout->drag[i] = p.drag;
@@ -150,16 +138,9 @@ static void fill_watched(const struct flow_source *source, const struct flow_tab
                          const struct flow_layout *layout)
 {
     const struct flow_watched *watched = &source->watched;
-    uint32_t low = 0, high = watched->n; /* the first at or after the block's first place */
-    while (t->n_watched && low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (watched->place[middle] < t->first)
-            low = middle + 1;
-        else
-            high = middle;
-    }
+    const uint32_t from = cloth_first_from(watched->place, 1, watched->n, t->first);
     for (uint32_t i = 0; i < t->n_watched; i++)
-        layout->watched[i] = watched->place[low + i] - t->first;
+        layout->watched[i] = watched->place[from + i] - t->first;
 }
 
 static void fill_varying(const struct flow_source *source, const struct flow_table *t,
@@ -167,12 +148,12 @@ static void fill_varying(const struct flow_source *source, const struct flow_tab
 {
     if (!t->n_varying)
         return;
-    const struct flow_varying *load =
-        source->particles.varying + flow_varying_from(source, t->first);
+    const struct flow_varying *all = source->particles.varying.items;
+    const struct flow_varying *load = all + flow_varying_from(source, t->first);
     for (uint32_t i = 0; i < t->n_varying; i++, load++) {
         layout->varying[i][0] = load->at - t->first;
         layout->varying[i][1] = load->curve;
-        layout->varying_force[i] = (phys_vec){load->force[0], load->force[1], load->force[2], 0};
+        layout->varying_force[i] = PHYS_VEC(load->force);
     }
 }
 
@@ -238,13 +219,13 @@ static void fill_sides(const struct flow_source *source, const struct flow_table
         const bool free_there = source->particles.free[vertex[side[i].there]];
         layout->end[i][0] = here;
         layout->end[i][1] = there;
-        layout->stiffness[i] = side[i].stiffness;
-        layout->damping[i] = side[i].damping;
-        layout->length[i] = side[i].length;
-        layout->stretch[i] = side[i].stretch;
-        if (side[i].seam) {
+        layout->stiffness[i] = side[i].spring.stiffness;
+        layout->damping[i] = side[i].spring.damping;
+        layout->length[i] = side[i].spring.length;
+        layout->stretch[i] = side[i].spring.stretch;
+        if (side[i].spring.seam) {
             layout->pulled[pulled][0] = i;
-            layout->pulled[pulled++][1] = side[i].seam;
+            layout->pulled[pulled++][1] = side[i].spring.seam;
         }
         if (!first || free_here == free_there || (side[i].other && !free_here))
             continue; /* neither end is held, or the free row is the neighbour's */
@@ -263,14 +244,15 @@ static void fill_corrected(const struct flow_source *source, const struct flow_t
     struct flow_cut_edge *cut = layout->corrected_cut;
     uint32_t s = 0;
     for (uint32_t i = 0; i < t->n_inner + t->n_cut; i++) {
-        const struct model_correction *correction = side[i].correction;
+        const struct model_correction *correction = side[i].spring.correction;
+        const double length = side[i].spring.length;
         s += i > t->n_inner && side[i].other != side[i - 1].other;
         if (!correction)
             continue;
         const struct solve_edge edge = {.end = {layout->end[i][0], layout->end[i][1]},
-                                        .length = side[i].length,
-                                        .most = (1 + correction->at) * side[i].length,
-                                        .slack = correction->tolerance * side[i].length};
+                                        .length = length,
+                                        .most = (1 + correction->at) * length,
+                                        .slack = correction->tolerance * length};
         if (!side[i].other) {
             *inner++ = edge;
             continue;

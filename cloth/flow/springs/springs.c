@@ -102,21 +102,28 @@ static const struct model_correction *correction_of(const struct visitor *visito
     return visitor->model->correction_rounds && correction->rounds ? correction : NULL;
 }
 
+/* damping: s, times the stiffness. stretch: it counts as such a spring. */
+static void visit_spring(const struct visitor *visitor, uint32_t a, uint32_t b, double stiffness,
+                         double damping, double length, bool stretch)
+{
+    const struct flow_spring spring = {.a = visitor->first + (a < b ? a : b),
+                                       .b = visitor->first + (a < b ? b : a),
+                                       .stiffness = stiffness,
+                                       .damping = damping * stiffness,
+                                       .length = length,
+                                       .stretch = stretch,
+                                       .correction = stretch ? correction_of(visitor, a, b) : NULL};
+    visitor->visit(visitor->to, &spring);
+}
+
 static void springs_pass_on(void *context, const struct mesh_spring *s)
 {
     const struct visitor *visitor = context;
     const struct model_material *material = springs_material_of(visitor, s->a, s->b);
-    const double damping =
-        s->kind == MESH_BEND ? model_damping_bending(material) : material->damping_stiffness;
-    const struct flow_spring spring = {
-        .a = visitor->first + s->a,
-        .b = visitor->first + s->b,
-        .stiffness = s->stiffness,
-        .damping = damping * s->stiffness,
-        .length = s->length,
-        .stretch = s->kind == MESH_STRETCH,
-        .correction = s->kind == MESH_STRETCH ? correction_of(visitor, s->a, s->b) : NULL};
-    visitor->visit(visitor->to, &spring);
+    visit_spring(visitor, s->a, s->b, s->stiffness,
+                 s->kind == MESH_BEND ? model_damping_bending(material)
+                                      : material->damping_stiffness,
+                 s->length, s->kind == MESH_STRETCH);
 }
 
 static const uint32_t NO_TRIANGLES[2] = {UINT32_MAX, UINT32_MAX};
@@ -131,15 +138,7 @@ static void link_pair(const struct visitor *visitor, const struct mesh *mesh,
     const double stiffness = length > 0 ? ea / length : 0;
     const double damping =
         stiffness > 0 ? springs_material_of(visitor, a, b)->damping_stiffness : 0;
-    const struct flow_spring spring = {
-        .a = visitor->first + (a < b ? a : b),
-        .b = visitor->first + (a < b ? b : a),
-        .stiffness = stiffness,
-        .damping = damping * stiffness,
-        .length = length,
-        .stretch = stretch && length > 0,
-        .correction = stretch && length > 0 ? correction_of(visitor, a, b) : NULL};
-    visitor->visit(visitor->to, &spring);
+    visit_spring(visitor, a, b, stiffness, damping, length, stretch && length > 0);
 }
 
 /* Links the diagonals of cells, whose corners share the force of the air. */

@@ -59,9 +59,6 @@ struct flow_view {
             (on)->contact_rows                                                                     \
     }
 
-/* Notes in the status that this rank is asked to stop, if it is. */
-void flow_note_stop(const duite_call *call, double *status);
-
 /* Fails if a row diverged, naming it by the input's number; if the step can be made again, notes it
  * in the status instead. Notes there, too, that a stop is asked for. what: "position" or
  * "velocity". */
@@ -158,11 +155,10 @@ void flow_ties_lost(const unsigned char *tie_table, const phys_vec *value, const
 bool flow_has_elements(const struct flow_table *t);
 struct phys_sight flow_elements_see(const duite_call *call, const struct flow_table *t,
                                     const struct flow_view *view);
-/* Adds their forces at a time, s; those of kinds whose matrix does not come with the right side. */
+/* Adds their forces at a time, s; beside: only of kinds whose matrix does not come with the right
+ * side. */
 void flow_elements_force(const duite_call *call, const struct flow_table *t, double now,
-                         const struct phys_sight *sight, phys_vec *f);
-void flow_elements_force_beside(const duite_call *call, const struct flow_table *t, double now,
-                                const struct phys_sight *sight, phys_vec *f);
+                         bool beside, const struct phys_sight *sight, phys_vec *f);
 /* y -= scale K v of the same. */
 void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
                              const struct phys_sight *sight, phys_vec *y);
@@ -181,19 +177,11 @@ void flow_varying_add(const duite_call *call, const struct flow_table *t, double
 double flow_varying_energy(const duite_call *call, const struct flow_table *t, double now,
                            const phys_vec *x);
 
-/* All forces on the block's rows at a time of a step, its `now`, in N; those without the drag.
+/* All forces on the block's rows at a time of a step, its `now`, in N, with the drag or without.
  * (forces.c) */
 void flow_forces(const duite_call *call, const struct flow_table *t,
-                 const struct flow_step_args *step, const struct flow_view *view, phys_vec *f);
-void flow_forces_free(const duite_call *call, const struct flow_table *t,
-                      const struct flow_step_args *step, const struct flow_view *view, phys_vec *f);
-
-/* Rows of the worker's own for these where no other task reads them; until the task ends. */
-static inline phys_vec *flow_force_room(const duite_call *call)
-{
-    const struct flow *flow = flow_of(call);
-    return flow->forces + call->worker * flow->n_forces;
-}
+                 const struct flow_step_args *step, const struct flow_view *view, bool drag,
+                 phys_vec *f);
 
 /* Copies the rows that neighbours need. halo: n_halo rows; a single unread one if there are none.
  */
@@ -212,27 +200,6 @@ static inline void flow_pack_halo(const struct flow_table *t, const phys_vec *y,
     solve_pack(t->n_halo, t->halo, y, halo);
     if (!t->n_halo)
         halo[0] = halo[1] = halo[2] = 0;
-}
-
-/* The result of a solve for a block. */
-struct flow_solved {
-    const void *value; /* of the matrix */
-    const phys_vec *b, *dv, *r;
-    const struct solve_scalars *scalars;
-    const unsigned char *tie_table; /* NULL: the run has no ties */
-};
-/* Notes the solve in the status: its iterations and restarts, its error, the momentum that it lost,
- * its failure. */
-void flow_note_solve(const duite_call *call, const struct flow_table *table,
-                     const struct flow_solved *solved, double *status);
-
-/* A double as eight bytes, the lowest first. */
-static inline void flow_put_double(unsigned char *bytes, double value)
-{
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    for (int i = 0; i < 8; i++)
-        bytes[i] = (unsigned char)(bits >> (8 * i));
 }
 
 /* The number of dots that a pass sums: without a preconditioner r.z is r.r, and the rest is for

@@ -6,7 +6,6 @@
 #include "cloth/flow/contact/mode.h"
 #include "cloth/flow/contact/skin.h"
 #include "cloth/flow/integrators/integrator.h"
-#include "cloth/flow/observe/observe.h"
 #include "cloth/flow/solver/solver.h"
 
 /* ---- The words of the columns ---- */
@@ -85,7 +84,6 @@ ROWS(body_points,   bodies_end(model).point)
 ROWS(body_boxes,    bodies_end(model).boxes)
 ROWS(map_bytes,     flow_map_bytes(flow, block))
 ROWS(watched,       t->n_watched)
-ROWS(saved,         flow_system_doubles(t, tie_room(state, block).ties))
 ROWS(table_bytes,   flow_table_bytes(t))
 ROWS(skin_bytes,    flow_skin_bytes(t))
 ROWS(skin_points,   2 * (size_t)t->skin.n_points)
@@ -127,7 +125,6 @@ EXISTS(may_be_tied,  flow->n_ties > 0 || model_seeks(model))
 EXISTS(solves_tied,  may_be_tied(state, block) && implicit_run(state, block))
 EXISTS(coarse_tied,  may_be_tied(state, block) && coarse_run(state, block))
 EXISTS(probed,       flow_writes_probes(state) && t->n_watched)
-EXISTS(saves,        implicit_run(state, block) && state->output && state->output->system)
 EXISTS(in_pieces,    state->head.n_pieces)
 EXISTS(tied_pieces,  in_pieces(state, block) && may_be_tied(state, block))
 

@@ -116,9 +116,8 @@ enum {
     /* at probes: the force on each row; the values that they report */                            \
     X(probe_force,  ONE,     phys_vec,      4, rows,          probed,       work)                  \
     X(probe_values, ONE,     double,        FLOW_PROBE_VALUES, watched,       probed,       work)  \
-    /* what travels to rank 0 on its own, empty in between; saved: of the system of a step */      \
-    X(gathered,     SIZED,   unsigned char, FLOW_VERTEX_BYTES, rows,          always,       work)  \
-    X(saved,        ONE,     double,        1, saved,         saves,        work)
+    /* what travels to rank 0 on its own, empty in between */                                      \
+    X(gathered,     SIZED,   unsigned char, FLOW_VERTEX_BYTES, rows,          always,       work)
 
 /* Fields of the whole run; they live where the first block lives. */
 #define FLOW_RUN_FIELDS(X)                                                                         \
@@ -165,7 +164,40 @@ enum {
 
 #define FLOW_FIELDS(X) FLOW_BLOCK_FIELDS(X) FLOW_RUN_FIELDS(X)
 
-/* FLOW_FIELD_name, and FLOW_FIELD_name_next behind it. */
+/* Objects that are no fields: their number follows from the run, or they live for a moment. */
+#define FLOW_OBJECTS(X)                                                                            \
+    /* set-up: of rank 0 for all; what a rank lacks; a checkpoint's main program, its objects */   \
+    X(head, struct flow_head)                                                                      \
+    X(shared, char)                                                                                \
+    X(lacks, int32_t)                                                                              \
+    X(main_program, unsigned char)                                                                 \
+    X(saved_objects, unsigned char)                                                                \
+    /* the fields of all blocks that make the system of a step (observe/system.c) */               \
+    X(system_objects, unsigned char)                                                               \
+    /* contact (contact.h): a meeting's list, the counts of all; of its second side; the contacts  \
+     * of a block before and after, those of blocks */                                             \
+    X(near, struct flow_list)                                                                      \
+    X(counts, double)                                                                              \
+    X(other_skin, unsigned char)                                                                   \
+    X(other_x, phys_vec)                                                                           \
+    X(other_boxes, unsigned char)                                                                  \
+    X(before, struct flow_list)                                                                    \
+    X(after, struct flow_list)                                                                     \
+    X(meetings, struct flow_list)                                                                  \
+    X(keepers, struct flow_list)                                                                   \
+    /* the solver: rows of s that another rank reads (halo.c); a group, what it covers (groups.c)  \
+     */                                                                                            \
+    X(whole_halo, double)                                                                          \
+    X(packed_halo, double)                                                                         \
+    X(group_factor, double)                                                                        \
+    X(group_coupling, double)                                                                      \
+    X(group_motion, double)                                                                        \
+    X(group_part, double)                                                                          \
+    X(covered, double)
+
+/* FLOW_FIELD_name, and FLOW_FIELD_name_next behind it. Objects that are no fields have the number
+ * of none. */
+#define FLOW_OBJECT_ID(name, type)     FLOW_FIELD_##name = FLOW_FIELDS_OF_ALL,
 #define FLOW_FIELD_ID(name, many, ...) FLOW_FIELD_ID_##many(name)
 #define FLOW_FIELD_ID_ONE(name)        FLOW_FIELD_##name,
 #define FLOW_FIELD_ID_SIZED(name)      FLOW_FIELD_##name,
@@ -174,7 +206,8 @@ enum {
 enum flow_field_id {
     FLOW_BLOCK_FIELDS(FLOW_FIELD_ID) FLOW_FIELDS_OF_BLOCK,
     FLOW_FIELD_BEFORE_RUN = FLOW_FIELDS_OF_BLOCK - 1,
-    FLOW_RUN_FIELDS(FLOW_FIELD_ID) FLOW_FIELDS_OF_ALL
+    FLOW_RUN_FIELDS(FLOW_FIELD_ID) FLOW_FIELDS_OF_ALL,
+    FLOW_OBJECTS(FLOW_OBJECT_ID)
 };
 enum { FLOW_FIELDS_OF_RUN = FLOW_FIELDS_OF_ALL - FLOW_FIELDS_OF_BLOCK };
 

@@ -79,18 +79,36 @@ enum {
 /* Levels of groups; nodes of a group: four patches of four blocks. */
 enum { FLOW_MAX_LEVELS = 8, FLOW_MAX_NODES = 16 };
 
+/* Numbers that rank 0 finds from its source, and all ranks have. inertia, kg m^2; release, J;
+ * contact_stiffness, N/m; vertex_mass, kg: of flow_source_inertia and the like. feels_contact: a
+ * probe reports the force of contact. */
+#define FLOW_NUMBERS(X)                                                                            \
+    X(uint64_t, n_steps)                                                                           \
+    X(uint64_t, partition_hash)                                                                    \
+    X(double, inertia)                                                                             \
+    X(double, release)                                                                             \
+    X(double, contact_stiffness)                                                                   \
+    X(double, vertex_mass)                                                                         \
+    X(uint32_t, n_vertices)                                                                        \
+    X(uint32_t, n_triangles)                                                                       \
+    X(bool, feels_contact)
+#define FLOW_MEMBER(type, name) type name;
+struct flow_numbers {
+    FLOW_NUMBERS(FLOW_MEMBER)
+};
+
 /* On rank 0 as flow_prepare left it; elsewhere as received from rank 0. */
 struct flow {
     const struct model *model; /* rank 0: the program's; else &received */
     struct model received;     /* without names, materials, cloths */
-    uint32_t n_vertices, n_triangles;
-    uint64_t n_steps, partition_hash;
-    double inertia, release;               /* kg m^2, J: flow_source_inertia, flow_source_release */
-    double contact_stiffness, vertex_mass; /* N/m, kg: flow_source_stiffness, flow_source_mass */
-    bool feels_contact;                    /* a probe reports the force of contact */
-    struct flow_tables tables;             /* shapes */
-    void *shared; /* memory of the bodies, obstacles, key frames, frictions, ties, neighbours and
-                     ghosts that members here point to */
+    union {                    /* by name, or all of them */
+        struct flow_numbers numbers;
+        struct {
+            FLOW_NUMBERS(FLOW_MEMBER)
+        };
+    };
+    struct flow_tables tables; /* shapes */
+    void *shared;              /* memory that members here point to, the same on all ranks */
     uint32_t n_cloths;
     const double *friction; /* n_cloths x (n_cloths + n_obstacles): the coefficient of a cloth and
                              * another side, cloths before obstacles; FLOW_APART: the two do not
@@ -114,6 +132,7 @@ struct flow {
     struct flow_checkpoint from; /* that the run goes on from; bytes NULL: none */
 
     /* The run under way. */
+    struct cloth_list taken;           /* all memory of it, of flow_take */
     uint32_t made[FLOW_FIELDS_OF_ALL]; /* in which blocks a field exists: in none from there on */
     const struct flow_progress *progress; /* tasks ask it whether to stop; NULL: they do not ask */
     unsigned n_clocks;
@@ -153,14 +172,18 @@ struct flow {
     double *probe_values; /* watched x FLOW_PROBE_VALUES */
     uint64_t frames;      /* written */
     uint64_t hash;
-    struct flow_checkpoint saving; /* copied by tasks so far; bytes NULL: no memory */
-    size_t saving_room;            /* bytes */
+    struct cloth_list
+        saving; /* bytes of a checkpoint that tasks copied so far; items NULL: no memory */
 };
 
 static inline bool flow_is_preconditioned(const struct flow *flow)
 {
     return flow->conditioner.local != SOLVE_IDENTITY;
 }
+
+/* Takes zeroed memory of n items for the run under way, aligned to a cache line; it is freed at its
+ * end. NULL: there is none, and flow->trouble says so. Local. (run/memory.c) */
+void *flow_take(struct flow *flow, size_t n, size_t size);
 
 /* Seconds since some start. Local. */
 double flow_now(void);

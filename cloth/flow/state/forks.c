@@ -1,5 +1,5 @@
 /* Forks of kernels that declare their fields (kernel.h): the objects follow from the declaration.
- */
+ * All of a run's forks but those of contact's own lists are here, so its first failure is, too. */
 #include "cloth/flow/state/bodies.h"
 
 /* The field that the fork gives for a declared one. */
@@ -107,12 +107,28 @@ size_t flow_kernel_objects(struct flow_state *state, const struct flow_kernel *k
     return list_objects(state, &places, block, NULL, state->refs);
 }
 
+/* rank NULL: where the runtime chooses. */
+static int fork_task(struct flow_state *state, const int *rank, const duite_kernel *task,
+                     const void *args, size_t n, const duite_object *objects)
+{
+    const duite_task_options options = {.at = rank};
+    return state->code
+               ? state->code
+               : flow_noted(state, duite_fork_with(state->rt, &options, task, args, n, objects));
+}
+
+int flow_fork_listed(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
+                     size_t n)
+{
+    return fork_task(state, NULL, flow_task_of(state, kernel), args, n, state->refs);
+}
+
 int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
                      const struct flow_as *as)
 {
     const uint32_t *block = args;
     const size_t n = flow_kernel_objects(state, kernel, *block, as);
-    return duite_fork(state->rt, flow_task_of(state, kernel), args, n, state->refs);
+    return flow_fork_listed(state, kernel, args, n);
 }
 
 int flow_fork_one(struct flow_state *state, const struct flow_kernel *kernel, const void *args)
@@ -147,14 +163,13 @@ int flow_fork_range_as(struct flow_state *state, const struct flow_kernel *kerne
     const duite_kernel *task = flow_task_of(state, kernel);
     size_t n[FLOW_FORKS_AHEAD];
     struct places places;
-    int code = DUITE_OK;
     forks_find_places(state, kernel, as, &places);
-    for (uint32_t b = first; b < end + FLOW_FORKS_AHEAD && !code; b++) {
+    for (uint32_t b = first; b < end + FLOW_FORKS_AHEAD && !state->code; b++) {
         const uint32_t turn = (b - first) % FLOW_FORKS_AHEAD;
         duite_object *refs = state->refs + turn * state->max_refs;
         if (b >= first + FLOW_FORKS_AHEAD) {
             *block = b - FLOW_FORKS_AHEAD;
-            code = duite_fork(state->rt, task, args, n[turn], refs);
+            flow_noted(state, duite_fork(state->rt, task, args, n[turn], refs));
         }
         if (b >= end)
             continue;
@@ -163,15 +178,15 @@ int flow_fork_range_as(struct flow_state *state, const struct flow_kernel *kerne
         n[turn] = list_objects(state, &places, b, NULL, refs);
         duite_prefetch(state->rt, n[turn], refs);
     }
-    return code;
+    return state->code;
 }
 
 int flow_fork_each_as(struct flow_state *state, const struct flow_kernel *kernel, void *args,
                       const struct flow_as *as)
 {
-    const int code = sees_ties(kernel) ? flow_ties_show(state) : DUITE_OK;
-    return code ? code
-                : flow_fork_range_as(state, kernel, 0, state->flow->tables.n_blocks, args, as);
+    if (sees_ties(kernel))
+        flow_ties_show(state);
+    return flow_fork_range_as(state, kernel, 0, state->flow->tables.n_blocks, args, as);
 }
 
 int flow_fork_each(struct flow_state *state, const struct flow_kernel *kernel, void *args)
@@ -184,36 +199,29 @@ int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *k
 {
     const uint32_t *block = args;
     const size_t n = flow_kernel_objects(state, kernel, *block, as);
-    return duite_fork_at(state->rt, rank, flow_task_of(state, kernel), args, n, state->refs);
+    return fork_task(state, &rank, flow_task_of(state, kernel), args, n, state->refs);
 }
 
-/* The objects of a fork that gives some, one after the other. Returns the first; *n: how many. */
-static duite_object *gather_given(const struct flow_state *state, const struct flow_kernel *kernel,
-                                  const void *args, const struct flow_given *given,
-                                  duite_object room[FLOW_MAX_PARAMETERS], size_t *n)
+static int fork_given(struct flow_state *state, const int *rank, const struct flow_kernel *kernel,
+                      const void *args, const struct flow_given *given)
 {
     const uint32_t *block = args;
+    duite_object room[FLOW_MAX_PARAMETERS];
     struct places places;
     forks_find_places(state, kernel, NULL, &places);
     duite_object *first = given->rest ? given->rest - places.n : room;
-    *n = given->n + list_objects(state, &places, block ? *block : 0, given->one, first);
-    return first;
+    const size_t n = list_objects(state, &places, block ? *block : 0, given->one, first);
+    return fork_task(state, rank, &kernel->task, args, n + given->n, first);
 }
 
 int flow_fork_given(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
                     const struct flow_given *given)
 {
-    duite_object room[FLOW_MAX_PARAMETERS];
-    size_t n;
-    const duite_object *first = gather_given(state, kernel, args, given, room, &n);
-    return duite_fork(state->rt, &kernel->task, args, n, first);
+    return fork_given(state, NULL, kernel, args, given);
 }
 
 int flow_fork_given_at(struct flow_state *state, int rank, const struct flow_kernel *kernel,
                        const void *args, const struct flow_given *given)
 {
-    duite_object room[FLOW_MAX_PARAMETERS];
-    size_t n;
-    const duite_object *first = gather_given(state, kernel, args, given, room, &n);
-    return duite_fork_at(state->rt, rank, &kernel->task, args, n, first);
+    return fork_given(state, &rank, kernel, args, given);
 }

@@ -222,18 +222,9 @@ struct flow_kernel {
 #define FLOW_REST_IN_WITH(member)
 #define FLOW_REST_IN_LESS(member)
 
-/* clang-format off */
 /* The parameters at the fork. */
 #define FLOW_PARAMETER(k, word) FLOW_SPREAD(FLOW_PARAMETER_IN, k, FLOW_WORD_##word)
-#define FLOW_PARAMETER_IN(k, kind, only, mode, law, whose, field) {whose, FLOW_ID_##kind(field)},
-#define FLOW_ID_FIXED(field) FLOW_FIELD_##field
-#define FLOW_ID_WITH(field)  FLOW_FIELD_##field
-#define FLOW_ID_LESS(field)  FLOW_FIELD_##field
-#define FLOW_ID_READ(field)  FLOW_FIELD_##field
-#define FLOW_ID_MANY(field)  FLOW_FIELD_##field
-#define FLOW_ID_TIED(field)  FLOW_FIELD_##field
-#define FLOW_ID_GIVEN(field) FLOW_FIELDS_OF_ALL
-#define FLOW_ID_REST(field)  FLOW_FIELDS_OF_ALL
+#define FLOW_PARAMETER_IN(k, kind, only, mode, law, whose, field) {whose, FLOW_FIELD_##field},
 /* The mode of those whose number varies: one for all of a kernel. */
 #define FLOW_FURTHER(k, word) FLOW_SPREAD(FLOW_FURTHER_IN, k, FLOW_WORD_##word)
 #define FLOW_FURTHER_IN(k, kind, only, mode, law, whose, field) FLOW_FURTHER_##kind(mode)
@@ -286,34 +277,6 @@ struct flow_kernel {
 #define FLOW_FIELD_TYPE_BY_PASS(name, type) FLOW_FIELD_TYPE_BY_STEP(name, type)
 FLOW_FIELDS(FLOW_FIELD_TYPE)
 
-/* Objects that are no fields: their number follows from the run, or they live for a moment. */
-#define FLOW_OBJECTS(X)                                                                            \
-    /* set-up: of rank 0 for all; what a rank lacks; a checkpoint's main program, its objects */   \
-    X(head, struct flow_head)                                                                      \
-    X(shared, char)                                                                                \
-    X(lacks, int32_t)                                                                              \
-    X(main_program, unsigned char)                                                                 \
-    X(saved_objects, unsigned char)                                                                \
-    /* contact (contact.h): a meeting's list, the counts of all; of its second side; the contacts  \
-     * of a block before and after, those of blocks */                                             \
-    X(near, struct flow_list)                                                                      \
-    X(counts, double)                                                                              \
-    X(other_skin, unsigned char)                                                                   \
-    X(other_x, phys_vec)                                                                           \
-    X(other_boxes, unsigned char)                                                                  \
-    X(before, struct flow_list)                                                                    \
-    X(after, struct flow_list)                                                                     \
-    X(meetings, struct flow_list)                                                                  \
-    X(keepers, struct flow_list)                                                                   \
-    /* the solver: rows of s that another rank reads (halo.c); a group, what it covers (groups.c)  \
-     */                                                                                            \
-    X(whole_halo, double)                                                                          \
-    X(packed_halo, double)                                                                         \
-    X(group_factor, double)                                                                        \
-    X(group_coupling, double)                                                                      \
-    X(group_motion, double)                                                                        \
-    X(group_part, double)                                                                          \
-    X(covered, double)
 struct flow_head;
 struct flow_list;
 #define FLOW_OBJECT_TYPE(name, type) typedef type flow_type_of_##name;
@@ -325,7 +288,7 @@ FLOW_OBJECTS(FLOW_OBJECT_TYPE)
 struct flow_as {
     enum flow_field_id declared, given;
 };
-/* FLOW_AS(FLOW_FOR(kept_x, base_x), FLOW_FOR(kept_v, base_v)) */
+/* FLOW_AS(FLOW_FOR(kept_x, base_x), {FLOW_FIELD_kept_v, field}) */
 #define FLOW_FOR(declared, given)                                                                  \
     {                                                                                              \
         FLOW_FIELD_##declared, FLOW_FIELD_##given                                                  \
@@ -338,7 +301,7 @@ enum { FLOW_FORKS_AHEAD = 8 }; /* forks whose objects are found before the first
 /* Fork a kernel with the objects that it declares: on the block that the arguments name, on each
  * block, on the blocks from first to before end, or on a rank. On several blocks they write its
  * number into the arguments. On each: they call flow_ties_show before a kernel that reads
- * TIED(tie_halo). as: NULL, or FLOW_AS. Collective. They return what the runtime does. */
+ * TIED(tie_halo). as: NULL, or FLOW_AS. Collective. They return the first failure of the run. */
 int flow_fork_one(struct flow_state *state, const struct flow_kernel *kernel, const void *args);
 int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
                      const struct flow_as *as);
@@ -366,9 +329,11 @@ int flow_fork_given_at(struct flow_state *state, int rank, const struct flow_ker
                        const void *args, const struct flow_given *given);
 
 /* Puts the objects that a fork of the kernel on a block gives into state->refs. Returns how many:
- * for forks that give others in place of some. */
+ * for forks that give others in place of some. The second forks with n objects there. */
 size_t flow_kernel_objects(struct flow_state *state, const struct flow_kernel *kernel,
                            uint32_t block, const struct flow_as *as);
+int flow_fork_listed(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
+                     size_t n);
 
 /* In a body: the rows, or the numbers, of neighbour s; of the s-th block that has the field. */
 static inline const phys_vec *flow_rows_of(const duite_param *field, size_t s)

@@ -7,7 +7,7 @@
  * forces and pins, contact, integrators, the solver, observation of a run. */
 /* clang-format off */
 #define FLOW_KERNELS(X)                                                                            \
-    X(broadcast_head) X(broadcast_shared) X(ready) X(table_make) X(table_keep) X(skin_make) X(skin_keep)                                          \
+    X(broadcast_head) X(broadcast_shared) X(ready) X(table_make) X(table_keep)                                          \
     X(initial) X(resume_main) X(resume_load) X(resume) X(keep) X(restore) X(status) X(tie) X(tie_show)                                     \
     X(force) X(force_free) X(prescribe_velocity) X(prescribe_position)                             \
     X(keep_halo) X(skin_refit) X(skin_place) X(root) X(roots) X(meet) X(meet_self) X(meet_figure) X(meet_shape) X(touch) X(cut)                \
@@ -20,14 +20,14 @@
     X(basis) X(basis_ghosts) X(patch_frame) X(lift) X(couple) X(factor_coarse)                     \
     X(cg_begin) X(cg_motion) X(cg_start) X(cg_guess) X(cg_pass)                              \
     X(tie_pack) X(tie_pack_pass) X(tie_show_basis)            \
-    X(cg_pack) X(group_factor) X(group_start) X(group_solve)                \
+    X(cg_pack) X(group_factor) X(group_solve)                \
     X(cg_scalars) X(piece_sums) X(piece_shift)         \
     X(stretch) X(energy) X(level) X(watch) X(seams) X(contact_force) X(probe) X(row)                         \
-    X(frame) X(frame_beside) X(frame_force) X(collect) X(seconds) X(broadcast) X(system_part) X(system_save) X(save)
+    X(frame) X(collect) X(seconds) X(broadcast) X(system_save) X(save)
 /* clang-format on */
 
 /* Those of them that are two to the runtime. */
-#define FLOW_KERNELS_IF(X) X(cg_start) X(cg_pass) X(cg_scalars)
+#define FLOW_KERNELS_IF(X) X(table_make) X(table_keep) X(cg_start) X(cg_pass) X(cg_scalars)
 
 #define FLOW_KERNEL_NUMBER(name) FLOW_KERNEL_##name,
 #define FLOW_KERNEL_EXTERN(name) extern const struct flow_kernel flow_kernel_##name;

@@ -78,40 +78,32 @@ void flow_objects_fit(struct flow_state *state, uint32_t block, const struct flo
     }
 }
 
-/* Frees the objects that were made; the others are zero. Returns the first failure. */
-static int free_objects(duite *rt, size_t n, const duite_object *object)
+/* Frees the objects that were made; the others are zero. */
+static void free_objects(struct flow_state *state, size_t n, const duite_object *object)
 {
-    int code = DUITE_OK;
-    for (size_t i = 0; i < n; i++) {
-        const int failed = object[i].generation ? duite_free(rt, object[i]) : DUITE_OK;
-        code = code ? code : failed;
-    }
-    return code;
+    for (size_t i = 0; i < n; i++)
+        if (object[i].generation)
+            flow_noted(state, duite_free(state->rt, object[i]));
 }
 
 int flow_objects_free(struct flow_state *state)
 {
-    int code = state->solve.generation ? duite_graph_free(state->rt, state->solve) : DUITE_OK;
-    if (state->correct.generation) {
-        const int failed = duite_graph_free(state->rt, state->correct);
-        code = code ? code : failed;
-    }
-    for (uint32_t i = 0; i < state->packed.n; i++) {
-        const int failed = free_objects(state->rt, 2, state->packed.halo[i].object);
-        code = code ? code : failed;
-    }
+    state->code = DUITE_OK; /* of the run, which is over */
+    if (state->solve.generation)
+        flow_noted(state, duite_graph_free(state->rt, state->solve));
+    if (state->correct.generation)
+        flow_noted(state, duite_graph_free(state->rt, state->correct));
+    for (uint32_t i = 0; i < state->packed.n; i++)
+        free_objects(state, 2, state->packed.halo[i].object);
     for (uint32_t g = 0; g < state->groups.n; g++) {
         const struct flow_group *group = state->groups.all + g;
         const duite_object all[] = {group->factor, group->coupling, group->part, group->motion};
-        const int failed = free_objects(state->rt, sizeof all / sizeof *all, all);
-        code = code ? code : failed;
+        free_objects(state, sizeof all / sizeof *all, all);
     }
-    for (uint32_t b = 0; state->block && b < state->flow->tables.n_blocks; b++) {
-        const int failed = free_objects(state->rt, FLOW_FIELDS_OF_BLOCK, state->block[b].of);
-        code = code ? code : failed;
-    }
-    const int failed = free_objects(state->rt, FLOW_FIELDS_OF_RUN, state->run.of);
-    return code ? code : failed;
+    for (uint32_t b = 0; state->block && b < state->flow->tables.n_blocks; b++)
+        free_objects(state, FLOW_FIELDS_OF_BLOCK, state->block[b].of);
+    free_objects(state, FLOW_FIELDS_OF_RUN, state->run.of);
+    return state->code;
 }
 
 size_t flow_field_place(const struct flow_state *state, enum flow_field_id field)
@@ -131,6 +123,18 @@ duite_object flow_field_object(const struct flow_state *state, enum flow_field_i
     const size_t place = flow_field_place(state, field);
     return field < FLOW_FIELDS_OF_BLOCK ? state->block[block].of[place]
                                         : state->run.of[place - FLOW_FIELDS_OF_BLOCK];
+}
+
+int flow_set(struct flow_state *state, enum flow_field_id field, const void *value)
+{
+    const duite_object object = flow_field_object(state, field, 0);
+    return state->code ? state->code : flow_noted(state, duite_set(state->rt, object, value));
+}
+
+int flow_get(struct flow_state *state, enum flow_field_id field, void *value)
+{
+    const duite_object object = flow_field_object(state, field, 0);
+    return state->code ? state->code : flow_noted(state, duite_get(state->rt, object, value));
 }
 
 void flow_fields_swap(struct flow_state *state, enum flow_field_id a, enum flow_field_id b)

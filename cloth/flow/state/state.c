@@ -23,11 +23,10 @@ static int initial_body(const duite_call *call, const struct initial_fields *on)
 int flow_initialise(struct flow_state *state)
 {
     struct flow_block_args args;
-    int code = flow_fork_each(state, &flow_kernel_initial, &args);
     state->settled_forces = false;
-    if (!code)
-        code = flow_levels_initialise(state);
-    return code || model_is_filtered(state->flow->model) ? code : flow_coarse_initialise(state);
+    flow_fork_each(state, &flow_kernel_initial, &args);
+    flow_levels_initialise(state);
+    return model_is_filtered(state->flow->model) ? state->code : flow_coarse_initialise(state);
 }
 
 FLOW_KERNEL(keep, FLOW_POSITION, struct flow_block_args, (R(x), R(v), W(kept_x), W(kept_v)))
@@ -69,5 +68,5 @@ int flow_restore(struct flow_state *state)
     if (!is->restore || !flow_integrator_keeps(model))
         return flow_fork_each(state, &flow_kernel_restore, &args);
     is->restore(state);
-    return DUITE_OK;
+    return state->code;
 }

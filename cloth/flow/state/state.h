@@ -51,10 +51,11 @@ enum {
     FLOW_CORRECTION_UNMET,
     FLOW_CORRECTION_EXCESS,
     FLOW_CORRECTION_ENERGY,
-    FLOW_SLOPE,  /* of a Newton step: dv.b before it, */
-    FLOW_CHANGE, /* dv.M dv, */
-    FLOW_WHOLE,  /* (v - base_v).M (v - base_v) after it */
-    FLOW_DUE,    /* a checkpoint is due */
+    FLOW_SLOPE,   /* of a Newton step: dv.b before it, */
+    FLOW_CHANGE,  /* dv.M dv, */
+    FLOW_WHOLE,   /* (v - base_v).M (v - base_v) after it */
+    FLOW_PINCHES, /* contacts that have no room from this step on */
+    FLOW_DUE,     /* a checkpoint is due */
     FLOW_STATUS
 };
 /* Indices into the peaks of a watched state, F64. Each is the largest of any block: square of the
@@ -89,15 +90,14 @@ enum { FLOW_VERTEX_BYTES = 24 };
 
 /* Rank 0 broadcasts this before anything else. */
 struct flow_head {
-    uint64_t n_steps, partition_hash;
-    double inertia, release, contact_stiffness, vertex_mass;
+    struct flow_numbers numbers;
     uint64_t shared_bytes;  /* of the next broadcast */
-    uint64_t resumed_bytes; /* the main program's part of a checkpoint; 0: there is none */
-    uint32_t n_vertices, n_triangles, n_blocks, n_neighbours, n_ghosts; /* of all blocks */
-    uint32_t max_rows, max_neighbours, max_halo, max_entries;           /* of any block */
-    uint32_t max_ghosts, n_pieces, n_ties, n_anchors, feels_contact;
-    uint64_t n_elements; /* of all blocks */
-    struct model model;  /* pointers mean nothing elsewhere */
+    uint64_t resumed_bytes; /* the main program's part of a checkpoint; 0: none */
+    uint64_t n_elements;    /* of all blocks, */
+    uint32_t n_blocks, n_neighbours, n_ghosts;                            /* as these */
+    uint32_t max_rows, max_neighbours, max_halo, max_entries, max_ghosts; /* of any block */
+    uint32_t n_pieces, n_ties, n_anchors;
+    struct model model; /* pointers mean nothing elsewhere */
 };
 
 /* The halos of s that passes read of their neighbours (halo.c). */
@@ -254,9 +254,8 @@ struct flow_frames_so_far {
     X(bool, resting)                                                                               \
     X(bool, sewn)                                                                                  \
     X(bool, over)
-#define FLOW_LASTING_MEMBER(type, name) type name;
 struct flow_lasting {
-    FLOW_LASTING(FLOW_LASTING_MEMBER)
+    FLOW_LASTING(FLOW_MEMBER)
 };
 
 /* A run as the main program sees it; the same on every rank. */
@@ -284,21 +283,22 @@ struct flow_state {
     unsigned char *bytes;  /* rank 0: a part of the state, to be hashed, */
     XXH64_state_t *hash;   /* and its hash so far */
     duite_counters before; /* the counters before the first step */
+    int code;              /* the first failure: from then on nothing is forked, set or got */
     union {                /* by name, or all of it */
         struct flow_lasting lasting;
         struct {
-            FLOW_LASTING(FLOW_LASTING_MEMBER)
+            FLOW_LASTING(FLOW_MEMBER)
         };
     };
     struct flow_attempt attempt;
-    char reason[600];                  /* why no step is short enough */
-    bool begun;                        /* all ranks have their memory, objects are made */
-    bool stopping;                     /* a stop was agreed: no more steps begin */
-    bool complete;                     /* a checkpoint that it goes on from has all steps */
-    bool saving;                       /* a checkpoint is due: no step begins before it */
-    double saved_wall;                 /* s: of the runs that it goes on from */
-    double from;                       /* of flow_now: when the first step began */
-    double *seam_peaks, *seam_squares; /* of each pulled seam: 0; as the field, of the last step */
+    char reason[600];     /* why no step is short enough */
+    bool begun;           /* all ranks have their memory, objects are made */
+    bool stopping;        /* a stop was agreed: no more steps begin */
+    bool complete;        /* a checkpoint that it goes on from has all steps */
+    bool saving;          /* a checkpoint is due: no step begins before it */
+    double saved_wall;    /* s: of the runs that it goes on from */
+    double from;          /* of flow_now: when the first step began */
+    double *seam_squares; /* the field seam_peaks, of the last step */
 };
 
 static inline struct flow_before flow_before(const struct flow_state *state)
@@ -346,7 +346,24 @@ static inline double flow_time(const struct flow_state *state)
     return (double)state->grid.now * state->flow->model->h / FLOW_TICKS;
 }
 
-/* ---- state.c: forks. Collective; they return what the runtime does ---- */
+/* ---- Failures ----
+ *
+ * Functions of the main program that fork return the first failure of the run, which stays: after
+ * one, forks, sets and gets do nothing. So callers look at it only before they use a number that
+ * was got, and where they stop. */
+
+/* Notes what the runtime, or contact, returned. Returns the first failure. */
+static inline int flow_noted(struct flow_state *state, int code)
+{
+    state->code = state->code ? state->code : code;
+    return state->code;
+}
+/* Set an object of a field, of the run or of block 0, whose turn it is; value NULL: to zeros. Get
+ * it. */
+int flow_set(struct flow_state *state, enum flow_field_id field, const void *value);
+int flow_get(struct flow_state *state, enum flow_field_id field, void *value);
+
+/* ---- state.c: forks. Collective ---- */
 
 /* Fork the start of all blocks; the copy of x and v to kept_x and kept_v, or to two others; the way
  * back. */
@@ -360,7 +377,6 @@ int flow_restore(struct flow_state *state);
 
 /* Takes memory for the choice, a part of flow_memory_take. Local. */
 void flow_ties_take(struct flow_state *state);
-void flow_ties_free(struct flow_state *state);
 /* Takes the records of all blocks, state->tied.said, the same on every rank: finds rooms, the
  * blocks that share ties, and the places of the rows that each shows. Makes objects again if their
  * room changes, and sets the fields `tie_links`. Records the round of the solve again if rooms or
@@ -368,6 +384,9 @@ void flow_ties_free(struct flow_state *state);
  * has ties. Then every block that has ties or had some makes its table (flow_ties_make), before
  * anything reads TIED. */
 int flow_ties_adopt(struct flow_state *state);
+/* Copies the arrays. Local. */
+void flow_ties_copy(const struct flow_tied_blocks *from, uint32_t n_blocks,
+                    const struct flow_tied_blocks *to);
 /* Sets tied.now from a checkpoint, before the first step. */
 int flow_ties_again(struct flow_state *state, const struct flow_tied_blocks *tied);
 /* The most pairs (block, other block) that share ties, in a run with so many timed joints; seeks:

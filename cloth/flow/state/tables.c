@@ -2,22 +2,23 @@
  * decides which arrays it has and where they lie. */
 #include "cloth/flow/state/tables.h"
 
+#include "cloth/base/order.h"
 #include "cloth/flow/state/room.h"
 
 #include <string.h>
 
 static void lay_list(const struct flow_table *t, int i, struct flow_room *room,
-                     struct element_list *list)
+                     struct phys_elements *list)
 {
     const struct element_kind *kind = element_kinds[i];
     const size_t n = t->n_elements[i];
-    *list = (struct element_list){.n = t->n_elements[i]};
+    *list = (struct phys_elements){.n = t->n_elements[i]};
     if (!n)
         return;
     list->corner = flow_room_next(room, n * sizeof *list->corner);
     list->at = flow_room_next(room, kind->pairs * n * sizeof *list->at);
     list->vector = flow_room_next(room, kind->vectors * n * sizeof *list->vector);
-    for (uint32_t k = 0; k < ELEMENT_NUMBERS; k++)
+    for (uint32_t k = 0; k < PHYS_NUMBERS; k++)
         list->number[k] = flow_room_next(room, k < kind->numbers ? n * sizeof(double) : 0);
     list->material = flow_room_next(room, t->n_materials * kind->material_bytes);
 }
@@ -62,13 +63,6 @@ void flow_table_open(struct flow_table *t, const void *memory)
 
 uint32_t flow_table_ghost(const struct flow_table *t, uint32_t s, uint32_t row)
 {
-    uint32_t low = t->ghost_start[s], high = t->ghost_start[s + 1];
-    while (high - low > 1) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (t->ghost[middle] <= row)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
+    const uint32_t first = t->ghost_start[s];
+    return first + cloth_first_from(t->ghost + first, 1, t->ghost_start[s + 1] - first, row);
 }

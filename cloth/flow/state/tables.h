@@ -103,7 +103,7 @@ struct flow_table {
 #define FLOW_TABLE_MEMBER(type, name, rows) const type *name;
 #define FLOW_TABLE_MEMBERS(name, rows)      const uint32_t(*name)[2];
     FLOW_TABLE_ARRAYS(FLOW_TABLE_MEMBER, FLOW_TABLE_MEMBERS)
-    struct element_list list[ELEMENT_KINDS];
+    struct phys_elements list[ELEMENT_KINDS];
     struct solve_block matrix; /* its diagonal: of each step, NULL here */
     struct solve_held held;
 };
@@ -119,7 +119,7 @@ struct flow_layout {
 #define FLOW_LAYOUT_MEMBER(type, name, rows) type *name;
 #define FLOW_LAYOUT_MEMBERS(name, rows)      uint32_t(*name)[2];
     FLOW_TABLE_ARRAYS(FLOW_LAYOUT_MEMBER, FLOW_LAYOUT_MEMBERS)
-    struct element_list list[ELEMENT_KINDS];
+    struct phys_elements list[ELEMENT_KINDS];
 };
 
 /* Bytes of a table's memory, which its shape decides; and where its arrays are. memory: aligned to

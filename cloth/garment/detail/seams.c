@@ -14,38 +14,38 @@
  * Short edges of panels that are far from each other are as near either way round. */
 static const double CLEAR = 0.05;
 
+struct seams {
+    struct garment *garment;
+    const struct garment_pattern *pattern;
+    uint32_t *set; /* by panel p: p as its front is, p + n_panels turned over; one set: one side */
+};
+
 /* Vertex k along an edge, from its begin. */
-static uint32_t vertex_of(const struct garment *garment, const struct garment_pattern *pattern,
-                          struct garment_side side, uint32_t k)
+static uint32_t vertex_of(const struct seams *of, struct garment_side side, uint32_t k)
 {
-    const struct garment_piece *piece = &garment->piece[side.panel];
-    const uint32_t n = piece->start[pattern->panel[side.panel].n_edges];
+    const struct garment_piece *piece = &of->garment->piece[side.panel];
+    const uint32_t n = piece->start[of->pattern->panel[side.panel].n_edges];
     return piece->first + (piece->start[side.edge] + k) % n;
 }
 
 /* The distances of vertices that belong together if both edges run alike, and if one is reversed.
  */
-static void measure_seam(struct garment *garment, const struct garment_pattern *pattern, uint32_t s)
+static void measure_seam(const struct seams *of, uint32_t s)
 {
-    const struct garment_side *side = pattern->stitch[s].side;
-    struct garment_seam *seam = &garment->seam[s];
-    const uint32_t *start = garment->piece[side[0].panel].start;
+    const struct garment_side *side = of->pattern->stitch[s].side;
+    const double(*position)[3] = (const double(*)[3])of->garment->position;
+    struct garment_seam *seam = &of->garment->seam[s];
+    const uint32_t *start = of->garment->piece[side[0].panel].start;
     const uint32_t n = seam->n_pairs = start[side[0].edge + 1] - start[side[0].edge] + 1;
     for (uint32_t k = 0; k < n; k++)
         for (int reversed = 0; reversed < 2; reversed++) {
-            const uint32_t a = vertex_of(garment, pattern, side[0], k);
-            const uint32_t b = vertex_of(garment, pattern, side[1], reversed ? n - 1 - k : k);
-            seam->distance[reversed] +=
-                cloth_distance(garment->position[a], garment->position[b]) / n;
+            const uint32_t a = vertex_of(of, side[0], k);
+            const uint32_t b = vertex_of(of, side[1], reversed ? n - 1 - k : k);
+            seam->distance[reversed] += cloth_distance(position[a], position[b]) / n;
         }
 }
 
 /* ---- Which panels have their fronts on one side ---- */
-
-/* By panel p: p as its front is, and p + n_panels turned over. One set: one side. */
-struct fronts {
-    uint32_t n_panels, *set;
-};
 
 /* What the seams of two panels say: above 0 that their fronts are on one side, below 0 not. */
 struct vote {
@@ -62,19 +62,19 @@ static double vote_of(const struct garment_seam *seam)
 }
 
 /* Above 0: the fronts of two panels are on one side, below 0: not; 0: nothing is known. */
-static int relation(const struct fronts *fronts, uint32_t a, uint32_t b)
+static int relation(const struct seams *of, uint32_t a, uint32_t b)
 {
-    const uint32_t root = cloth_sets_root(fronts->set, a);
-    if (root == cloth_sets_root(fronts->set, b))
+    const uint32_t root = cloth_sets_root(of->set, a);
+    if (root == cloth_sets_root(of->set, b))
         return 1;
-    return root == cloth_sets_root(fronts->set, b + fronts->n_panels) ? -1 : 0;
+    return root == cloth_sets_root(of->set, b + of->pattern->n_panels) ? -1 : 0;
 }
 
-static void relate(const struct fronts *fronts, uint32_t a, uint32_t b, bool one_side)
+static void relate(const struct seams *of, uint32_t a, uint32_t b, bool one_side)
 {
-    const uint32_t n = fronts->n_panels;
-    cloth_sets_join(fronts->set, a, one_side ? b : b + n);
-    cloth_sets_join(fronts->set, a + n, one_side ? b + n : b);
+    const uint32_t n = of->pattern->n_panels;
+    cloth_sets_join(of->set, a, one_side ? b : b + n);
+    cloth_sets_join(of->set, a + n, one_side ? b + n : b);
 }
 
 static int compare_panels(const void *va, const void *vb)
@@ -91,15 +91,15 @@ static int compare_votes(const void *va, const void *vb)
 }
 
 /* The votes of panels, one for each two that have clear seams. */
-static uint32_t count_votes(struct vote *vote, const struct garment *garment,
-                            const struct garment_pattern *pattern)
+static uint32_t count_votes(struct vote *vote, const struct seams *of)
 {
     uint32_t n = 0, kept = 0;
-    for (uint32_t s = 0; s < garment->n_seams; s++) {
-        const struct garment_side *side = pattern->stitch[s].side;
-        const uint32_t a = side[0].panel, b = side[1].panel;
-        if (a != b && !pattern->stitch[s].right_wrong)
-            vote[n++] = (struct vote){{a < b ? a : b, a < b ? b : a}, vote_of(&garment->seam[s])};
+    for (uint32_t s = 0; s < of->pattern->n_stitches; s++) {
+        const struct garment_stitch *stitch = &of->pattern->stitch[s];
+        const uint32_t a = stitch->side[0].panel, b = stitch->side[1].panel;
+        if (a != b && !stitch->right_wrong)
+            vote[n++] =
+                (struct vote){{a < b ? a : b, a < b ? b : a}, vote_of(&of->garment->seam[s])};
     }
     qsort(vote, n, sizeof *vote, compare_panels);
     for (uint32_t i = 0; i < n; i++)
@@ -112,42 +112,29 @@ static uint32_t count_votes(struct vote *vote, const struct garment *garment,
 }
 
 /* The clearest first; what contradicts them is overruled. */
-static int find_fronts(struct fronts *fronts, const struct garment *garment,
-                       const struct garment_pattern *pattern, struct cloth_error *error)
+static void find_fronts(const struct seams *of, uint32_t n, const struct vote *vote)
 {
-    struct vote *vote = cloth_alloc(garment->n_seams, sizeof *vote, error);
-    fronts->n_panels = pattern->n_panels;
-    fronts->set = cloth_alloc(2 * (size_t)fronts->n_panels, sizeof *fronts->set, error);
-    if (vote && fronts->set) {
-        const uint32_t n = count_votes(vote, garment, pattern);
-        cloth_sets_start(fronts->set, 2 * fronts->n_panels);
-        for (uint32_t i = 0; i < n && fabs(vote[i].sum) > 0; i++)
-            if (!relation(fronts, vote[i].panel[0], vote[i].panel[1]))
-                relate(fronts, vote[i].panel[0], vote[i].panel[1], vote[i].sum > 0);
-    }
-    const bool enough = vote && fronts->set;
-    free(vote);
-    return enough ? CLOTH_OK : CLOTH_E_MEMORY;
+    for (uint32_t i = 0; i < n && fabs(vote[i].sum) > 0; i++)
+        if (!relation(of, vote[i].panel[0], vote[i].panel[1]))
+            relate(of, vote[i].panel[0], vote[i].panel[1], vote[i].sum > 0);
 }
 
 /* Where no clear seam joins them, panels have their fronts where the pattern has them. */
-static void turn_seams(struct garment *garment, const struct garment_pattern *pattern,
-                       const struct fronts *fronts)
+static void turn_seams(const struct seams *of)
 {
-    for (uint32_t s = 0; s < garment->n_seams; s++) {
-        const struct garment_stitch *stitch = &pattern->stitch[s];
-        garment->seam[s].unsure =
-            !stitch->right_wrong && !relation(fronts, stitch->side[0].panel, stitch->side[1].panel);
-    }
-    for (uint32_t s = 0; s < garment->n_seams; s++) {
-        const struct garment_stitch *stitch = &pattern->stitch[s];
-        const uint32_t a = stitch->side[0].panel, b = stitch->side[1].panel;
-        struct garment_seam *seam = &garment->seam[s];
-        if (stitch->right_wrong)
+    const struct garment_stitch *stitch = of->pattern->stitch;
+    for (uint32_t s = 0; s < of->pattern->n_stitches; s++)
+        of->garment->seam[s].unsure =
+            !stitch[s].right_wrong &&
+            !relation(of, stitch[s].side[0].panel, stitch[s].side[1].panel);
+    for (uint32_t s = 0; s < of->pattern->n_stitches; s++) {
+        const uint32_t a = stitch[s].side[0].panel, b = stitch[s].side[1].panel;
+        struct garment_seam *seam = &of->garment->seam[s];
+        if (stitch[s].right_wrong)
             continue;
-        if (!relation(fronts, a, b))
-            relate(fronts, a, b, true);
-        seam->reversed = relation(fronts, a, b) > 0;
+        if (!relation(of, a, b))
+            relate(of, a, b, true);
+        seam->reversed = relation(of, a, b) > 0;
         const double vote = vote_of(seam);
         seam->unsure = seam->unsure || (seam->reversed ? vote < 0 : vote > 0);
     }
@@ -155,16 +142,15 @@ static void turn_seams(struct garment *garment, const struct garment_pattern *pa
 
 /* ---- All seams ---- */
 
-static int pair_vertices(struct garment *garment, const struct garment_pattern *pattern, uint32_t s,
-                         struct cloth_error *error)
+static int pair_vertices(const struct seams *of, uint32_t s, struct cloth_error *error)
 {
-    const struct garment_side *side = pattern->stitch[s].side;
-    struct garment_seam *seam = &garment->seam[s];
+    const struct garment_side *side = of->pattern->stitch[s].side;
+    struct garment_seam *seam = &of->garment->seam[s];
     const uint32_t n = seam->n_pairs;
     seam->pair = cloth_alloc(n, sizeof *seam->pair, error);
     for (uint32_t k = 0; k < n && seam->pair; k++) {
-        seam->pair[k][0] = vertex_of(garment, pattern, side[0], k);
-        seam->pair[k][1] = vertex_of(garment, pattern, side[1], seam->reversed ? n - 1 - k : k);
+        seam->pair[k][0] = vertex_of(of, side[0], k);
+        seam->pair[k][1] = vertex_of(of, side[1], seam->reversed ? n - 1 - k : k);
     }
     return seam->pair ? CLOTH_OK : CLOTH_E_MEMORY;
 }
@@ -172,18 +158,22 @@ static int pair_vertices(struct garment *garment, const struct garment_pattern *
 int seams_make(struct garment *garment, const struct garment_pattern *pattern,
                struct cloth_error *error)
 {
-    struct fronts fronts = {0};
-    garment->seam = cloth_alloc(pattern->n_stitches, sizeof *garment->seam, error);
-    if (!garment->seam)
-        return CLOTH_E_MEMORY;
-    garment->n_seams = pattern->n_stitches;
-    for (uint32_t s = 0; s < garment->n_seams; s++)
-        measure_seam(garment, pattern, s);
-    int code = find_fronts(&fronts, garment, pattern, error);
-    if (!code)
-        turn_seams(garment, pattern, &fronts);
-    for (uint32_t s = 0; s < garment->n_seams && !code; s++)
-        code = pair_vertices(garment, pattern, s, error);
-    free(fronts.set);
+    const uint32_t n = pattern->n_stitches, n_fronts = 2 * pattern->n_panels;
+    struct seams seams = {garment, pattern, cloth_alloc(n_fronts, sizeof *seams.set, error)};
+    struct vote *vote = cloth_alloc(n, sizeof *vote, error);
+    garment->seam = cloth_alloc(n, sizeof *garment->seam, error);
+    garment->n_seams = garment->seam ? n : 0;
+    int code = seams.set && vote && garment->seam ? CLOTH_OK : CLOTH_E_MEMORY;
+    for (uint32_t s = 0; s < n && !code; s++)
+        measure_seam(&seams, s);
+    if (!code) {
+        cloth_sets_start(seams.set, n_fronts);
+        find_fronts(&seams, count_votes(vote, &seams), vote);
+        turn_seams(&seams);
+    }
+    for (uint32_t s = 0; s < n && !code; s++)
+        code = pair_vertices(&seams, s, error);
+    free(seams.set);
+    free(vote);
     return code;
 }

@@ -1,20 +1,86 @@
-/* Nothing here leaves half a file under its final name: a file is filled, synced and only then
- * renamed by its caller. */
+/* No half file stands under a final name: a file is filled, synced and only then renamed. */
 #include "cloth/output/files/files.h"
+
+#include "cloth/base/file.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
-char *output_path(const char *folder, const char *name, const char *suffix)
+enum { MAX_LINKS = 40 }; /* as the kernel follows */
+
+/* ---- Paths ---- */
+
+struct output_path output_path(const char *folder, const char *name, ...)
 {
-    char *path = NULL;
-    return asprintf(&path, "%s/%s%s", folder, name, suffix) < 0 ? NULL : path;
+    struct output_path path;
+    va_list list;
+    const int n = snprintf(path.text, sizeof path.text, "%s/", folder);
+    va_start(list, name);
+    if (n < (int)sizeof path.text)
+        vsnprintf(path.text + n, sizeof path.text - (size_t)n, name, list);
+    va_end(list);
+    return path;
 }
+
+int output_follow(const char *path, struct output_path *end)
+{
+    char link[PATH_MAX];
+    snprintf(end->text, sizeof end->text, "%s", path);
+    for (int i = 0; i < MAX_LINKS; i++) {
+        const ssize_t n = readlink(end->text, link, sizeof link - 1);
+        if (n < 0)
+            return 0;
+        link[n] = '\0';
+        char *slash = strrchr(end->text, '/'), *to = slash && *link != '/' ? slash + 1 : end->text;
+        snprintf(to, (size_t)(end->text + sizeof end->text - to), "%s", link);
+    }
+    errno = ELOOP;
+    return -1;
+}
+
+static int make_one_folder(const char *path)
+{
+    struct stat status;
+    if (mkdir(path, 0777) == 0)
+        return 0;
+    if (errno != EEXIST || stat(path, &status) != 0)
+        return -1;
+    errno = ENOTDIR;
+    return S_ISDIR(status.st_mode) ? 0 : -1;
+}
+
+int output_make_folder(const char *folder, struct cloth_error *error)
+{
+    struct output_path path;
+    int bad = 0;
+    snprintf(path.text, sizeof path.text, "%s", folder);
+    for (char *end = path.text; *end && !bad; end++) {
+        if (*end != '/' || end == path.text)
+            continue;
+        *end = '\0';
+        bad = make_one_folder(path.text);
+        *end = '/';
+    }
+    bad = bad || make_one_folder(path.text);
+    return bad ? output_refuse(error, "make the folder", folder) : 0;
+}
+
+void output_sync_folder(const char *folder)
+{
+    int handle = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (handle < 0)
+        return;
+    fsync(handle);
+    close(handle);
+}
+
+/* ---- Errors ---- */
 
 int output_fail(struct cloth_error *error, const char *what, const char *path)
 {
@@ -31,42 +97,7 @@ int output_refuse(struct cloth_error *error, const char *what, const char *path)
                       strerror(reason));
 }
 
-static int files_make_one(const char *path)
-{
-    struct stat status;
-    if (mkdir(path, 0777) == 0)
-        return 0;
-    if (errno != EEXIST)
-        return -1;
-    if (stat(path, &status) != 0)
-        return -1;
-    if (S_ISDIR(status.st_mode))
-        return 0;
-    errno = ENOTDIR;
-    return -1;
-}
-
-int output_make_folder(const char *folder, struct cloth_error *error)
-{
-    char *path = strdup(folder);
-    if (!path)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory to make the folder %s", folder);
-    int bad = 0;
-    for (char *end = path; *end && !bad; end++) {
-        if (*end != '/' || end == path)
-            continue;
-        *end = '\0';
-        bad = files_make_one(path);
-        *end = '/';
-    }
-    bad = bad || files_make_one(path);
-    int reason = errno;
-    free(path);
-    if (!bad)
-        return 0;
-    errno = reason;
-    return output_refuse(error, "make the folder", folder);
-}
+/* ---- Bytes ---- */
 
 int output_open_file(const char *path, int flags)
 {
@@ -78,6 +109,69 @@ int output_open_file(const char *path, int flags)
         file = open(path, flags | O_CLOEXEC, 0666);
     }
     return file;
+}
+
+unsigned char *output_read_file(const char *path, size_t *n)
+{
+    struct stat status;
+    FILE *file = cloth_file_open(path);
+    if (!file)
+        return NULL;
+    unsigned char *bytes =
+        fstat(fileno(file), &status) == 0 ? malloc((size_t)status.st_size + 1) : NULL;
+    if (bytes) {
+        *n = fread(bytes, 1, (size_t)status.st_size, file);
+        bytes[*n] = '\0';
+    }
+    const int reason = errno;
+    if (bytes && ferror(file)) {
+        free(bytes);
+        bytes = NULL;
+    }
+    fclose(file);
+    errno = reason;
+    return bytes;
+}
+
+bool output_read_at(int file, void *bytes, size_t n, uint64_t offset)
+{
+    for (size_t done = 0; done < n;) {
+        const ssize_t got = pread(file, (char *)bytes + done, n - done, (off_t)(offset + done));
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got <= 0)
+            return false;
+        done += (size_t)got;
+    }
+    return true;
+}
+
+bool output_begins(const char *path, const void *bytes, size_t n)
+{
+    char there[256];
+    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    bool is = file >= 0;
+    for (size_t done = 0, some; done < n && is; done += some) {
+        some = n - done < sizeof there ? n - done : sizeof there;
+        is = output_read_at(file, there, some, done) &&
+             memcmp(there, (const char *)bytes + done, some) == 0;
+    }
+    if (file >= 0)
+        close(file);
+    return is;
+}
+
+int output_remove_old(const char *path, const void *bytes, size_t n, const char *other,
+                      struct cloth_error *error)
+{
+    struct stat status;
+    if (lstat(path, &status) != 0)
+        return 0;
+    if (output_begins(path, bytes, n))
+        return unlink(path) == 0 ? 0 : output_refuse(error, "replace", path);
+    return other ? cloth_fail(error, CLOTH_E_INPUT,
+                              "%s %s; give another folder, or move the file away", path, other)
+                 : 0;
 }
 
 int output_write_at(int file, const void *bytes, size_t n, uint64_t offset)
@@ -98,16 +192,6 @@ int output_write_at(int file, const void *bytes, size_t n, uint64_t offset)
     return 0;
 }
 
-int output_check_same(int file, const char *path, struct cloth_error *error)
-{
-    struct stat here, there;
-    if (fstat(file, &here) == 0 && stat(path, &there) == 0 && here.st_dev == there.st_dev &&
-        here.st_ino == there.st_ino)
-        return 0;
-    return cloth_fail(error, CLOTH_E_IO, "%s was removed or replaced while the run wrote to it",
-                      path);
-}
-
 int output_sync(int file)
 {
     if (fdatasync(file) == 0 || errno == EINVAL || errno == EROFS || errno == ENOSYS ||
@@ -116,16 +200,18 @@ int output_sync(int file)
     return -1;
 }
 
+/* ---- Whole files ---- */
+
 int output_write_file(const char *path, int (*fill)(FILE *file, const void *what), const void *what,
                       struct cloth_error *error)
 {
     const int handle = output_open_file(path, O_WRONLY | O_CREAT | O_TRUNC);
     FILE *file = handle < 0 ? NULL : fdopen(handle, "w");
     if (!file) {
-        output_refuse(error, "write", path);
+        const int code = output_refuse(error, "write", path);
         if (handle >= 0)
             close(handle);
-        return error->code;
+        return code;
     }
     int bad = fill(file, what) != 0 || fflush(file) != 0 || ferror(file);
     bad = bad || output_sync(fileno(file)) != 0;
@@ -147,29 +233,19 @@ int output_replace_file(const char *path, int (*fill)(FILE *file, const void *wh
                         const void *what, struct cloth_error *error)
 {
     struct stat status;
-    const bool there = stat(path, &status) == 0;
-    if (there && !S_ISREG(status.st_mode))
+    struct output_path end;
+    char *part = NULL;
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode))
         return output_write_file(path, fill, what, error);
-    char *target = there ? realpath(path, NULL) : strdup(path), *part = NULL;
-    if (!target || asprintf(&part, "%s.%ld.part", target, (long)getpid()) < 0) {
-        free(target);
+    if (output_follow(path, &end) != 0)
+        return output_fail(error, "write", path);
+    if (asprintf(&part, "%s.%ld.part", end.text, (long)getpid()) < 0)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory to write %s", path);
-    }
     int code = output_write_file(part, fill, what, error);
-    if (!code && rename(part, target) != 0) {
+    if (!code && rename(part, end.text) != 0) {
         code = output_fail(error, "write", path);
         unlink(part);
     }
     free(part);
-    free(target);
     return code;
-}
-
-void output_sync_folder(const char *folder)
-{
-    int handle = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (handle < 0)
-        return;
-    fsync(handle);
-    close(handle);
 }

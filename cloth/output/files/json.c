@@ -62,6 +62,17 @@ void output_json_number(FILE *file, double value)
         fputs("null", file);
 }
 
+void output_json_put_numbers(FILE *file, size_t n, const double *value)
+{
+    for (size_t i = 0; i < n; i++) {
+        fputs(n == 1 ? "" : i ? ", " : "[", file);
+        output_json_number(file, value[i]);
+    }
+    fputs(n == 1 ? "" : "]", file);
+}
+
+/* ---- Reading ---- */
+
 void output_json_fail(struct output_json *json, const char *what)
 {
     if (json->failed)
@@ -112,6 +123,24 @@ bool output_json_key(struct output_json *json, const char *name)
     return output_json_word(json, name) && output_json_expect(json, ':');
 }
 
+void output_json_expect_key(struct output_json *json, const char *name)
+{
+    char what[40];
+    snprintf(what, sizeof what, "\"%s\"", name);
+    if (!output_json_key(json, name))
+        output_json_fail(json, what);
+}
+
+bool output_json_item(struct output_json *json, size_t i)
+{
+    if (i == 0)
+        return output_json_expect(json, '[') && !output_json_take(json, ']');
+    if (output_json_take(json, ','))
+        return true;
+    output_json_expect(json, ']');
+    return false;
+}
+
 double output_json_double(struct output_json *json)
 {
     skip_space(json);
@@ -128,4 +157,19 @@ double output_json_double(struct output_json *json)
     }
     json->next = end;
     return value;
+}
+
+void output_json_numbers(struct output_json *json, size_t n, double *value)
+{
+    if (n == 1) {
+        *value = output_json_double(json);
+        return;
+    }
+    output_json_expect(json, '[');
+    for (size_t i = 0; i < n; i++) {
+        if (i)
+            output_json_expect(json, ',');
+        value[i] = output_json_double(json);
+    }
+    output_json_expect(json, ']');
 }

@@ -1,17 +1,15 @@
-/* Columns are written one after the other, rows ascending; pairs of equal ends are one entry. */
+/* Columns are written one after the other, rows ascending. Pairs of equal ends follow each other,
+ * and are one entry. */
 #include "cloth/output/files/files.h"
+#include "cloth/output/output.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-/* Sums of 3x3 blocks: of a vertex, and of the pairs with one higher vertex. */
-struct sums {
+/* The 3x3 blocks of the diagonal, which are symmetric, and how many entries the matrix has. */
+struct blocks {
     const struct solve_system *system;
-    double (*own)[6];  /* n: xx yx zx yy zy zz */
-    size_t n_pairs;    /* of free vertices */
-    size_t *start;     /* n + 1: pairs of each lower vertex */
-    uint32_t *other;   /* n_pairs */
-    double (*pair)[9]; /* n_pairs: rows of the higher vertex, columns of the lower */
+    double (*own)[6]; /* n: xx yx zx yy zy zz */
+    size_t n_entries;
 };
 
 static void add_own(double sum[6], double factor, double n[3][3])
@@ -22,113 +20,83 @@ static void add_own(double sum[6], double factor, double n[3][3])
             sum[k++] += factor * (0.5 * (n[i][j] + n[j][i]));
 }
 
-static void market_add_pair(double sum[9], double n[3][3])
-{
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            sum[3 * i + j] -= n[j][i];
-}
-
-/* A symmetric block's entry. */
 static double entry(const double sum[6], int i, int j)
 {
     static const int at[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
     return sum[at[i][j]];
 }
 
-/* What vertices have besides pairs, and where the pairs of those without any begin. */
-static void add_diagonals(struct sums *sums)
+static bool has_ends(const struct solve_system *s, size_t pair, uint32_t a, uint32_t b)
 {
-    const struct solve_system *s = sums->system;
-    for (uint32_t a = 0; a < s->n; a++) {
-        double *own = sums->own[a];
-        const double scalar = s->free[a] > 0 ? s->diagonal[a] : 1;
-        own[0] += scalar;
-        own[3] += scalar;
-        own[5] += scalar;
-        if (sums->start[a + 1] < sums->start[a])
-            sums->start[a + 1] = sums->start[a];
-    }
+    return pair < s->n_pairs && s->end[pair][0] == a && s->end[pair][1] == b;
 }
 
-static void add_pairs(struct sums *sums)
+static void add_blocks(struct blocks *blocks)
 {
-    const struct solve_system *s = sums->system;
-    uint32_t before[2] = {0, 0}; /* no pair has equal ends */
+    const struct solve_system *s = blocks->system;
     for (size_t i = 0; i < s->n_pairs; i++) {
         const uint32_t a = s->end[i][0], b = s->end[i][1];
         double n[3][3];
         solve_system_pair(s, i, n);
-        add_own(sums->own[a], s->free[a] * s->free[a], n);
-        add_own(sums->own[b], s->free[b] * s->free[b], n);
-        if (!(s->free[a] > 0) || !(s->free[b] > 0))
-            continue;
-        if (a != before[0] || b != before[1]) {
-            sums->other[sums->n_pairs++] = b;
-            sums->start[a + 1] = sums->n_pairs;
-        }
-        before[0] = a;
-        before[1] = b;
-        market_add_pair(sums->pair[sums->n_pairs - 1], n);
+        add_own(blocks->own[a], s->free[a] * s->free[a], n);
+        add_own(blocks->own[b], s->free[b] * s->free[b], n);
+        if (s->free[a] > 0 && s->free[b] > 0 && !has_ends(s, i + 1, a, b))
+            blocks->n_entries += 9;
     }
-    add_diagonals(sums);
-}
-
-static int sums_make(struct sums *sums, const struct solve_system *system)
-{
-    *sums = (struct sums){.system = system};
-    sums->own = calloc((size_t)system->n + 1, sizeof *sums->own);
-    sums->start = calloc((size_t)system->n + 2, sizeof *sums->start);
-    sums->other = calloc(system->n_pairs + 1, sizeof *sums->other);
-    sums->pair = calloc(system->n_pairs + 1, sizeof *sums->pair);
-    if (!sums->own || !sums->start || !sums->other || !sums->pair)
-        return 1;
-    add_pairs(sums);
-    return 0;
-}
-
-static void sums_free(struct sums *sums)
-{
-    free(sums->own);
-    free(sums->start);
-    free(sums->other);
-    free(sums->pair);
+    for (uint32_t a = 0; a < s->n; a++) {
+        const double scalar = s->free[a] > 0 ? s->diagonal[a] : 1;
+        static const int diagonal[] = {0, 3, 5}; /* xx yy zz */
+        for (int k = 0; k < 3; k++)
+            blocks->own[a][diagonal[k]] += scalar;
+        blocks->n_entries += s->free[a] > 0 ? 6 : 3;
+    }
 }
 
 /* ---- Files ---- */
 
-/* Lines and columns of files count from 1. */
-static void fill_column(FILE *file, const struct sums *sums, size_t a, int j)
+/* Column j of vertex a; pair: the first one whose lower end it is. Lines and columns of files count
+ * from 1. */
+static void fill_column(FILE *file, const struct blocks *blocks, uint32_t a, int j, size_t pair)
 {
-    const size_t column = 3 * a + (size_t)j + 1;
+    const struct solve_system *s = blocks->system;
+    const size_t column = 3 * (size_t)a + (size_t)j + 1;
     for (int i = j; i < 3; i++)
-        if (i == j || sums->system->free[a] > 0)
-            fprintf(file, "%zu %zu %.17g\n", 3 * a + (size_t)i + 1, column,
-                    entry(sums->own[a], i, j));
-    for (size_t k = sums->start[a]; k < sums->start[a + 1]; k++)
-        for (int i = 0; i < 3; i++)
-            fprintf(file, "%zu %zu %.17g\n", 3 * (size_t)sums->other[k] + (size_t)i + 1, column,
-                    sums->pair[k][3 * i + j]);
+        if (i == j || s->free[a] > 0)
+            fprintf(file, "%zu %zu %.17g\n", 3 * (size_t)a + (size_t)i + 1, column,
+                    entry(blocks->own[a], i, j));
+    while (pair < s->n_pairs && s->end[pair][0] == a) {
+        const uint32_t b = s->end[pair][1];
+        double sum[3] = {0}, n[3][3];
+        for (; has_ends(s, pair, a, b); pair++) {
+            solve_system_pair(s, pair, n);
+            for (int i = 0; i < 3; i++)
+                sum[i] -= n[j][i];
+        }
+        for (int i = 0; i < 3 && s->free[a] > 0 && s->free[b] > 0; i++)
+            fprintf(file, "%zu %zu %.17g\n", 3 * (size_t)b + (size_t)i + 1, column, sum[i]);
+    }
 }
 
 static int fill_matrix(FILE *file, const void *what)
 {
-    const struct sums *sums = what;
-    const size_t n = sums->system->n;
-    size_t entries = 9 * sums->n_pairs;
-    for (size_t a = 0; a < n; a++)
-        entries += sums->system->free[a] > 0 ? 6 : 3;
+    const struct blocks *blocks = what;
+    const struct solve_system *s = blocks->system;
+    const size_t n = 3 * (size_t)s->n;
+    size_t pair = 0;
     fprintf(file, "%%%%MatrixMarket matrix coordinate real symmetric\n");
-    fprintf(file, "%% S A S + I - S of an implicit step of h = %.17g s; kg\n", sums->system->h);
-    fprintf(file, "%zu %zu %zu\n", 3 * n, 3 * n, entries);
-    for (size_t a = 0; a < n && !ferror(file); a++)
+    fprintf(file, "%% S A S + I - S of an implicit step of h = %.17g s; kg\n", s->h);
+    fprintf(file, "%zu %zu %zu\n", n, n, blocks->n_entries);
+    for (uint32_t a = 0; a < s->n && !ferror(file); a++) {
         for (int j = 0; j < 3; j++)
-            fill_column(file, sums, a, j);
+            fill_column(file, blocks, a, j, pair);
+        while (pair < s->n_pairs && s->end[pair][0] == a)
+            pair++;
+    }
     return ferror(file);
 }
 
 struct array {
-    const char *comment;
+    const char *name, *comment;
     uint32_t n;
     const double *free;  /* n: factors, NULL: all 1, */
     const double *value; /* of n x 3 numbers, or of n that stand for three each */
@@ -148,37 +116,22 @@ static int fill_array(FILE *file, const void *what)
     return ferror(file);
 }
 
-static int write(const char *folder, const char *name, int (*fill)(FILE *file, const void *what),
-                 const void *what, struct cloth_error *error)
-{
-    char *path = output_path(folder, name, ".mtx");
-    if (!path)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory to write %s.mtx", name);
-    const int code = output_write_file(path, fill, what, error);
-    free(path);
-    return code;
-}
-
 int output_system(const char *folder, const struct solve_system *s, struct cloth_error *error)
 {
-    struct sums sums;
-    const struct array rhs = {"S b; kg m/s", s->n, s->free, s->b, 3};
-    const struct array solution = {"dv, as the step found it; m/s", s->n, s->free, s->dv, 3};
-    const struct array mass = {"mass of each unknown, 0 where held; kg", s->n, s->free, s->mass, 1};
-    const struct array position = {"positions after the step; m", s->n, NULL, s->x, 3};
-    int code = CLOTH_OK;
-    if (sums_make(&sums, s))
-        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for the matrix of %u vertices", s->n);
-    if (!code)
-        code = write(folder, "matrix", fill_matrix, &sums, error);
-    if (!code)
-        code = write(folder, "rhs", fill_array, &rhs, error);
-    if (!code)
-        code = write(folder, "solution", fill_array, &solution, error);
-    if (!code)
-        code = write(folder, "mass", fill_array, &mass, error);
-    if (!code)
-        code = write(folder, "position", fill_array, &position, error);
-    sums_free(&sums);
+    const struct array array[] = {
+        {"rhs", "S b; kg m/s", s->n, s->free, s->b, 3},
+        {"solution", "dv, as the step found it; m/s", s->n, s->free, s->dv, 3},
+        {"mass", "mass of each unknown, 0 where held; kg", s->n, s->free, s->mass, 1},
+        {"position", "positions after the step; m", s->n, NULL, s->x, 3}};
+    struct blocks blocks = {.system = s, .own = calloc((size_t)s->n + 1, sizeof *blocks.own)};
+    if (!blocks.own)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the matrix of %u vertices", s->n);
+    add_blocks(&blocks);
+    int code =
+        output_write_file(output_path(folder, "matrix.mtx").text, fill_matrix, &blocks, error);
+    for (size_t i = 0; i < sizeof array / sizeof *array && !code; i++)
+        code = output_write_file(output_path(folder, "%s.mtx", array[i].name).text, fill_array,
+                                 array + i, error);
+    free(blocks.own);
     return code;
 }

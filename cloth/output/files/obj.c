@@ -1,6 +1,6 @@
 /* The OBJ of a folder: vertices in the order of the input meshes, cloth after cloth, so that vertex
  * i of the file is point i of the cache; faces are the input's polygons. */
-#include "cloth/output/files/files.h"
+#include "cloth/output/files/scene.h"
 
 #include <ctype.h>
 #include <stdlib.h>
@@ -24,7 +24,7 @@ static void files_obj_put_whole(FILE *file, char before, uint64_t number)
     fwrite_unlocked(text + at, 1, sizeof text - at, file);
 }
 
-/* Of several names in a line none has blanks. */
+/* Names that share a line have no blanks. */
 static void files_obj_put_name(FILE *file, const char *before, const char *name, bool blanks)
 {
     fputs(before, file);

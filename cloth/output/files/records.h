@@ -30,9 +30,9 @@ enum {
     OUTPUT_REST_EDGE = 12,
     OUTPUT_REST_MATERIAL = 20
 };
-uint64_t output_rest_size(const struct output_rest *rest);
-void output_rest_put(unsigned char *bytes, const struct output_rest *rest);
+uint64_t output_rest_size(const struct element_strains *rest);
+void output_rest_put(unsigned char *bytes, const struct element_strains *rest);
 /* rest has room for its counts. False: numbers that are out of range or not finite. */
-bool output_rest_get(const unsigned char *bytes, uint32_t n_vertices, struct output_rest *rest);
+bool output_rest_get(const unsigned char *bytes, struct element_strains *rest);
 
 #endif

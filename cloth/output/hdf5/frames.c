@@ -1,51 +1,25 @@
-/* Two frames take turns: the caller fills one while the thread writes the other. HDF5 is used by
- * that thread alone once it runs. A frame that cannot be written is left out, and so is nothing
- * else: what was written before stays as it is, and the next one is tried. */
-#include "config.h"
-
-#include "cloth/output/hdf5/grid.h"
+/* Two frames take turns: the caller fills one while the settler writes the other. A frame that
+ * cannot be written is left out, and so is nothing else: what was written before stays as it is,
+ * and the next one is tried. */
 #include "cloth/output/hdf5/hdf5.h"
 
-#include "cloth/base/memory.h"
-#include "cloth/output/files/files.h"
-
-#include <errno.h>
-#include <fcntl.h>
-#include <pthread.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 struct output_hdf5 {
     struct output_hdf5_setup setup;
-    char *folder, *own; /* of frames; hdf5 in it */
     struct output_grid grid;
-    struct output_indexes indexes;
-    struct output_bytes bytes; /* the thread's */
+    struct output_indexes *indexes;
+    struct output_member member;
     struct output_state flight[OUTPUT_HDF5_FLIGHT];
-    uint64_t tried, missing, first_missing; /* the thread's */
-    struct cloth_error trouble;             /* of the first one; the thread's */
-    bool has_thread;
-    pthread_t thread;
-    pthread_mutex_t lock; /* of what follows */
-    pthread_cond_t change;
-    uint64_t given, done; /* frames; number i is in flight[i % OUTPUT_HDF5_FLIGHT] */
-    bool ends;
+    uint32_t given; /* frames; number i is in flight[i % OUTPUT_HDF5_FLIGHT] */
+    /* the settler's */
+    uint32_t done, missing;
+    uint64_t first_missing;
+    struct cloth_error trouble; /* of the first one */
+    struct cloth_list bytes;    /* of a file */
 };
-
-const char *output_hdf5_lacks(uint32_t level)
-{
-#ifdef HAVE_HDF5
-    output_image_start();
-    return level && !output_image_gzips()
-               ? "the HDF5 of this duite cannot compress by gzip; compression: 0 is expected"
-               : NULL;
-#else
-    (void)level;
-    return "this duite was built without HDF5; ./bootstrap --full installs it, then build again";
-#endif
-}
 
 double output_hdf5_bytes(const struct output_hdf5_setup *setup)
 {
@@ -56,68 +30,50 @@ double output_hdf5_bytes(const struct output_hdf5_setup *setup)
     if (setup->n_triangles && setup->n_edges)
         bytes += 4 * 8 * cells;
     for (int i = 0; i < OUTPUT_FIELDS; i++) {
-        const enum output_field is = (enum output_field)i;
+        const struct output_field_form *form = output_fields + i;
         if (setup->wants[i])
-            bytes += output_field_width(is) * (output_field_is_whole(is) ? 4 : real) *
-                     (output_field_is_of_cells(is) ? cells : points);
+            bytes +=
+                form->width * (form->is_whole ? 4 : real) * (form->is_of_cells ? cells : points);
     }
     return bytes;
 }
 
-/* ---- The thread ---- */
+/* ---- The settler ---- */
 
-/* Makes a file of the bytes, on the disk. */
-static int hdf5_frames_fill(const struct output_hdf5 *frames, const char *path,
-                            struct cloth_error *error)
+static int fill_bytes(FILE *file, const void *what)
 {
-    const int file = output_open_file(path, O_WRONLY | O_CREAT | O_TRUNC);
-    if (file < 0)
-        return output_fail(error, "write", path);
-    int code = CLOTH_OK;
-    if (output_write_at(file, frames->bytes.data, frames->bytes.n, 0) != 0 ||
-        output_sync(file) != 0)
-        code = output_fail(error, "write", path);
-    if (close(file) != 0 && !code)
-        code = output_fail(error, "write", path);
-    return code;
+    const struct cloth_list *bytes = what;
+    return fwrite(bytes->items, 1, bytes->n, file) != bytes->n;
 }
 
 /* Under another name until it is whole. */
-static int hdf5_frames_put_file(const struct output_hdf5 *frames, const char *name,
-                                struct cloth_error *error)
+static int put_file(const struct output_hdf5 *frames, const char *name, struct cloth_error *error)
 {
-    char *path = output_path(frames->folder, name, ""),
-         *part = output_path(frames->folder, name, ".part");
-    int code = path && part
-                   ? CLOTH_OK
-                   : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of a frame");
-    if (!code)
-        code = hdf5_frames_fill(frames, part, error);
-    if (!code && rename(part, path) != 0)
-        code = output_fail(error, "write", path);
-    if (code && part)
-        unlink(part);
-    if (!code)
-        output_sync_folder(frames->own);
-    free(path);
-    free(part);
+    const struct output_path path = output_path(frames->setup.folder, "%s", name);
+    const struct output_path part = output_path(frames->setup.folder, "%s.part", name);
+    int code = output_write_file(part.text, fill_bytes, &frames->bytes, error);
+    if (!code && rename(part.text, path.text) != 0) {
+        code = output_fail(error, "write", path.text);
+        unlink(part.text);
+    }
+    output_sync_folder(output_path(frames->setup.folder, "hdf5").text);
     return code;
 }
 
 static int hdf5_frames_write_frame(struct output_hdf5 *frames, struct output_state *state,
                                    struct cloth_error *error)
 {
-    char name[OUTPUT_HDF5_NAME];
+    char name[48];
     const struct output_hdf5_setup *setup = &frames->setup;
-    output_hdf5_name(name, state->frame);
+    snprintf(name, sizeof name, OUTPUT_HDF5_NAME, (uintmax_t)state->frame);
     if (setup->wants[OUTPUT_STRAIN] || setup->wants[OUTPUT_STRESS])
         setup->derive(setup->context, state);
     int code = output_image(setup, &frames->grid, state, &frames->bytes, error);
     if (!code)
-        code = hdf5_frames_put_file(frames, name, error);
+        code = put_file(frames, name, error);
     if (!code)
-        code = output_indexes_add(&frames->indexes, setup, &frames->grid, name, state->time, error);
-    output_sync_folder(frames->folder);
+        code = output_indexes_add(frames->indexes, setup, &frames->grid, name, state->time, error);
+    output_sync_folder(frames->setup.folder);
     return code;
 }
 
@@ -135,41 +91,18 @@ static void hdf5_frames_miss(struct output_hdf5 *frames, uint64_t frame,
     frames->setup.warn(text);
 }
 
-static void *work(void *context)
+/* Writes the first n frames. Missing ones are no failure of the settler: the run goes on. */
+static int hdf5_settle(void *context, uint32_t n, struct cloth_error *error)
 {
     struct output_hdf5 *frames = context;
-    pthread_mutex_lock(&frames->lock);
-    for (;;) {
-        while (frames->done == frames->given && !frames->ends)
-            pthread_cond_wait(&frames->change, &frames->lock);
-        if (frames->done == frames->given)
-            break;
+    (void)error;
+    for (; frames->done < n; frames->done++) {
         struct output_state *state = frames->flight + frames->done % OUTPUT_HDF5_FLIGHT;
         struct cloth_error why = {0};
-        pthread_mutex_unlock(&frames->lock);
-        frames->tried++;
         if (hdf5_frames_write_frame(frames, state, &why))
             hdf5_frames_miss(frames, state->frame, &why);
-        pthread_mutex_lock(&frames->lock);
-        frames->done++;
-        pthread_cond_broadcast(&frames->change);
     }
-    pthread_mutex_unlock(&frames->lock);
-    return NULL;
-}
-
-/* Signals are the other threads'. */
-static int start_thread(struct output_hdf5 *frames, struct cloth_error *error)
-{
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    const int failed = pthread_create(&frames->thread, NULL, work, frames);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    frames->has_thread = !failed;
-    return failed ? cloth_fail(error, CLOTH_E_LIBRARY, "no thread to write frames with: %s",
-                               strerror(failed))
-                  : CLOTH_OK;
+    return CLOTH_OK;
 }
 
 /* ---- The caller ---- */
@@ -177,18 +110,16 @@ static int start_thread(struct output_hdf5 *frames, struct cloth_error *error)
 static int take_states(struct output_hdf5 *frames, struct cloth_error *error)
 {
     const struct output_hdf5_setup *setup = &frames->setup;
-    const size_t cells = output_grid_cells(&frames->grid);
     for (int f = 0; f < OUTPUT_HDF5_FLIGHT; f++) {
         struct output_state *state = frames->flight + f;
         state->position = cloth_alloc(setup->n_points, 3 * sizeof *state->position, error);
         for (int i = 0; i < OUTPUT_FIELDS; i++) {
-            const enum output_field is = (enum output_field)i;
-            const size_t rows = output_field_is_of_cells(is) ? cells : setup->n_points;
-            if (setup->wants[i] && output_field_is_whole(is))
+            const size_t rows = output_grid_rows(&frames->grid, i);
+            if (setup->wants[i] && output_fields[i].is_whole)
                 state->number[i] = cloth_alloc(rows, sizeof *state->number[i], error);
             else if (setup->wants[i])
                 state->field[i] =
-                    cloth_alloc(rows, output_field_width(is) * sizeof *state->field[i], error);
+                    cloth_alloc(rows, output_fields[i].width * sizeof *state->field[i], error);
         }
     }
     return error->code;
@@ -204,11 +135,7 @@ static void hdf5_frames_free(struct output_hdf5 *frames)
         }
     }
     output_grid_free(&frames->grid);
-    free(frames->bytes.data);
-    free(frames->folder);
-    free(frames->own);
-    pthread_cond_destroy(&frames->change);
-    pthread_mutex_destroy(&frames->lock);
+    free(frames->bytes.items);
     free(frames);
 }
 
@@ -217,14 +144,12 @@ static int open_all(struct output_hdf5 *frames, struct cloth_error *error)
     const char *lacks = output_hdf5_lacks(frames->setup.level);
     if (lacks)
         return cloth_fail(error, CLOTH_E_INPUT, "%s", lacks);
-    if (!frames->folder || !frames->own)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the frames of HDF5");
     int code = output_grid_make(&frames->grid, &frames->setup, error);
     if (!code)
         code = take_states(frames, error);
-    if (!code)
-        code = output_indexes_open(&frames->indexes, frames->folder, frames->setup.n_frames, error);
-    return code ? code : start_thread(frames, error);
+    return code ? code
+                : output_indexes_open(&frames->indexes, frames->setup.folder,
+                                      frames->setup.n_frames, error);
 }
 
 int output_hdf5_open(struct output_hdf5 **frames, const struct output_hdf5_setup *setup,
@@ -236,17 +161,12 @@ int output_hdf5_open(struct output_hdf5 **frames, const struct output_hdf5_setup
     if (!made)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the frames of HDF5");
     made->setup = *setup;
-    made->folder = strdup(setup->folder);
-    made->own = output_path(setup->folder, "hdf5", "");
-    for (int i = 0; i < OUTPUT_INDEXES; i++)
-        made->indexes.of[i] = OUTPUT_INDEX_NONE;
-    pthread_mutex_init(&made->lock, NULL);
-    pthread_cond_init(&made->change, NULL);
+    made->member = (struct output_member){.settle = hdf5_settle, .context = made};
     if (open_all(made, &own)) {
-        struct cloth_error ignored = {0};
-        output_hdf5_close(&made, &ignored);
+        output_hdf5_close(&made, NULL);
         return cloth_fail(error, own.code, "%s", own.text);
     }
+    output_member_add(&made->member, setup->settler, 0);
     *frames = made;
     return CLOTH_OK;
 }
@@ -256,13 +176,15 @@ bool output_hdf5_takes(const struct output_hdf5 *frames, uint64_t frame)
     return frame % frames->setup.every == 0;
 }
 
+/* A settler that failed writes nothing more: then the caller does. */
 struct output_state *output_hdf5_begin(struct output_hdf5 *frames, uint64_t frame, double time)
 {
-    pthread_mutex_lock(&frames->lock);
-    while (frames->given - frames->done >= OUTPUT_HDF5_FLIGHT)
-        pthread_cond_wait(&frames->change, &frames->lock);
+    if (frames->given >= OUTPUT_HDF5_FLIGHT) {
+        const uint32_t leave = frames->given - OUTPUT_HDF5_FLIGHT + 1;
+        if (!output_member_wait(&frames->member, leave))
+            hdf5_settle(frames, leave, NULL);
+    }
     struct output_state *state = frames->flight + frames->given % OUTPUT_HDF5_FLIGHT;
-    pthread_mutex_unlock(&frames->lock);
     state->frame = frame;
     state->time = time;
     return state;
@@ -270,18 +192,12 @@ struct output_state *output_hdf5_begin(struct output_hdf5 *frames, uint64_t fram
 
 void output_hdf5_end(struct output_hdf5 *frames)
 {
-    pthread_mutex_lock(&frames->lock);
-    frames->given++;
-    pthread_cond_broadcast(&frames->change);
-    pthread_mutex_unlock(&frames->lock);
+    output_member_wrote(&frames->member, ++frames->given, NULL);
 }
 
-void output_hdf5_wait(struct output_hdf5 *frames)
+void output_hdf5_wait(const struct output_hdf5 *frames)
 {
-    pthread_mutex_lock(&frames->lock);
-    while (frames->done < frames->given)
-        pthread_cond_wait(&frames->change, &frames->lock);
-    pthread_mutex_unlock(&frames->lock);
+    output_member_wait(&frames->member, frames->given);
 }
 
 int output_hdf5_close(struct output_hdf5 **frames, struct cloth_error *error)
@@ -290,19 +206,12 @@ int output_hdf5_close(struct output_hdf5 **frames, struct cloth_error *error)
     *frames = NULL;
     if (!gone)
         return CLOTH_OK;
-    if (gone->has_thread) {
-        pthread_mutex_lock(&gone->lock);
-        gone->ends = true;
-        pthread_cond_broadcast(&gone->change);
-        pthread_mutex_unlock(&gone->lock);
-        pthread_join(gone->thread, NULL);
-    }
+    hdf5_settle(gone, gone->given, NULL);
     int code = output_indexes_close(&gone->indexes, error);
     if (gone->missing)
-        code = cloth_fail(error, CLOTH_E_IO,
-                          "%ju of %ju HDF5 frames were not written, the first is frame %ju: %s",
-                          (uintmax_t)gone->missing, (uintmax_t)gone->tried,
-                          (uintmax_t)gone->first_missing, gone->trouble.text);
+        code = cloth_fail(
+            error, CLOTH_E_IO, "%u of %u HDF5 frames were not written, the first is frame %ju: %s",
+            gone->missing, gone->done, (uintmax_t)gone->first_missing, gone->trouble.text);
     hdf5_frames_free(gone);
     return code;
 }

@@ -1,11 +1,16 @@
 /* Cells in their three spellings: corners and starts, shapes, and the list that XDMF has of cells
  * of several shapes. */
-#include "cloth/output/hdf5/grid.h"
-
-#include "cloth/base/memory.h"
+#include "cloth/output/hdf5/hdf5.h"
 
 #include <stdlib.h>
-#include <string.h>
+
+const struct output_field_form output_fields[OUTPUT_FIELDS] = {
+    [OUTPUT_VELOCITY] = {"velocity", 3, false, false},
+    [OUTPUT_BLOCK] = {"block", 1, false, true},
+    [OUTPUT_RANK] = {"rank", 1, false, true},
+    [OUTPUT_FORCE] = {"contact_force", 3, false, false},
+    [OUTPUT_STRAIN] = {"strain", 1, true, false},
+    [OUTPUT_STRESS] = {"stress", 3, true, false}};
 
 /* Numbers of shapes: VTK's, XDMF's. */
 enum { VTK_EDGE = 3, VTK_TRIANGLE = 5, XDMF_POLYLINE = 2, XDMF_TRIANGLE = 4 };

@@ -8,9 +8,6 @@
 #ifdef HAVE_HDF5
 #include <hdf5.h>
 
-#include <stdlib.h>
-#include <string.h>
-
 /* An array on its way into a file. */
 struct array {
     const char *name;
@@ -19,22 +16,22 @@ struct array {
     hsize_t rows, width; /* width 0: it has one dimension */
 };
 
-/* A file under way. Once something failed nothing more is done. */
+/* A file under way. HDF5 fails, and says no more, where it is given what could not be made: so
+ * failures are noted, and nothing is asked before the next call. */
 struct image {
     hid_t file, top;
     unsigned level;
     bool bad;
 };
 
-void output_image_start(void)
+/* It starts HDF5, too: on a thread that may call MPI, as a library that was built with it does. */
+const char *output_hdf5_lacks(uint32_t level)
 {
     H5open();
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-}
-
-bool output_image_gzips(void)
-{
-    return H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0;
+    return level && H5Zfilter_avail(H5Z_FILTER_DEFLATE) <= 0
+               ? "the HDF5 of this duite cannot compress by gzip; compression: 0 is expected"
+               : NULL;
 }
 
 static void hdf5_image_note(struct image *image, herr_t code)
@@ -47,8 +44,8 @@ static void hdf5_image_note(struct image *image, herr_t code)
 static hid_t properties(struct image *image, const struct array *array, size_t size)
 {
     const hid_t is = H5Pcreate(H5P_DATASET_CREATE);
-    hdf5_image_note(image, is < 0 ? -1 : H5Pset_obj_track_times(is, false));
-    if (!image->level || !array->rows || image->bad)
+    hdf5_image_note(image, H5Pset_obj_track_times(is, false));
+    if (!image->level || !array->rows || !size)
         return is;
     const hsize_t width = array->width ? array->width : 1, most = 1048576 / (size * width);
     const hsize_t chunk[2] = {array->rows < most ? array->rows : most, width};
@@ -63,49 +60,36 @@ static void hdf5_image_put(struct image *image, hid_t group, const struct array 
     const hsize_t size[2] = {array->rows, array->width};
     const hid_t space = H5Screate_simple(array->width ? 2 : 1, size, NULL);
     const hid_t is = properties(image, array, H5Tget_size(array->to));
-    hid_t set = -1;
-    if (!image->bad && space >= 0)
-        set = H5Dcreate2(group, array->name, array->to, space, H5P_DEFAULT, is, H5P_DEFAULT);
-    hdf5_image_note(image, set < 0 ? -1 : 0);
-    if (set >= 0 && array->rows)
+    const hid_t set =
+        H5Dcreate2(group, array->name, array->to, space, H5P_DEFAULT, is, H5P_DEFAULT);
+    if (array->rows)
         hdf5_image_note(image,
                         H5Dwrite(set, array->from, H5S_ALL, H5S_ALL, H5P_DEFAULT, array->data));
-    if (set >= 0)
-        hdf5_image_note(image, H5Dclose(set));
-    if (is >= 0)
-        H5Pclose(is);
-    if (space >= 0)
-        H5Sclose(space);
+    hdf5_image_note(image, H5Dclose(set));
+    H5Pclose(is);
+    H5Sclose(space);
 }
 
 static hid_t hdf5_image_group(struct image *image, hid_t within, const char *name)
 {
     const hid_t is = H5Pcreate(H5P_GROUP_CREATE);
-    hid_t made = -1;
-    hdf5_image_note(image, is < 0 ? -1 : H5Pset_obj_track_times(is, false));
-    if (!image->bad)
-        made = H5Gcreate2(within, name, H5P_DEFAULT, is, H5P_DEFAULT);
-    hdf5_image_note(image, made < 0 ? -1 : 0);
-    if (is >= 0)
-        H5Pclose(is);
+    hdf5_image_note(image, H5Pset_obj_track_times(is, false));
+    const hid_t made = H5Gcreate2(within, name, H5P_DEFAULT, is, H5P_DEFAULT);
+    H5Pclose(is);
     return made;
 }
 
-static void leave(struct image *image, hid_t object)
+static void leave(struct image *image, hid_t group)
 {
-    if (object >= 0)
-        hdf5_image_note(image, H5Gclose(object));
+    hdf5_image_note(image, H5Gclose(group));
 }
 
 static void attribute(struct image *image, const char *name, hid_t from, hid_t to, hid_t space,
                       const void *data)
 {
-    hid_t made = -1;
-    if (!image->bad && space >= 0 && to >= 0)
-        made = H5Acreate2(image->top, name, to, space, H5P_DEFAULT, H5P_DEFAULT);
-    hdf5_image_note(image, made < 0 ? -1 : H5Awrite(made, from, data));
-    if (made >= 0)
-        H5Aclose(made);
+    const hid_t made = H5Acreate2(image->top, name, to, space, H5P_DEFAULT, H5P_DEFAULT);
+    hdf5_image_note(image, H5Awrite(made, from, data));
+    H5Aclose(made);
 }
 
 static void put_attributes(struct image *image)
@@ -124,13 +108,6 @@ static void put_attributes(struct image *image)
     H5Sclose(one);
 }
 
-static void put_count(struct image *image, const char *name, size_t count)
-{
-    const int64_t value = (int64_t)count;
-    const struct array array = {name, &value, H5T_NATIVE_INT64, H5T_STD_I64LE, 1, 0};
-    hdf5_image_put(image, image->top, &array);
-}
-
 static void put_longs(struct image *image, hid_t where, const char *name, const int64_t *data,
                       size_t n)
 {
@@ -141,10 +118,11 @@ static void put_longs(struct image *image, hid_t where, const char *name, const 
 static void hdf5_image_put_grid(struct image *image, const struct output_grid *grid)
 {
     const size_t n_cells = output_grid_cells(grid);
+    const int64_t count[] = {grid->n_points, (int64_t)n_cells, (int64_t)grid->n_corners};
     const struct array kinds = {"Types", grid->kind, H5T_NATIVE_UCHAR, H5T_STD_U8LE, n_cells, 0};
-    put_count(image, "NumberOfPoints", grid->n_points);
-    put_count(image, "NumberOfCells", n_cells);
-    put_count(image, "NumberOfConnectivityIds", grid->n_corners);
+    put_longs(image, image->top, "NumberOfPoints", count, 1);
+    put_longs(image, image->top, "NumberOfCells", count + 1, 1);
+    put_longs(image, image->top, "NumberOfConnectivityIds", count + 2, 1);
     put_longs(image, image->top, "Connectivity", grid->corners, grid->n_corners);
     put_longs(image, image->top, "Offsets", grid->start, n_cells + 1);
     hdf5_image_put(image, image->top, &kinds);
@@ -164,17 +142,16 @@ static void put_state(struct image *image, const struct output_hdf5_setup *setup
                          hdf5_image_group(image, image->top, "CellData")};
     const hid_t field = hdf5_image_group(image, image->top, "FieldData");
     for (int i = 0; i < OUTPUT_FIELDS; i++) {
-        const enum output_field is = (enum output_field)i;
-        const bool cells = output_field_is_of_cells(is), whole = output_field_is_whole(is);
-        const unsigned width = output_field_width(is);
-        const struct array array = {output_field_names[i],
+        const struct output_field_form *form = output_fields + i;
+        const bool whole = form->is_whole;
+        const struct array array = {form->name,
                                     whole ? (void *)state->number[i] : (void *)state->field[i],
                                     whole ? H5T_NATIVE_INT32 : H5T_NATIVE_DOUBLE,
                                     whole ? H5T_STD_I32LE : real,
-                                    cells ? output_grid_cells(grid) : grid->n_points,
-                                    width > 1 ? width : 0};
+                                    output_grid_rows(grid, i),
+                                    form->width > 1 ? form->width : 0};
         if (setup->wants[i])
-            hdf5_image_put(image, of[cells], &array);
+            hdf5_image_put(image, of[form->is_of_cells], &array);
     }
     hdf5_image_put(image, field, &time);
     leave(image, field);
@@ -185,40 +162,33 @@ static void put_state(struct image *image, const struct output_hdf5_setup *setup
 static hid_t create(struct image *image, size_t increment)
 {
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS), is = H5Pcreate(H5P_FILE_CREATE);
-    hid_t file = -1;
     hdf5_image_note(image, H5Pset_fapl_core(access, increment, false));
     hdf5_image_note(image, H5Pset_obj_track_times(is, false));
-    if (!image->bad)
-        file = H5Fcreate("frame", H5F_ACC_TRUNC, is, access);
-    hdf5_image_note(image, file < 0 ? -1 : 0);
+    /* without the driver in memory there would be a file of that name on the disk */
+    const hid_t file = image->bad ? -1 : H5Fcreate("frame", H5F_ACC_TRUNC, is, access);
     H5Pclose(access);
     H5Pclose(is);
     return file;
 }
 
 /* Takes the bytes of the file. */
-static int hdf5_image_take(struct image *image, struct output_bytes *bytes,
-                           struct cloth_error *error)
+static int hdf5_image_take(struct image *image, struct cloth_list *bytes, struct cloth_error *error)
 {
-    hdf5_image_note(image, image->bad ? -1 : H5Fflush(image->file, H5F_SCOPE_LOCAL));
+    hdf5_image_note(image, H5Fflush(image->file, H5F_SCOPE_LOCAL));
     const ssize_t size = image->bad ? -1 : H5Fget_file_image(image->file, NULL, 0);
     if (size < 0)
         return cloth_fail(error, CLOTH_E_LIBRARY, "HDF5 could not make a frame");
-    if ((size_t)size > bytes->room) {
-        free(bytes->data);
-        bytes->data = malloc((size_t)size);
-        bytes->room = bytes->data ? (size_t)size : 0;
-    }
-    if (!bytes->data)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the %zd bytes of a frame", size);
-    bytes->n = (size_t)size;
-    return H5Fget_file_image(image->file, bytes->data, bytes->n) == size
+    bytes->n = 0;
+    void *to = cloth_list_add(bytes, 1, (size_t)size, error);
+    if (!to)
+        return CLOTH_E_MEMORY;
+    return H5Fget_file_image(image->file, to, (size_t)size) == size
                ? CLOTH_OK
                : cloth_fail(error, CLOTH_E_LIBRARY, "HDF5 could not copy a frame");
 }
 
 int output_image(const struct output_hdf5_setup *setup, const struct output_grid *grid,
-                 const struct output_state *state, struct output_bytes *bytes,
+                 const struct output_state *state, struct cloth_list *bytes,
                  struct cloth_error *error)
 {
     struct image image = {.file = -1, .top = -1, .level = setup->level};
@@ -229,30 +199,23 @@ int output_image(const struct output_hdf5_setup *setup, const struct output_grid
     put_state(&image, setup, grid, state);
     leave(&image, image.top);
     const int code = hdf5_image_take(&image, bytes, error);
-    if (image.file >= 0)
-        H5Fclose(image.file);
+    H5Fclose(image.file);
     return code;
 }
 
 #else
 
-void output_image_start(void)
+const char *output_hdf5_lacks(uint32_t level)
 {
-}
-
-bool output_image_gzips(void)
-{
-    return false;
+    (void)level;
+    return "this duite was built without HDF5; ./bootstrap --full installs it, then build again";
 }
 
 int output_image(const struct output_hdf5_setup *setup, const struct output_grid *grid,
-                 const struct output_state *state, struct output_bytes *bytes,
+                 const struct output_state *state, struct cloth_list *bytes,
                  struct cloth_error *error)
 {
-    (void)setup;
-    (void)grid;
-    (void)state;
-    (void)bytes;
+    (void)setup, (void)grid, (void)state, (void)bytes;
     return cloth_fail(error, CLOTH_E_LIBRARY, "this duite was built without HDF5");
 }
 

@@ -1,84 +1,73 @@
 /* The index that readers see is a whole text at any moment, also after a run was killed. The kernel
  * may stop a write between two pages, so the visible file is never written. Two files take turns:
- * the hidden one gets the entries that it lacks and the end of the text, then the two change names.
- * So an entry costs no copy of those before it. */
+ * the hidden one gets the entries that it lacks and the end of the text, then the two exchange
+ * names. So an entry costs no copy of those before it. */
 #include "cloth/output/hdf5/hdf5.h"
 
 #include "cloth/base/file.h"
-#include "cloth/output/files/cut.h"
-#include "cloth/output/files/files.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-bool output_index_is_ours(const char *path, const char *begin)
+struct index {
+    const struct output_index_form *form;
+    struct output_file shown, hidden; /* size: the bytes of the text that it has */
+    struct cloth_list text;           /* bytes: all but its end */
+    uint32_t n;                       /* entries */
+};
+
+struct output_indexes {
+    const char *folder;
+    struct index of[OUTPUT_INDEXES];
+};
+
+static int index_append(struct index *index, const char *bytes, size_t n, struct cloth_error *error)
 {
-    char bytes[256];
-    const size_t n = strlen(begin);
-    FILE *file = cloth_file_open(path);
-    const bool is =
-        file && n <= sizeof bytes && fread(bytes, 1, n, file) == n && memcmp(bytes, begin, n) == 0;
-    if (file)
-        fclose(file);
-    return is;
+    char *to = cloth_list_add(&index->text, 1, n, error);
+    if (to)
+        memcpy(to, bytes, n);
+    return to ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
 /* ---- Two files ---- */
 
-static int hdf5_index_append(struct output_bytes *text, const char *bytes, size_t n)
-{
-    if (n > text->room - text->n) {
-        const size_t room = 2 * (text->n + n);
-        unsigned char *data = realloc(text->data, room);
-        if (!data)
-            return -1;
-        text->data = data;
-        text->room = room;
-    }
-    memcpy(text->data + text->n, bytes, n);
-    text->n += n;
-    return 0;
-}
-
 /* Makes the hidden file that of the whole text. 0, or -1 with errno set. */
-static int write_hidden(struct output_index *index)
+static int write_hidden(struct index *index)
 {
-    struct output_index_file *file = &index->hidden;
+    struct output_file *to = &index->hidden;
     const size_t n = index->text.n, end = strlen(index->form->end);
-    if (file->file < 0) {
-        file->file = output_open_file(index->hidden_path, O_WRONLY | O_CREAT | O_TRUNC);
-        file->n = 0;
+    const char *text = index->text.items;
+    if (to->file < 0) {
+        to->file = output_open_file(to->path.text, O_WRONLY | O_CREAT | O_TRUNC);
+        to->size = 0;
     }
-    if (file->file < 0 ||
-        output_write_at(file->file, index->text.data + file->n, n - file->n, file->n) != 0 ||
-        output_write_at(file->file, index->form->end, end, n) != 0 ||
-        ftruncate(file->file, (off_t)(n + end)) != 0)
+    if (to->file < 0 || output_write_at(to->file, text + to->size, n - to->size, to->size) != 0 ||
+        output_write_at(to->file, index->form->end, end, n) != 0 ||
+        ftruncate(to->file, (off_t)(n + end)) != 0)
         return -1;
-    return output_sync(file->file);
+    return output_sync(to->file);
 }
 
-/* The two change names. Where a file system gives a file one name only, the shown one is lost, and
- * the next hidden one begins anew. 0, or -1 with errno set, and the shown one stays. */
-static int swap(struct output_index *index)
+/* The two exchange their names. Where a file system cannot do that, the shown one is lost, and the
+ * next hidden one begins anew. 0, or -1 with errno set, and the shown one stays. */
+static int swap(struct index *index)
 {
-    struct output_index_file before = index->shown;
-    const bool is_kept = link(index->path, index->spare_path) == 0;
-    if (rename(index->hidden_path, index->path) != 0) {
-        const int reason = errno;
-        if (is_kept)
-            unlink(index->spare_path);
-        errno = reason;
+    const char *shown = index->shown.path.text, *hidden = index->hidden.path.text;
+    const int before = index->shown.file;
+    const bool is_kept =
+        before >= 0 && renameat2(AT_FDCWD, hidden, AT_FDCWD, shown, RENAME_EXCHANGE) == 0;
+    if (!is_kept && rename(hidden, shown) != 0)
         return -1;
-    }
-    if (!(is_kept && rename(index->spare_path, index->hidden_path) == 0) && before.file >= 0) {
-        close(before.file);
-        before.file = -1;
-    }
-    index->shown = (struct output_index_file){.file = index->hidden.file, .n = index->text.n};
-    index->hidden = before;
+    if (!is_kept && before >= 0)
+        close(before);
+    index->shown.file = index->hidden.file;
+    index->hidden.file = is_kept ? before : -1;
+    index->hidden.size = index->shown.size;
+    index->shown.size = index->text.n;
     return 0;
 }
 
@@ -92,110 +81,81 @@ static bool starts(const char *text, const char *with)
 }
 
 /* The frame that an entry names; UINT64_MAX: none. */
-static uint64_t hdf5_index_frame_of(const char *entry)
+static uint64_t frame_of(const char *entry)
 {
     const char *name = strstr(entry, OUTPUT_HDF5_FRAME);
     return name ? strtoull(name + strlen(OUTPUT_HDF5_FRAME), NULL, 10) : UINT64_MAX;
 }
 
-static int hdf5_index_check_frame(const char *folder, uint64_t frame, struct cloth_error *error)
-{
-    char name[OUTPUT_HDF5_NAME];
-    output_hdf5_name(name, frame);
-    char *path = output_path(folder, name, "");
-    int code = path ? CLOTH_OK : cloth_fail(error, CLOTH_E_MEMORY, "no memory for a path");
-    if (!code && access(path, F_OK) != 0)
-        code = cloth_fail(error, CLOTH_E_INPUT, "%s is gone: %s", path, OUTPUT_CHANGED);
-    free(path);
-    return code;
-}
-
 /* Appends the entries of frames below n_frames, which come first in a text, with what begins it. */
-static int hdf5_index_keep(struct output_index *index, const char *folder, const char *text,
-                           uint64_t n_frames, struct cloth_error *error)
+static int index_keep(struct index *index, const char *folder, const char *text, uint64_t n_frames,
+                      struct cloth_error *error)
 {
     const struct output_index_form *form = index->form;
     const char *at = text + strlen(form->begin);
-    while (at && starts(at, form->entry) && hdf5_index_frame_of(at) < n_frames) {
-        if (hdf5_index_check_frame(folder, hdf5_index_frame_of(at), error))
-            return error->code;
+    while (at && starts(at, form->entry) && frame_of(at) < n_frames) {
+        const struct output_path path =
+            output_path(folder, OUTPUT_HDF5_NAME, (uintmax_t)frame_of(at));
+        if (access(path.text, F_OK) != 0)
+            return cloth_fail(error, CLOTH_E_INPUT, "%s is gone: %s", path.text, OUTPUT_CHANGED);
         const char *next = strstr(at + 1, form->entry);
         at = next ? next : strstr(at, form->end);
         index->n++;
     }
-    const bool more = at && starts(at, form->entry) && hdf5_index_frame_of(at) < UINT64_MAX;
+    const bool more = at && starts(at, form->entry) && frame_of(at) < UINT64_MAX;
     if (!more && (!at || strcmp(at, form->end) != 0))
-        return cloth_fail(error, CLOTH_E_INPUT, "%s is not whole: %s", index->path, OUTPUT_CHANGED);
+        return cloth_fail(error, CLOTH_E_INPUT, "%s is not whole: %s", index->shown.path.text,
+                          OUTPUT_CHANGED);
     size_t n = (size_t)(at - text), separator = strlen(SEPARATOR);
     if (index->n && memcmp(at - separator, SEPARATOR, separator) == 0)
         n -= separator;
-    return hdf5_index_append(&index->text, text, n) == 0
-               ? CLOTH_OK
-               : cloth_fail(error, CLOTH_E_MEMORY, "no memory for an index of frames");
+    return index_append(index, text, n, error);
 }
 
 /* From the index that is there. */
-static int keep_entries(struct output_index *index, const char *folder, uint64_t n_frames,
+static int keep_entries(struct index *index, const char *folder, uint64_t n_frames,
                         struct cloth_error *error)
 {
-    char *text = NULL;
-    size_t room = 0;
-    FILE *file = cloth_file_open(index->path);
-    int code = CLOTH_OK;
-    if (!file || getdelim(&text, &room, 0, file) < 0 || ferror(file))
-        code = cloth_fail(error, CLOTH_E_INPUT, "cannot go on with %s: %s", index->path,
-                          cloth_file_why());
-    if (file)
-        fclose(file);
-    code = code ? code : hdf5_index_keep(index, folder, text, n_frames, error);
+    size_t size;
+    unsigned char *text = output_read_file(index->shown.path.text, &size);
+    const int code = text ? index_keep(index, folder, (const char *)text, n_frames, error)
+                          : cloth_fail(error, CLOTH_E_INPUT, "cannot go on with %s: %s",
+                                       index->shown.path.text, cloth_file_why());
     free(text);
     return code;
 }
 
 /* ---- An index ---- */
 
-static int begin_index(struct output_index *index, const char *folder, const uint64_t *n_frames,
-                       struct cloth_error *error)
+static bool is_ours(const struct index *index)
 {
-    const char *begin = index->form->begin;
-    int code = CLOTH_OK;
-    if (!index->path || !index->hidden_path || !index->spare_path)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for an index of frames");
-    if (n_frames && access(index->path, F_OK) == 0)
-        code = keep_entries(index, folder, *n_frames, error);
-    else if (hdf5_index_append(&index->text, begin, strlen(begin)) != 0)
-        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for an index of frames");
+    return output_begins(index->shown.path.text, index->form->begin, strlen(index->form->begin));
+}
+
+/* Begins a new one, or goes on with one that is there, with its entries of frames below *n_frames.
+ */
+static int index_open(struct index *index, const char *folder, const uint64_t *n_frames,
+                      struct cloth_error *error)
+{
+    const char *path = index->shown.path.text, *begin = index->form->begin;
+    int code = n_frames && access(path, F_OK) == 0
+                   ? keep_entries(index, folder, *n_frames, error)
+                   : index_append(index, begin, strlen(begin), error);
     if (!code && (write_hidden(index) != 0 || swap(index) != 0))
-        code = output_refuse(error, "write", index->path);
+        code = output_refuse(error, "write", path);
     return code;
 }
 
-int output_index_open(struct output_index *index, const char *folder,
-                      const struct output_index_form *form, const uint64_t *n_frames,
-                      struct cloth_error *error)
-{
-    char *hidden = output_path(folder, "hdf5", "");
-    *index = OUTPUT_INDEX_NONE;
-    index->form = form;
-    index->path = output_path(folder, form->name, "");
-    if (hidden) {
-        index->hidden_path = output_path(hidden, form->name, OUTPUT_INDEX_HIDDEN);
-        index->spare_path = output_path(hidden, form->name, OUTPUT_INDEX_SPARE);
-    }
-    free(hidden);
-    return begin_index(index, folder, n_frames, error);
-}
-
-int output_index_add(struct output_index *index, const char *entry, size_t n,
-                     struct cloth_error *error)
+/* An entry that fails leaves the others. */
+static int index_add(struct index *index, const char *entry, struct cloth_error *error)
 {
     const size_t before = index->text.n;
     const char *comma = index->n && index->form->end[0] == ']' ? SEPARATOR : "";
-    int code = output_check_same(index->shown.file, index->path, error);
-    if (!code && (hdf5_index_append(&index->text, comma, strlen(comma)) != 0 ||
-                  hdf5_index_append(&index->text, entry, n) != 0 || write_hidden(index) != 0 ||
-                  swap(index) != 0))
-        code = output_fail(error, "write", index->path);
+    int code = output_file_check(&index->shown, error);
+    code = code ? code : index_append(index, comma, strlen(comma), error);
+    code = code ? code : index_append(index, entry, strlen(entry), error);
+    if (!code && (write_hidden(index) != 0 || swap(index) != 0))
+        code = output_fail(error, "write", index->shown.path.text);
     if (code)
         index->text.n = before;
     else
@@ -203,20 +163,181 @@ int output_index_add(struct output_index *index, const char *entry, size_t n,
     return code;
 }
 
-int output_index_close(struct output_index *index, struct cloth_error *error)
+static int index_close(struct index *index, struct cloth_error *error)
 {
-    const bool is_open = index->shown.file >= 0;
-    int code = CLOTH_OK;
-    if (is_open && close(index->shown.file) != 0)
-        code = output_fail(error, "close", index->path);
-    if (index->hidden.file >= 0)
-        close(index->hidden.file);
-    if (is_open || index->hidden.file >= 0) /* one of an earlier run may have that name, unopened */
-        unlink(index->hidden_path);
-    free(index->path);
-    free(index->hidden_path);
-    free(index->spare_path);
-    free(index->text.data);
-    *index = OUTPUT_INDEX_NONE;
+    /* an earlier run's hidden file, which was not opened, stays */
+    const bool is_open = index->shown.file >= 0 || index->hidden.file >= 0;
+    const int code = output_file_close(&index->shown, error);
+    output_file_close(&index->hidden, NULL);
+    if (is_open)
+        unlink(index->hidden.path.text);
+    free(index->text.items);
     return code;
+}
+
+/* ---- Files that an earlier run left ---- */
+
+/* True if a file of the folder hdf5 has a frame's name; *frame: its number, UINT64_MAX if it was
+ * under way. */
+static bool is_frame(const char *name, uint64_t *frame)
+{
+    static const char BEGIN[] = "frame-";
+    if (strncmp(name, BEGIN, sizeof BEGIN - 1) != 0)
+        return false;
+    name += sizeof BEGIN - 1;
+    const size_t digits = strspn(name, "0123456789");
+    const bool half = strcmp(name + digits, ".vtkhdf.part") == 0;
+    *frame = half ? UINT64_MAX : strtoull(name, NULL, 10);
+    return digits >= 6 && (half || strcmp(name + digits, ".vtkhdf") == 0);
+}
+
+/* Removes frames from a number on, and those under way. *stay: whether there are frames before. */
+static int remove_frames(const char *folder, uint64_t from, bool *stay, struct cloth_error *error)
+{
+    const struct output_path frames = output_path(folder, "hdf5");
+    DIR *all = opendir(frames.text);
+    int code = CLOTH_OK;
+    *stay = false;
+    for (struct dirent *entry; all && !code && (entry = readdir(all));) {
+        uint64_t frame;
+        const struct output_path path = output_path(frames.text, "%s", entry->d_name);
+        if (!is_frame(entry->d_name, &frame))
+            continue;
+        if (frame < from)
+            *stay = true;
+        else if (unlink(path.text) != 0)
+            code = output_refuse(error, "replace", path.text);
+    }
+    if (all)
+        closedir(all);
+    return code;
+}
+
+static int remove_file(const char *path, struct cloth_error *error)
+{
+    return unlink(path) == 0 || errno == ENOENT ? CLOTH_OK : output_refuse(error, "replace", path);
+}
+
+/* One that is there is ours; if it has to be, it is. */
+static int check_indexes(const struct output_indexes *indexes, bool have_to,
+                         struct cloth_error *error)
+{
+    for (int i = 0; i < OUTPUT_INDEXES; i++) {
+        const char *path = indexes->of[i].shown.path.text;
+        const bool is_there = access(path, F_OK) == 0;
+        if (!is_there && have_to)
+            return cloth_fail(error, CLOTH_E_INPUT, "%s is gone: %s", path, OUTPUT_CHANGED);
+        if (is_there && !is_ours(indexes->of + i))
+            return cloth_fail(error, CLOTH_E_INPUT,
+                              "%s is in the way, and is no index of frames of an earlier run; give "
+                              "another folder, or move the file away",
+                              path);
+    }
+    return CLOTH_OK;
+}
+
+/* Removes what an earlier run left, but for the frames below *n_frames; NULL: all. Indexes are
+ * looked at before one is removed; they go first, so that none names what is not there. */
+static int clear(const struct output_indexes *indexes, const uint64_t *n_frames,
+                 struct cloth_error *error)
+{
+    bool stay = false;
+    int code = n_frames ? remove_frames(indexes->folder, UINT64_MAX, &stay, error) : CLOTH_OK;
+    code = code ? code : check_indexes(indexes, stay, error);
+    for (int i = 0; i < OUTPUT_INDEXES && !code; i++) {
+        const struct index *index = indexes->of + i;
+        code = n_frames ? CLOTH_OK : remove_file(index->shown.path.text, error);
+        code = code ? code : remove_file(index->hidden.path.text, error);
+    }
+    if (code || n_frames)
+        return code;
+    code = remove_frames(indexes->folder, 0, &stay, error);
+    if (!code)
+        rmdir(output_path(indexes->folder, "hdf5").text); /* unless it has other files, too */
+    return code;
+}
+
+/* ---- Both indexes ---- */
+
+/* Names them; none is open. */
+static int indexes_make(struct output_indexes **indexes, const char *folder,
+                        struct cloth_error *error)
+{
+    struct output_indexes *made = *indexes = cloth_alloc(1, sizeof *made, error);
+    if (!made)
+        return CLOTH_E_MEMORY;
+    for (int i = 0; i < OUTPUT_INDEXES; i++) {
+        struct index *index = made->of + i;
+        index->form = output_index_forms + i;
+        index->shown = output_file(folder, index->form->name);
+        index->hidden = (struct output_file){
+            .path = output_path(folder, "hdf5/%s.part", index->form->name), .file = -1};
+    }
+    made->folder = folder;
+    return CLOTH_OK;
+}
+
+static int indexes_open(struct output_indexes *indexes, const uint64_t *n_frames,
+                        struct cloth_error *error)
+{
+    const char *folder = indexes->folder;
+    bool stay;
+    int code = clear(indexes, n_frames, error);
+    if (!code)
+        code = output_make_folder(output_path(folder, "hdf5").text, error);
+    for (int i = 0; i < OUTPUT_INDEXES && !code; i++)
+        code = index_open(indexes->of + i, folder, n_frames, error);
+    if (!code && n_frames)
+        code = remove_frames(folder, *n_frames, &stay, error);
+    return code;
+}
+
+int output_indexes_open(struct output_indexes **indexes, const char *folder,
+                        const uint64_t *n_frames, struct cloth_error *error)
+{
+    const int code = indexes_make(indexes, folder, error);
+    return code ? code : indexes_open(*indexes, n_frames, error);
+}
+
+int output_indexes_add(struct output_indexes *indexes, const struct output_hdf5_setup *setup,
+                       const struct output_grid *grid, const char *frame, double time,
+                       struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    for (int i = 0; i < OUTPUT_INDEXES; i++) {
+        char *entry = output_index_entry(i, setup, grid, frame, time);
+        const int failed =
+            entry ? index_add(indexes->of + i, entry, error)
+                  : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the index of frames");
+        code = code ? code : failed;
+        free(entry);
+    }
+    return code;
+}
+
+int output_indexes_close(struct output_indexes **indexes, struct cloth_error *error)
+{
+    struct output_indexes *gone = *indexes;
+    int code = CLOTH_OK;
+    *indexes = NULL;
+    for (int i = 0; gone && i < OUTPUT_INDEXES; i++) {
+        const int failed = index_close(gone->of + i, error);
+        code = code ? code : failed;
+    }
+    free(gone);
+    return code;
+}
+
+/* Another file than an index of ours stays: nobody asked for it to go. */
+int output_hdf5_forget(const char *folder, const uint64_t *n_frames, struct cloth_error *error)
+{
+    struct output_indexes *indexes;
+    int code = indexes_make(&indexes, folder, error);
+    bool ours = !code;
+    for (int i = 0; i < OUTPUT_INDEXES && ours; i++)
+        ours = is_ours(indexes->of + i);
+    if (ours)
+        code = n_frames ? indexes_open(indexes, n_frames, error) : clear(indexes, NULL, error);
+    const int closed = output_indexes_close(&indexes, error);
+    return code ? code : closed;
 }

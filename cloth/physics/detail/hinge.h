@@ -64,7 +64,7 @@ PHYS_INLINE void phys_hinge_angle(struct phys_hinge *h)
 }
 
 /* From rows of the corners. */
-PHYS_INLINE void phys_hinge_make(const struct phys_four *four, const uint32_t (*corner)[4],
+PHYS_INLINE void phys_hinge_make(const struct phys_four *four, uint32_t (*corner)[4],
                                  const struct phys_sight *sight, struct phys_hinge *h)
 {
     struct phys_wide x[4];

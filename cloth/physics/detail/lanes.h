@@ -126,9 +126,8 @@ PHYS_INLINE void phys_four_from(size_t first, size_t end, struct phys_four *four
 }
 
 /* Corner k of the four elements. */
-PHYS_INLINE void phys_gather(const struct phys_four *four, const uint32_t (*corner)[4], int k,
-                             uint32_t n, const phys_vec *own, const phys_vec *ghost,
-                             struct phys_wide *y)
+PHYS_INLINE void phys_gather(const struct phys_four *four, uint32_t (*corner)[4], int k, uint32_t n,
+                             const phys_vec *own, const phys_vec *ghost, struct phys_wide *y)
 {
     phys_vec row[PHYS_WIDE], column[PHYS_WIDE];
     PHYS_UNROLL
@@ -170,7 +169,7 @@ PHYS_INLINE void phys_take_numbers(const struct phys_four *four, const double *l
 }
 
 /* Adds to corner k of the four elements, where it is one of the n rows. */
-PHYS_INLINE void phys_scatter(const struct phys_four *four, const uint32_t (*corner)[4], int k,
+PHYS_INLINE void phys_scatter(const struct phys_four *four, uint32_t (*corner)[4], int k,
                               uint32_t n, const struct phys_wide *add, phys_vec *y)
 {
     const phys_vec column[PHYS_WIDE] = {add->c[0], add->c[1], add->c[2], {0}};
@@ -217,8 +216,8 @@ PHYS_INLINE void phys_write_pairs(const struct phys_four *four, phys_vec cyclic[
 
 /* The sum of one number an element, in order, of those that the block counts: whose first corner is
  * one of its rows. */
-PHYS_INLINE double phys_sum_own(const struct phys_four *four, const uint32_t (*corner)[4],
-                                uint32_t n, const phys_vec *number, double sum)
+PHYS_INLINE double phys_sum_own(const struct phys_four *four, uint32_t (*corner)[4], uint32_t n,
+                                const phys_vec *number, double sum)
 {
     PHYS_UNROLL
     for (size_t i = 0; i < four->valid; i++)

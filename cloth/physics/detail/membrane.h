@@ -32,7 +32,7 @@ struct phys_frame {
     const struct phys_moduli *of; /* of the membranes */
 };
 
-PHYS_INLINE void phys_moduli_take(const struct phys_triangles *t, const struct phys_four *four,
+PHYS_INLINE void phys_moduli_take(const struct phys_elements *t, const struct phys_four *four,
                                   struct phys_moduli *moduli)
 {
     uint32_t of[PHYS_WIDE], others = 0;
@@ -46,7 +46,7 @@ PHYS_INLINE void phys_moduli_take(const struct phys_triangles *t, const struct p
     phys_vec row[PHYS_WIDE], column[PHYS_WIDE];
     PHYS_UNROLL
     for (int i = 0; i < PHYS_WIDE; i++) {
-        const struct phys_membrane *membrane = t->membrane + of[i];
+        const struct phys_membrane *membrane = (const struct phys_membrane *)t->material + of[i];
         moduli->of[i] = of[i];
         row[i] = membrane->modulus;
         moduli->damping[i] = membrane->damping;
@@ -60,7 +60,7 @@ PHYS_INLINE void phys_moduli_take(const struct phys_triangles *t, const struct p
 }
 
 /* F_u and F_v of rows of the corners: of positions, velocities or anything else. */
-PHYS_INLINE void phys_frame_slope(const struct phys_triangles *t, const struct phys_four *four,
+PHYS_INLINE void phys_frame_slope(const struct phys_elements *t, const struct phys_four *four,
                                   const struct phys_frame *frame, uint32_t n, const phys_vec *own,
                                   const phys_vec *ghost, struct phys_wide *fu, struct phys_wide *fv)
 {
@@ -104,13 +104,13 @@ PHYS_INLINE void phys_frame_polar(const struct phys_wide *fu, const struct phys_
         frame->rv.c[i] = (fv->c[i] + turned.c[i]) * frame->turn;
 }
 
-PHYS_INLINE void phys_frame_make(const struct phys_triangles *t, const struct phys_four *four,
+PHYS_INLINE void phys_frame_make(const struct phys_elements *t, const struct phys_four *four,
                                  const struct phys_sight *sight, struct phys_moduli *moduli,
                                  struct phys_frame *frame)
 {
     phys_vec g[PHYS_WIDE];
     struct phys_wide fu, fv;
-    phys_gather_rows(four, t->gradient, g);
+    phys_gather_rows(four, t->vector, g);
     PHYS_UNROLL
     for (int i = 1; i < 3; i++) {
         frame->gu[i] = g[2 * i - 2];
@@ -118,7 +118,7 @@ PHYS_INLINE void phys_frame_make(const struct phys_triangles *t, const struct ph
     }
     frame->gu[0] = -frame->gu[1] - frame->gu[2];
     frame->gv[0] = -frame->gv[1] - frame->gv[2];
-    phys_take_numbers(four, t->area, &frame->area);
+    phys_take_numbers(four, t->number[PHYS_TRIANGLE_AREA], &frame->area);
     phys_moduli_take(t, four, moduli);
     frame->of = moduli;
     phys_frame_slope(t, four, frame, sight->n, sight->x, sight->x_ghost, &fu, &fv);
@@ -184,7 +184,7 @@ PHYS_INLINE void phys_frame_untwist(const struct phys_plane2 *t, const phys_vec 
 
 /* Adds -area (P_u g_u + P_v g_v), P = R q + normal k, k the pull along the normal or NULL, to the
  * rows of the corners. */
-PHYS_INLINE void phys_frame_push(const struct phys_triangles *t, const struct phys_four *four,
+PHYS_INLINE void phys_frame_push(const struct phys_elements *t, const struct phys_four *four,
                                  const struct phys_frame *f, const struct phys_plane2 *q,
                                  const phys_vec *along, uint32_t n, phys_vec *y)
 {

@@ -2,6 +2,8 @@
  * squares of it: that of the sky around the same foot, that of the sun where its shadow falls. */
 #include "cloth/view/draw/draw.h"
 
+#include "cloth/base/vector.h"
+
 #include <math.h>
 
 static void ground_set_vector(GLuint program, const char *name, const double v[3], double scale)
@@ -10,18 +12,13 @@ static void ground_set_vector(GLuint program, const char *name, const double v[3
                 (float)(v[2] * scale));
 }
 
-static double ground_dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Directions u and v on a plane, square to each other and to its normal n; all of length 1. */
 static void span(const double n[3], double u[3], double v[3])
 {
-    double other[3] = {fabs(n[0]) < 0.7, 0, fabs(n[0]) >= 0.7}, along = ground_dot(other, n);
+    double other[3] = {fabs(n[0]) < 0.7, 0, fabs(n[0]) >= 0.7}, along = cloth_dot(other, n);
     for (int k = 0; k < 3; k++)
         u[k] = other[k] - along * n[k];
-    double length = sqrt(ground_dot(u, u));
+    double length = sqrt(cloth_dot(u, u));
     for (int k = 0; k < 3; k++)
         u[k] /= length;
     for (int k = 0; k < 3; k++)
@@ -62,7 +59,7 @@ static void place_sun(struct draw_ground *ground, double height, const struct dr
     double toward[3];
     for (int k = 0; k < 3; k++)
         toward[k] = (double)lights->block.toward[k];
-    const double steep = fmax(ground_dot(ground->n, toward), 0.2), way = height / steep;
+    const double steep = fmax(cloth_dot(ground->n, toward), 0.2), way = height / steep;
     for (int k = 0; k < 3; k++)
         square->centre[k] = ground->foot[k] - way * (toward[k] - steep * ground->n[k]);
     square->half = ((double)lights->radius + DRAW_SUN_RADIUS * fabs(way)) / steep;
@@ -73,12 +70,12 @@ static void place_sun(struct draw_ground *ground, double height, const struct dr
 void draw_ground_place(struct draw_ground *ground, const double plane[6], const float center[3],
                        float radius, const struct draw_lights *lights)
 {
-    const double length = sqrt(ground_dot(plane + 3, plane + 3));
+    const double length = sqrt(cloth_dot(plane + 3, plane + 3));
     for (int k = 0; k < 3; k++) {
         ground->n[k] = plane[3 + k] / length;
         ground->foot[k] = (double)center[k];
     }
-    const double height = ground_dot(ground->n, ground->foot) - ground_dot(ground->n, plane);
+    const double height = cloth_dot(ground->n, ground->foot) - cloth_dot(ground->n, plane);
     for (int k = 0; k < 3; k++)
         ground->foot[k] -= height * ground->n[k];
     span(ground->n, ground->u, ground->v);
@@ -101,15 +98,15 @@ void draw_ground(const struct draw_ground *ground, GLuint program, const float e
     double away[3];
     for (int k = 0; k < 3; k++)
         away[k] = (double)eye[k] - ground->foot[k];
-    if (ground_dot(ground->n, away) <= 0)
+    if (cloth_dot(ground->n, away) <= 0)
         return; /* seen from behind it would hide everything */
     const double end = (ground->n[1] > 0.95 ? 7 : 1.5) * (double)reach;
     draw_ground_square(ground, program, ground->foot, end);
     for (int i = 0; i < DRAW_SQUARES; i++) {
         const struct draw_square *square = ground->square + i;
         const double scale = 0.5 / square->half;
-        const float to[4] = {(float)(0.5 - scale * ground_dot(square->centre, ground->u)),
-                             (float)(0.5 - scale * ground_dot(square->centre, ground->v)),
+        const float to[4] = {(float)(0.5 - scale * cloth_dot(square->centre, ground->u)),
+                             (float)(0.5 - scale * cloth_dot(square->centre, ground->v)),
                              (float)scale};
         glUniform3fv(glGetUniformLocation(program, names[i]), 1, to);
         glActiveTexture(GL_TEXTURE0 + (i ? DRAW_UNIT_BACK : DRAW_UNIT_FRONT));

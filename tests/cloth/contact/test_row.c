@@ -160,3 +160,145 @@ UNIT_TEST(derivative)
         ck_assert_double_lt(sqrt(phys_dot(&error, &error)), 1e-6 * 30 * 1e-8);
     }
 }
+
+/* ---- A mass without room, between two planes that leave one and a half thicknesses ---- */
+
+struct pinch {
+    double kg, h, y, v;
+    struct contact_row low, high; /* high->normal is down */
+};
+
+static const double NEWTONS = 0.5; /* that halve a gap */
+
+static void begin_row(struct contact_row *row, double y, double gap, double h)
+{
+    row->origin = (phys_vec){0, y, 0, 0};
+    row->gap = gap;
+    contact_row_begin(row, 30, h);
+}
+
+static double stiffness_of(const phys_vec *value)
+{
+    const phys_vec three = {1, 1, 1, 0}, w = *value * three;
+    return phys_dot(&w, &w) + (*value)[3];
+}
+
+/* The upper plane moves from a height to another one. */
+static void step_between(struct pinch *pinch, double from, double to)
+{
+    struct contact_row *row[2] = {&pinch->low, &pinch->high};
+    const double h = pinch->h;
+    double force = -pinch->kg * G, stiffness = 0;
+    begin_row(row[0], pinch->y, pinch->y, h);
+    begin_row(row[1], pinch->y, from - pinch->y, h);
+    row[1]->gap += to - from; /* as flow_contact_ahead */
+    const phys_vec ahead = {0, pinch->y + h * pinch->v, 0, 0};
+    for (int i = 0; i < 2; i++) {
+        phys_vec push, value;
+        contact_row_linearise(row[i], &ahead, &push, &value);
+        force += push[1];
+        stiffness += stiffness_of(&value);
+    }
+    pinch->v += h * force / (pinch->kg + h * h * stiffness);
+    pinch->y += h * pinch->v;
+    const phys_vec at = {0, pinch->y, 0, 0};
+    for (int i = 0; i < 2; i++) {
+        const struct contact_row before = *row[i];
+        contact_row_end(&before, &at, row[i]);
+    }
+}
+
+static void hold_between(struct pinch *pinch, double height, double seconds)
+{
+    for (int i = 0; i < (int)(seconds / pinch->h + 0.5); i++)
+        step_between(pinch, height, height);
+}
+
+/* It has rested on the lower plane when the upper one comes down in a tenth of a second. */
+static void close(struct pinch *pinch, double h)
+{
+    const double high = 3 * THICKNESS, low = 1.5 * THICKNESS;
+    const int n = (int)(0.1 / h + 0.5);
+    *pinch = (struct pinch){.kg = 2e-5, .h = h, .y = THICKNESS};
+    pinch->low = make(0, 0).row;
+    pinch->low.hard = NEWTONS;
+    pinch->high = pinch->low;
+    pinch->high.normal *= -1;
+    hold_between(pinch, high, 0.5);
+    for (int i = 0; i < n; i++)
+        step_between(pinch, high + (low - high) * i / n, high + (low - high) * (i + 1) / n);
+}
+
+/* A third more than half: the law at three quarters of the thickness. Its weight is 2e-4 N. */
+UNIT_TEST(compressed_mass_has_the_push_of_the_law)
+{
+    const double lengths[] = {0.001, 0.004, 0.01}, expected = NEWTONS / 3;
+    for (int i = 0; i < 3; i++) {
+        struct pinch pinch;
+        close(&pinch, lengths[i]);
+        hold_between(&pinch, 1.5 * THICKNESS, 0.5);
+        ck_assert_double_eq_tol(pinch.low.load, expected, 0.002 * expected);
+        hold_between(&pinch, 1.5 * THICKNESS, 10);
+        ck_assert_double_eq_tol(pinch.low.load, expected, 0.002 * expected);
+        ck_assert_double_eq_tol(pinch.low.load - pinch.high.load, pinch.kg * G,
+                                1e-6 * pinch.kg * G);
+    }
+}
+
+/* The plane is gone after ten seconds: the mass flies no faster than the energy of both contacts
+ * lets it. */
+UNIT_TEST(opened_pinch_gives_back_its_energy)
+{
+    const double lengths[] = {0.001, 0.004, 0.01};
+    for (int i = 0; i < 3; i++) {
+        struct pinch pinch;
+        close(&pinch, lengths[i]);
+        hold_between(&pinch, 1.5 * THICKNESS, 10);
+        const double energy = 2 * NEWTONS * THICKNESS * (log(4.0 / 3) - 0.25);
+        double fastest = 0;
+        for (int step = 0; step < 100; step++) {
+            step_between(&pinch, step ? 1 : 1.5 * THICKNESS, 1);
+            fastest = fmax(fastest, pinch.v);
+        }
+        ck_assert_double_lt(fastest, sqrt(2 * energy / pinch.kg));
+        hold_between(&pinch, 1, 5);
+        ck_assert_double_eq_tol(pinch.low.load, pinch.kg * G, 1e-6 * pinch.kg * G);
+        ck_assert_double_eq_tol(pinch.y, THICKNESS, 1e-9);
+    }
+}
+
+/* What only waits for room is not thrown: here a spring, N/m, holds the mass down, and it ends
+ * where the law has the spring's force, or where the contact is open. */
+static void open_against(double spring)
+{
+    const double down = 2e-4;
+    struct pinch pinch = {.kg = 2e-5, .h = 0.004, .y = 0.6 * THICKNESS};
+    double fastest = 0;
+    pinch.low = make(0, 0).row;
+    pinch.low.hard = NEWTONS;
+    pinch.low.load = pinch.low.rested = down;
+    for (int i = 0; i < 2500; i++) {
+        const double h = pinch.h;
+        phys_vec push, value;
+        begin_row(&pinch.low, pinch.y, pinch.y, h);
+        const phys_vec ahead = {0, pinch.y + h * pinch.v, 0, 0};
+        contact_row_linearise(&pinch.low, &ahead, &push, &value);
+        const double force = push[1] - down - spring * (ahead[1] - 0.6 * THICKNESS);
+        pinch.v += h * force / (pinch.kg + h * h * (spring + stiffness_of(&value)));
+        pinch.y += h * pinch.v;
+        fastest = fmax(fastest, pinch.v);
+        const phys_vec at = {0, pinch.y, 0, 0};
+        const struct contact_row before = pinch.low;
+        contact_row_end(&before, &at, &pinch.low);
+    }
+    const double held = down + spring * (pinch.y - 0.6 * THICKNESS);
+    ck_assert_double_eq_tol(pinch.low.load, held, 1e-6 * held);
+    ck_assert_double_gt(pinch.y, THICKNESS / (1 + held / NEWTONS) - 1e-6);
+    ck_assert_double_lt(fastest, 0.15 * 0.4 * THICKNESS / pinch.h);
+}
+UNIT_TEST(contact_that_gives_is_not_thrown)
+{
+    open_against(0);
+    open_against(100);
+    open_against(1000);
+}

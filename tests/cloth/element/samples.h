@@ -98,11 +98,11 @@ struct sample {
     const struct scene *scene;
     uint32_t kind, cloth;
     struct element element[MAX];
-    struct element_world world;
-    struct element_list list;
+    struct phys_air air;
+    struct phys_elements list;
     uint32_t corner[MAX][4];
     phys_vec vector[MAX], material[64];
-    double number[ELEMENT_NUMBERS][MAX];
+    double number[PHYS_NUMBERS][MAX];
 };
 
 static inline void collect(void *to, const struct element *element)
@@ -120,12 +120,12 @@ static inline void take(struct sample *s, const struct scene *scene, uint32_t ki
 {
     const struct element_kind *k = element_kinds[kind];
     *s = (struct sample){.scene = scene, .kind = kind, .cloth = cloth};
-    s->world = (struct element_world){&scene->model, 0.5};
-    s->list = (struct element_list){
+    s->air = model_air_at(&scene->model, 0.5);
+    s->list = (struct phys_elements){
         .corner = s->corner, .vector = s->vector, .material = (void *)s->material};
     ck_assert_uint_le(CLOTHS * k->material_bytes, sizeof s->material);
     element_materials(k, &scene->model, s->material);
-    for (int i = 0; i < ELEMENT_NUMBERS; i++)
+    for (int i = 0; i < PHYS_NUMBERS; i++)
         s->list.number[i] = s->number[i];
     element_each(&scene->cloths, collect, s);
     for (uint32_t e = 0; e < s->list.n; e++) {
@@ -162,7 +162,7 @@ static inline double energy(const void *of, const struct phys_sight *sight)
 static inline void force(const void *of, const struct phys_sight *sight, phys_vec *f)
 {
     const struct sample *s = of;
-    kind_of(s)->force(&s->list, &s->world, sight, f);
+    kind_of(s)->force(&s->list, &s->air, sight, f);
 }
 static inline void stiffness(const void *of, int full, double scale, const struct phys_sight *sight,
                              phys_vec *y)

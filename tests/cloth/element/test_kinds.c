@@ -18,7 +18,7 @@ static const char *flaw_of(const struct element_kind *k)
         return "part and corners";
     if (k->pairs != 0 && k->pairs != all)
         return "pairs: all or none";
-    if (k->vectors > 1 || k->numbers > ELEMENT_NUMBERS)
+    if (k->vectors > 1 || k->numbers > PHYS_NUMBERS)
         return "vectors and numbers: as many as a list has";
     if (!k->has || !k->force)
         return "has, force";
@@ -164,7 +164,7 @@ static void check_alone(const struct sample *s, const struct apart *all, uint32_
     struct phys_pair pair[ELEMENT_PAIRS];
     phys_vec f[4] = {{0}};
     element_alone(&s->scene->cloths, s->element + e, copy.material, &one);
-    kind->force(&one.list, &s->world, &sight, f);
+    kind->force(&one.list, &s->air, &sight, f);
     ck_assert_mem_eq(f, all->f + 4 * e, sizeof f);
     if (!kind->pairs)
         return;
@@ -186,7 +186,7 @@ static void check_lanes(const struct sample *s)
             all.v[4 * e + i] = state.v[s->element[e].corner[i]];
         }
     const struct phys_sight sight = {4 * s->list.n, all.x, all.v, NULL, NULL};
-    kind->force(&s->list, &s->world, &sight, all.f);
+    kind->force(&s->list, &s->air, &sight, all.f);
     if (kind->pairs)
         kind->matrix(&s->list, 0, s->list.n, &step, &sight, NULL, all.pair);
     for (uint32_t e = 0; e < s->list.n; e++)

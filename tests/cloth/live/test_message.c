@@ -1,4 +1,5 @@
 /* Messages as bytes: what is written is read again, and nothing else is taken for one. */
+#include "cloth/base/bytes.h"
 #include "cloth/live/live.h"
 #include "cloth/live/message.h"
 #include "tests/support/unit.h"
@@ -89,8 +90,8 @@ UNIT_TEST(frames)
     ck_assert_uint_eq(said.n_body_vertices, BODY_POINTS);
     ck_assert_uint_eq(said.n_rest, 12 * (POINTS + BODY_POINTS));
     const unsigned char *x = bytes + live_frame_bytes(POINTS, BODY_POINTS) - said.n_rest;
-    ck_assert_float_eq(live_get_float(x + 4 * 14), 2.5F);
-    ck_assert_float_eq(live_get_float(x + 4 * (3 * POINTS + 3)), 104.0F);
+    ck_assert_float_eq(cloth_get_float(x + 4 * 14), 2.5F);
+    ck_assert_float_eq(cloth_get_float(x + 4 * (3 * POINTS + 3)), 104.0F);
 }
 
 UNIT_LOOP(frames_without_a_finite_place, 0, 3)

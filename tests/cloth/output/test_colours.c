@@ -132,29 +132,29 @@ UNIT_TEST(what_is_not_whole_was_not_written)
 }
 
 /* A triangle, an edge, two materials. */
-static void fill(struct output_rest *rest)
+static void fill(struct element_strains *rest)
 {
-    *rest = (struct output_rest){.n_triangles = 1, .n_edges = 1, .n_materials = 2};
-    UNIT_FINE(output_rest_make(rest, &error));
+    *rest = (struct element_strains){.n_triangles = 1, .n_edges = 1, .n_materials = 2};
+    UNIT_FINE(element_strains_room(rest, &error));
     memcpy(rest->corner[0], (uint32_t[]){2, 0, 4, 1}, sizeof *rest->corner);
-    memcpy(rest->gradient[0], (double[]){1, -2, 0.5, 4}, sizeof *rest->gradient);
+    rest->gradient[0] = (phys_vec){1, -2, 0.5, 4};
     rest->area[0] = 0.125;
     memcpy(rest->edge[0], (uint32_t[]){1, 3}, sizeof *rest->edge);
     rest->length[0] = 0.75;
-    memcpy(rest->modulus[1], (double[]){1000, 300, 900, 50}, sizeof *rest->modulus);
+    rest->membrane[1].modulus = (phys_vec){1000, 300, 900, 50};
     rest->has_stress[1] = true;
 }
 
 static void write_rest(uint64_t frame)
 {
-    UNIT_OWNED(output_rest_free) struct output_rest rest;
+    UNIT_OWNED(element_strains_free) struct element_strains rest;
     fill(&rest);
     UNIT_FINE(output_colours_rest(writer, frame, &rest, &error));
 }
 
 UNIT_TEST(the_size_is_known_before)
 {
-    UNIT_OWNED(output_rest_free) struct output_rest rest;
+    UNIT_OWNED(element_strains_free) struct element_strains rest;
     begins(NULL);
     write_rest(0);
     places(0, 0, 1);
@@ -165,7 +165,7 @@ UNIT_TEST(the_size_is_known_before)
 
 UNIT_TEST(shapes_are_read_again)
 {
-    UNIT_OWNED(output_rest_free) struct output_rest rest, read;
+    UNIT_OWNED(element_strains_free) struct element_strains rest, read;
     begins(NULL);
     write_rest(0);
     write_rest(3);
@@ -181,7 +181,7 @@ UNIT_TEST(shapes_are_read_again)
     ck_assert_double_eq(read.area[0], rest.area[0]);
     ck_assert_mem_eq(read.edge, rest.edge, sizeof *rest.edge);
     ck_assert_double_eq(read.length[0], rest.length[0]);
-    ck_assert_mem_eq(read.modulus, rest.modulus, 2 * sizeof *rest.modulus);
+    ck_assert_mem_eq(read.membrane, rest.membrane, 2 * sizeof *rest.membrane);
     ck_assert(!read.has_stress[0] && read.has_stress[1]);
 }
 
@@ -198,7 +198,7 @@ UNIT_TEST(damage_does_no_harm)
     for (long at = 16; at < size; at++)
         for (int value = 0; value < 256; value += 51) {
             int32_t number[N];
-            struct output_rest rest = {0};
+            struct element_strains rest = {0};
             sample_put(path(), at, (char[]){(char)value}, 1);
             output_colours_unload(reader);
             if (!output_colours_load(&reader, sample.folder, N, &error)) {
@@ -209,7 +209,7 @@ UNIT_TEST(damage_does_no_harm)
                     for (uint32_t t = 0; t < rest.n_triangles; t++)
                         ck_assert(rest.corner[t][0] < N && rest.corner[t][3] < rest.n_materials &&
                                   isfinite(rest.area[t]));
-                output_rest_free(&rest);
+                element_strains_free(&rest);
             }
             sample_put(path(), at, bytes + at, 1);
         }

@@ -250,7 +250,6 @@ static void check_going_on(uint32_t every, uint64_t stay)
     run(&setup, 5);
     sample_write(sample_at("hdf5/frame-000005.vtkhdf.part"), "x", 1);
     sample_write(sample_at("hdf5/cloth.xmf.part"), "x", 1);
-    sample_write(sample_at("hdf5/cloth.xmf.spare"), "x", 1);
     const ino_t first = sample_stat(sample_at("hdf5/frame-000000.vtkhdf")).st_ino;
     setup.n_frames = &stay;
     run_from(&setup, stay, 7);
@@ -262,8 +261,7 @@ static void check_going_on(uint32_t every, uint64_t stay)
         check_frame(frame, true);
     ck_assert(stay == 0 || sample_stat(sample_at("hdf5/frame-000000.vtkhdf")).st_ino == first);
     ck_assert(!sample_has(sample_at("hdf5/frame-000005.vtkhdf.part")) &&
-              !sample_has(sample_at("hdf5/cloth.xmf.part")) &&
-              !sample_has(sample_at("hdf5/cloth.xmf.spare")));
+              !sample_has(sample_at("hdf5/cloth.xmf.part")));
 }
 
 UNIT_TEST(goes_on_with_an_earlier_run)
@@ -366,4 +364,33 @@ UNIT_TEST(goes_on_without_a_frame)
     sample_read(sample_at("cloth.vtkhdf.series"), text, sizeof text);
     ck_assert_ptr_null(strstr(text, "000001"));
     unit_says(text, "000002");
+}
+
+static int has_room_for_one(void *context, uint32_t n, struct cloth_error *error)
+{
+    (void)context;
+    return n > 1 ? cloth_fail(error, CLOTH_E_IO, "no room") : CLOTH_OK;
+}
+
+/* Frames that the settler writes; also where it fails for another file, and settles nothing more.
+ */
+UNIT_LOOP(by_the_settler, 0, 2)
+{
+    struct output_hdf5 *frames;
+    struct output_settler *settler;
+    struct output_member other = {.settle = has_room_for_one};
+    struct output_hdf5_setup setup = setup_of(true, 1, 0);
+    UNIT_FINE(output_settler_open(&settler, &error));
+    output_member_add(&other, settler, 0);
+    setup.settler = settler;
+    UNIT_FINE(output_hdf5_open(&frames, &setup, &error));
+    for (uint32_t i = 0; i < 7; i++) {
+        if (_i)
+            output_member_wrote(&other, i + 1, NULL);
+        give(frames, i);
+    }
+    ck_assert_int_eq(output_settler_close(&settler, NULL), _i ? CLOTH_E_IO : CLOTH_OK);
+    UNIT_FINE(output_hdf5_close(&frames, &error));
+    for (uint64_t frame = 0; frame < 7; frame++)
+        check_frame(frame, true);
 }

@@ -102,7 +102,8 @@ UNIT_TEST(does_not_replace_a_device)
 
 UNIT_TEST(says_what_is_in_the_way)
 {
-    UNIT_REFUSED(output_report_write(report, sample.folder, &error), CLOTH_E_IO, "Is a directory");
+    UNIT_REFUSED(output_report_write(report, sample.folder, &error), CLOTH_E_INPUT,
+                 "Is a directory");
     sample_write(path, "old", 3);
     UNIT_REFUSED(output_report_write(report, sample_at("report.json/x.json"), &error),
                  CLOTH_E_INPUT, "Not a directory");

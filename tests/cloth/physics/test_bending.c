@@ -56,9 +56,9 @@ UNIT_TEST(rest_shapes_without_area_are_refused)
 /* Folded nearly shut, one way and the other, forces still open it. */
 UNIT_TEST(angles_up_to_half_a_turn)
 {
-    const uint32_t one[1][4] = {{0, 1, 2, 3}};
-    const double k = 1, damping = 0, rest = 0;
-    const struct phys_hinges hinge = {1, one, &k, &damping, &rest};
+    uint32_t one[1][4] = {{0, 1, 2, 3}};
+    double k = 1, damping = 0, rest = 0;
+    const struct phys_elements hinge = {.n = 1, .corner = one, .number = {&k, &damping, &rest}};
     for (int side = -1; side < 2; side += 2) {
         double x[12];
         phys_vec row[4], f[4] = {{0}}, v[4] = {{0}};
@@ -66,7 +66,7 @@ UNIT_TEST(angles_up_to_half_a_turn)
         for (int i = 0; i < 4; i++)
             row[i] = (phys_vec){x[3 * i], x[3 * i + 1], x[3 * i + 2], 0};
         const struct phys_sight sight = {4, row, v, NULL, NULL};
-        phys_hinges_force(&hinge, &sight, f);
+        phys_hinges_force(&hinge, NULL, &sight, f);
         /* at the third corner: along its normal, k s cos(theta / 2) / height */
         const double size = sqrt(phys_dot(f + 2, f + 2));
         ck_assert_double_eq_tol(size, 2 * sin(1.5) * cos(1.5) / 0.7, 1e-12);
@@ -77,9 +77,9 @@ UNIT_TEST(angles_up_to_half_a_turn)
 
 UNIT_TEST(collapsed_hinges_stay_finite)
 {
-    const uint32_t one[1][4] = {{0, 1, 2, 3}};
-    const double k = 1, damping = 1, rest = 0.5;
-    const struct phys_hinges hinge = {1, one, &k, &damping, &rest};
+    uint32_t one[1][4] = {{0, 1, 2, 3}};
+    double k = 1, damping = 1, rest = 0.5;
+    const struct phys_elements hinge = {.n = 1, .corner = one, .number = {&k, &damping, &rest}};
     const phys_vec x[2][4] = {{{0}, {1, 0, 0, 0}, {0.5, 0, 0, 0}, {0.5, 0, 1, 0}}, {{0}}};
     const phys_vec v[4] = {{1, 2, 3, 0}, {0}, {0}, {0}};
     for (int i = 0; i < 2; i++) {
@@ -87,7 +87,7 @@ UNIT_TEST(collapsed_hinges_stay_finite)
         const struct phys_step step = {1, 1};
         phys_vec f[4] = {{0}};
         struct phys_pair pair[PHYS_BEND_PAIRS];
-        phys_hinges_force(&hinge, &sight, f);
+        phys_hinges_force(&hinge, NULL, &sight, f);
         phys_hinges_matrix(&hinge, 0, 1, &step, &sight, NULL, pair);
         for (int c = 0; c < 16; c++)
             ck_assert(isfinite(f[c / 4][c % 4]));

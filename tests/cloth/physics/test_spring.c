@@ -49,12 +49,12 @@ static void take_stiffness(const struct phys_springs *s, double h, const phys_ve
                            const phys_vec *v, phys_vec *y)
 {
     phys_vec value[SPRINGS];
-    phys_springs_system(s, h, 0, x, v, y, value);
+    phys_springs_system(s, h, 0, x, v, NULL, NULL, y, value);
 }
 
 static void tangle_force(const void *of, const struct phys_sight *sight, phys_vec *f)
 {
-    phys_springs_force(of, sight->x, sight->v, f);
+    phys_springs_force(of, sight->x, sight->v, NULL, NULL, f);
 }
 
 static struct phys_springs slope_of(const void *of, int full)
@@ -128,7 +128,7 @@ UNIT_TEST(damping_acts_along_the_spring_only)
     const struct phys_springs s = {1, end, k, c, length, 0};
     const phys_vec x[2] = {{0}, {0, 2, 0, 0}}, v[2] = {{1, 3, -2, 0}, {5, 7, 9, 0}};
     phys_vec f[2] = {{0}};
-    phys_springs_force(&s, x, v, f);
+    phys_springs_force(&s, x, v, NULL, NULL, f);
     ck_assert_double_eq(f[0][0], 0);
     ck_assert_double_eq(f[0][1], 0.25 * (7 - 3));
     ck_assert_double_eq(f[0][2], 0);
@@ -143,10 +143,10 @@ UNIT_LOOP(system_is_force_stiffness_and_matrix, 0, 3)
     struct phys_springs s = tangle(_i ? longer : shorter);
     phys_vec f[N] = {{0}}, y[N] = {{0}}, b[N] = {{0}}, value[SPRINGS], both[SPRINGS];
     s.full = _i == 2;
-    phys_springs_force(&s, places, speeds, f);
+    phys_springs_force(&s, places, speeds, NULL, NULL, f);
     phys_springs_matrix(&s, h, places, places, value);
     take_stiffness(&s, h, places, speeds, y);
-    phys_springs_system(&s, h, push, places, speeds, b, both);
+    phys_springs_system(&s, h, push, places, speeds, NULL, NULL, b, both);
     ck_assert_mem_eq(both, value, sizeof value);
     for (int i = 0; i < N; i++)
         for (int c = 0; c < 4; c++)
@@ -199,7 +199,7 @@ UNIT_TEST(ends_at_one_place_pull_nowhere)
     const struct phys_springs s = {1, end, k, c, length, 0};
     const phys_vec x[2] = {{0.5, 0, 0, 0}, {0.5, 0, 0, 0}}, v[2] = {{0}, {1, 1, 1, 0}};
     phys_vec f[2] = {{0}}, value;
-    phys_springs_force(&s, x, v, f);
+    phys_springs_force(&s, x, v, NULL, NULL, f);
     phys_springs_matrix(&s, 0.1, x, x, &value);
     for (int i = 0; i < 4; i++) {
         ck_assert_double_eq(f[0][i], 0);
@@ -217,18 +217,18 @@ UNIT_TEST(cut_springs_are_exact_opposites)
         const double *rest = i ? more : length;
         const struct phys_springs here = {1, one, k, c, rest, 0}, there = {1, other, k, c, rest, 0};
         phys_vec f[2] = {{0}}, g[2] = {{0}}, whole[2] = {{0}};
-        phys_springs_force(&here, places, speeds, whole);
-        phys_springs_force_cut(&here, places, speeds, places, speeds, f);
-        phys_springs_force_cut(&there, places, speeds, places, speeds, f);
+        phys_springs_force(&here, places, speeds, NULL, NULL, whole);
+        phys_springs_force(&here, places, speeds, places, speeds, f);
+        phys_springs_force(&there, places, speeds, places, speeds, f);
         phys_vec value[3];
-        phys_springs_system_cut(&here, 0.3, 0.3, places, speeds, places, speeds, g, value);
-        phys_springs_system_cut(&there, 0.3, 0.3, places, speeds, places, speeds, g, value + 1);
+        phys_springs_system(&here, 0.3, 0.3, places, speeds, places, speeds, g, value);
+        phys_springs_system(&there, 0.3, 0.3, places, speeds, places, speeds, g, value + 1);
         for (int d = 0; d < 3; d++) {
             ck_assert(f[0][d] != 0 && f[0][d] == -f[1][d] && f[0][d] == whole[0][d]);
             ck_assert(g[0][d] != 0 && g[0][d] == -g[1][d]);
         }
         phys_vec whole_g[2] = {{0}};
-        phys_springs_system(&here, 0.3, 0.3, places, speeds, whole_g, value + 2);
+        phys_springs_system(&here, 0.3, 0.3, places, speeds, NULL, NULL, whole_g, value + 2);
         ck_assert_mem_eq(whole_g, g, sizeof g);
         for (int d = 0; d < 3; d++)
             ck_assert(value[0][d] == -value[1][d] && value[0][d] == value[2][d]);

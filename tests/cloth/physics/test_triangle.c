@@ -21,7 +21,7 @@ struct sheet {
     phys_vec gradient[TRIANGLES];
     double area[TRIANGLES];
     struct phys_membrane membrane[2];
-    struct phys_triangles triangles;
+    struct phys_elements triangles;
 };
 
 static int is_inner(int i)
@@ -58,8 +58,11 @@ static void make_sheet(struct sheet *s, double damping)
         ck_assert_int_eq(phys_triangle_rest(uv, gradient, s->area + t), 0);
         s->gradient[t] = (phys_vec){gradient[0], gradient[1], gradient[2], gradient[3]};
     }
-    s->triangles = (struct phys_triangles){TRIANGLES, (const uint32_t(*)[4])s->corner, s->gradient,
-                                           s->area, s->membrane};
+    s->triangles = (struct phys_elements){.n = TRIANGLES,
+                                          .corner = s->corner,
+                                          .vector = s->gradient,
+                                          .number = {[PHYS_TRIANGLE_AREA] = s->area},
+                                          .material = s->membrane};
 }
 
 /* The sheet under the map (u, v) -> fu u + fv v. */
@@ -75,7 +78,7 @@ static void forces(const struct sheet *s, const struct elements_state *state, ph
 {
     const struct phys_sight sight = {VERTICES, state->x, state->v, NULL, NULL};
     memset(f, 0, VERTICES * sizeof *f);
-    phys_triangles_force(&s->triangles, &sight, f);
+    phys_triangles_force(&s->triangles, NULL, &sight, f);
 }
 
 static void stiffness(const void *of, int full, double scale, const struct phys_sight *sight,
@@ -88,7 +91,7 @@ static void stiffness(const void *of, int full, double scale, const struct phys_
 static void matrix(const void *of, const struct phys_step *step, const struct phys_sight *sight,
                    struct phys_pair *pair)
 {
-    const struct phys_triangles *t = of;
+    const struct phys_elements *t = of;
     phys_triangles_matrix(t, 0, 5, step, sight, NULL,
                           pair); /* in two parts, neither a multiple of 4 */
     phys_triangles_matrix(t, 5, t->n, step, sight, NULL, pair + 15);

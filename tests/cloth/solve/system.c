@@ -194,7 +194,7 @@ static void add_entry(const struct system *s, uint32_t i, uint32_t at, bool tran
     const phys_vec *t = s->turn + i;
     double turn[3][3] = {{0, -(*t)[2], (*t)[1]}, {(*t)[2], 0, -(*t)[0]}, {-(*t)[1], (*t)[0], 0}};
     solve_assemble_springs(1, &at, s->value + i, sums);
-    solve_assemble(sums + at, transposed, (const double(*)[3])turn);
+    system_assemble(sums + at, transposed, (const double(*)[3])turn);
 }
 
 /* Entries between rows of the block and of others, behind the inner ones. */

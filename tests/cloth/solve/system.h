@@ -1,6 +1,7 @@
 #ifndef TESTS_CLOTH_SOLVE_SYSTEM_H
 #define TESTS_CLOTH_SOLVE_SYSTEM_H
 
+#include "cloth/physics/element.h"
 #include "cloth/solve/block.h"
 
 #include <stdbool.h>
@@ -49,6 +50,17 @@ void system_cut(struct system *system, uint32_t n_blocks);
 
 /* Holds rows in planes, on lines and at points; oblique: not only along axes. */
 void system_filter(struct system *system, bool oblique);
+
+/* Adds N to an entry whose first row is that of N, or, transposed, whose second is. */
+static inline void system_assemble(struct phys_pair *sum, bool transposed, const double n[3][3])
+{
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        sum->cyclic[0][i] += n[i][i];
+        sum->cyclic[1][i] += transposed ? n[j][i] : n[i][j];
+        sum->cyclic[2][i] += transposed ? n[k][i] : n[i][k];
+    }
+}
 
 /* Between -1 and 1. */
 double system_draw(void);

@@ -140,8 +140,8 @@ UNIT_TEST(pairs_of_elements)
     const double n[3][3] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
     struct phys_pair sums[2] = {{{{0}}}}, expected[2] = {{{{0}}}};
     solve_assemble_pairs(3, at, pair, sums);
-    solve_assemble(expected, true, n);
-    solve_assemble(expected + 1, false, n);
+    system_assemble(expected, true, n);
+    system_assemble(expected + 1, false, n);
     for (int k = 0; k < 24; k++)
         ck_assert_double_eq(sums[k / 12].cyclic[k / 4 % 3][k % 4],
                             expected[k / 12].cyclic[k / 4 % 3][k % 4]);
@@ -154,11 +154,11 @@ UNIT_TEST(assembly_from_both_sides)
     const double here[SOLVE_NINE] = {1, 5, 9, 2, 6, 7, 3, 4, 8};
     const double there[SOLVE_NINE] = {1, 5, 9, 4, 8, 3, 7, 2, 6};
     struct phys_pair sum = {{{0}}};
-    solve_assemble(&sum, false, n);
+    system_assemble(&sum, false, n);
     for (int k = 0; k < SOLVE_NINE; k++)
         ck_assert_double_eq(sum.cyclic[k / 3][k % 3], here[k]);
     memset(&sum, 0, sizeof sum);
-    solve_assemble(&sum, true, n);
+    system_assemble(&sum, true, n);
     for (int k = 0; k < SOLVE_NINE; k++)
         ck_assert_double_eq(sum.cyclic[k / 3][k % 3], there[k]);
     const phys_vec d = {1, -2, 0.5, 0};

@@ -1,0 +1,84 @@
+#!/bin/sh
+# Cloth without room pushes by the law of compression, P (d / g - 1) on its area, in steps of any length and however long it is pressed. It
+# is named, friction holds it; opened, it flies no faster than the energy in it allows. And what passes many layers in a step takes no more memory than
+its vertices need.
+. "${srcdir:-.}/tests/support/tap.sh"
+. "$srcdir/tests/support/probes.sh"
+plan_later
+
+# A sheet of 4 cm, shifted by OFFSET, on a box; another box comes down in 0.1 s. Vertices 0 and 4 are the ends of its border that stays
+# between them.
+pinch() { # NAME LEAST GAP OFFSET
+    cat > "$1.yaml" << END
+schema: 1
+cloths: [{name: a, material: m, mesh: {grid: {width: 0.04, height: 0.04, nx: 5, ny: 5}}, transform: {translate: [$3, 0.0015, 0]}}]
+materials: {m: {density: 0.2, stretch: 1000, shear: 300, bend: 1, damping: {stiffness: 0.004}}}
+obstacles:
+  - box: {name: low, centre: [-0.05, -0.05, 0], size: [0.2, 0.1, 0.2]}
+  - box: {name: high, centre: [-0.05, 0.053, 0], size: [0.2, 0.1, 0.2], motion: {times: [0, 0.1], translate: [[0, 0, 0], [0, $(less "$2" 0.003), 0]]}}
+contact: {mode: certified, thickness: 0.001, friction: 1}
+time: {h: 0.004, end: 3, fps: 10}
+probes:
+  - {name: a, cloth: a, vertices: [0, 4], values: [position, velocity]}
+  - {name: low, obstacle: low}
+  - {name: high, obstacle: high}
+END
+}
+law() { awk -v g="$1" 'BEGIN { printf "%.17g", 5000 * (0.002 / g - 1) * 0.0016 }'; } # LEAST GAP, shared by two contacts; N
+after() { rows '!n && $2 >= '"$1"' { printf "%.17g", '"$2"'; n = 1 }'; } # SECONDS VALUE
+
+pinch pinch 0.0015 0
+presses() { # SCENE LEAST GAP, h
+    run "$1.yaml" --report report.json --check-intersections --set time.h="$3" || return 1
+    test "$(value intersections)" = 0 && near "force after 1 s, h = $3, N" "$(after 1 'c("low.cy")')" "$(law "$2")" 0.02 &&
+        near "after 3 s, h = $3, N" "$(after 2.99 'c("low.cy")')" "$(after 1 'c("low.cy")')" 0.01
+}
+for h in 0.001 0.004 0.01; do ok "cloth of 1 mm in 0.75 mm, h = $h" presses pinch 0.0015 $h; done
+named() {
+    grep contact_pinch report.json
+    test "$(value contact_pinches)" -ge 50 && grep -Eq '"contact_pinch": "vertices [0-9]+ of .a. and obstacles.[01]., a box, at 0[.][0-9]* s"' report.json
+}
+ok "the pinch is named" named
+pinch tight 0.0005 0
+for h in 0.001 0.004 0.01; do ok "cloth of 1 mm in 0.25 mm, h = $h" presses tight 0.0005 $h; done
+
+opens() { # the most that its kinetic energy can be: that of the law over both gaps
+    run pinch.yaml --report report.json --set time.end=2.3 \
+        --set 'obstacles[1].box.motion={times: [0, 0.1, 2, 2.01], translate: [[0, 0, 0], [0, -0.0015, 0], [0, -0.0015, 0], [0, 0.01, 0]]}' || return 1
+    below "speed when it is opened, of what the law allows" \
+        "$(rows '$2 > 1.9 { for (i = 0; i < 5; i += 4) { v = c("a." i ".vy"); if (v > most) most = v } } END { print most / sqrt(4 * 5000 * 0.001 * (log(4 / 3) - 0.25) / 0.2) }')" 1 &&
+        near "weight in the end, N" "$(rows 'END { printf "%.17g", c("low.cy") }')" "$(awk 'BEGIN { print 0.2 * 0.0016 * 9.81 }')" 0.01
+}
+ok "it is opened" opens
+
+# A third of it hangs out.
+pinch hangs 0.0015 0.045
+creeps() { # SCENE OPTION...: how far its held border moves in 5 s
+    run hangs.yaml --set time.end=6 "$@" || return 1
+    test -n "$(after 1 'c("a.0.x")')" && below "held cloth moves in 5 s, m" "$(awk -v a="$(after 1 'c("a.0.x")')" -v b="$(rows 'END { printf "%.17g", c("a.0.x") }')" 'BEGIN { d = a - b; print d < 0 ? -d : d }')" 1e-6
+}
+ok "it does not creep" creeps
+ok "it does not creep, h = 10 ms" creeps --set time.h=0.01
+
+# Eight sheets at 100 m/s, which pass each other in the first step: in it 15 pairs fail a vertex.
+layers() {
+    for i in 0 1 2 3; do
+        printf '  - {name: up%s, mesh: {grid: {width: 0.1, height: 0.1, nx: 7, ny: 7}}, material: m, velocity: [0, 100, 0], transform: {translate: [0, -0.1%s, 0]}}\n' $i $i
+        printf '  - {name: down%s, mesh: {grid: {width: 0.1, height: 0.1, nx: 6, ny: 6}}, material: m, velocity: [0, -100, 0], transform: {translate: [0.05, 0.1%s, 0.03], rotate: [0.966, 0, 0.05, 0.259]}}\n' $i $i
+    done
+}
+cat > pass.yaml << END
+schema: 1
+gravity: [0, 0, 0]
+cloths:
+$(layers)
+materials: {m: {density: 0.2, stretch: 1000, shear: 300, bend: 1, damping: {viscous: 2.0e-6, stiffness: 0.004}}}
+contact: {mode: certified, thickness: 0.001, friction: 0.3}
+time: {h: 0.005, end: 0.005, stretch_growth: 0}
+END
+passes() { # all contacts of that step would take 70 MB
+    run pass.yaml --report report.json || return 1
+    grep -E 'steps_halved|peak_memory' report.json
+    test "$(value steps_halved_contact)" -gt 0 && test "$(value peak_memory_bytes)" -lt 80000000
+}
+ok "what passes many layers in a step" passes

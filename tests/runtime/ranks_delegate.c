@@ -222,16 +222,24 @@ static uint64_t messages_of_idling(const char *balance)
     return counters.messages;
 }
 
-/* Leaves of 2 ms on one rank: others take some of them. */
+/* Leaves of 2 ms on one rank: others take some of them. On a busy machine they may all ask too
+ * late, so there are rounds of leaves until one was taken. */
 static void given(void)
 {
+    enum { ROUNDS = 50, LEAVES = 100 };
     duite *rt = start("delegate");
     duite_object object = misuse_new(rt, 1);
+    const int others = duite_ranks(rt) > 1;
+    int right = 1, taken = 0;
 
-    for (int i = 0; i < 100; i++)
-        DUITE_FORK(rt, &DOZE, NULL, object);
-    tap_case(delegation_value(rt, object) == 100, "delegate: all ran");
-    tap_case((delegation_count(rt) > 0) == (duite_ranks(rt) > 1), "delegate: idle ranks got some");
+    for (int round = 1; round == 1 || (others && !taken && round <= ROUNDS); round++) {
+        for (int i = 0; i < LEAVES; i++)
+            DUITE_FORK(rt, &DOZE, NULL, object);
+        right &= delegation_value(rt, object) == round * LEAVES;
+        taken = delegation_count(rt) > 0;
+    }
+    tap_case(right, "delegate: all ran");
+    tap_case(taken == others, "delegate: idle ranks got some");
     duite_free(rt, object);
     duite_stop(&rt);
 }

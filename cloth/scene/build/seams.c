@@ -344,7 +344,8 @@ int scene_build_sewn(struct scene_tree *tree)
     for (uint32_t j = 0; joined && j < model->n_joints; j++)
         if (model->joints[j].pairs.seam)
             join_seam_pairs(model, &model->joints[j].pairs, joined);
-    for (uint32_t v = 0; joined && v < model_first(model, model->n_cloths); v++)
+    const uint32_t n = model_first(model, model->n_cloths);
+    for (uint32_t v = 0; joined && v < n; v++)
         joined[v] = cloth_sets_root(joined, v);
     return tree->error->code;
 }

@@ -141,10 +141,11 @@ int scene_build_settled(struct model_cloth *cloth, struct scene_tree *tree, int 
     if (!at || scene_fill(&from, &scene_settled, tree, at))
         return tree->error->code;
     char *path = scene_build_path(tree, scene_tree_get(tree, at, "frames"));
-    if (path)
-        folder = (struct folder){.path = path,
-                                 .obj = start_path(tree, path, "cloth.obj"),
-                                 .pc2 = start_path(tree, path, "cloth.pc2")};
+    if (path) {
+        folder.path = path;
+        folder.obj = start_path(tree, path, "cloth.obj");
+        folder.pc2 = start_path(tree, path, "cloth.pc2");
+    }
     const int code = tree->error->code ||
                      find_cloth(&folder, from.cloth ? from.cloth : cloth->name, cloth, tree, at) ||
                      build_start_take_frame(cloth, &from, &folder, tree, at);

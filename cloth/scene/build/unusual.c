@@ -52,7 +52,7 @@ static void warn_of_triangles(const struct scene_tree *tree, const struct model_
 {
     static const char *const along[] = {" along the warp", " along the weft"};
     const int stretch = scene_tree_get(tree, node, "stretch");
-    const bool one = scene_tree_scalar(tree, stretch);
+    const bool one = stretch && scene_tree_scalar(tree, stretch);
     double value;
     const int i = find_beyond(tree, stretch, DBL_TRUE_MIN, INFINITY, &value);
     if (i >= 0)

@@ -84,8 +84,9 @@ static int add_fabric(struct scene_tree *tree, const char *name)
     return scene_edit_default(tree, materials, name, like);
 }
 
-/* Adds the materials that the maps of a list name, and those in their lists panels and regions. */
-static int add_all_named(struct scene_tree *tree, int list)
+/* Adds the materials that the maps of a list name, and with `parts` those in their lists panels and
+ * regions. */
+static int add_all_named(struct scene_tree *tree, int list, bool parts)
 {
     const size_t n =
         scene_tree_is(tree, list, YAML_SEQUENCE_NODE) ? scene_tree_length(tree, list) : 0;
@@ -93,9 +94,9 @@ static int add_all_named(struct scene_tree *tree, int list)
         const int map = scene_tree_item(tree, list, i), fabric = named_by(tree, map, "material");
         if (fabric >= 0 && add_fabric(tree, scene_fabrics[fabric].word))
             return tree->error->code;
-        if (scene_tree_is(tree, map, YAML_MAPPING_NODE) &&
-            (add_all_named(tree, scene_tree_get(tree, map, "panels")) ||
-             add_all_named(tree, scene_tree_get(tree, map, "regions"))))
+        if (parts && scene_tree_is(tree, map, YAML_MAPPING_NODE) &&
+            (add_all_named(tree, scene_tree_get(tree, map, "panels"), false) ||
+             add_all_named(tree, scene_tree_get(tree, map, "regions"), false)))
             return tree->error->code;
     }
     return CLOTH_OK;
@@ -114,7 +115,7 @@ int scene_fabrics_fill(struct scene_tree *tree)
 {
     if (!scene_tree_is(tree, 1, YAML_MAPPING_NODE)) /* the check of keys says so */
         return CLOTH_OK;
-    int code = add_all_named(tree, scene_tree_get(tree, 1, "cloths"));
+    int code = add_all_named(tree, scene_tree_get(tree, 1, "cloths"), true);
     const int materials = scene_tree_get(tree, 1, "materials");
     const bool is_map = scene_tree_is(tree, materials, YAML_MAPPING_NODE);
     for (size_t i = 0; !code && is_map && i < scene_tree_length(tree, materials); i++) {

@@ -283,9 +283,10 @@ int output_checkpoint_read(struct output_checkpoint *checkpoint, const char *pat
     if (!checkpoint->path)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of a checkpoint");
     checkpoint->bytes = output_read_file(path, &n);
-    const int code = checkpoint->bytes ? checkpoint_check(path, checkpoint->bytes, n, error)
-                                       : cloth_fail(error, CLOTH_E_IO, "cannot read %s: %s", path,
-                                                    cloth_file_why());
+    const int code = checkpoint->bytes
+                         ? checkpoint_check(path, checkpoint->bytes, n, error)
+                         : cloth_fail(error, errno == ENOMEM ? CLOTH_E_MEMORY : CLOTH_E_IO,
+                                      "cannot read %s: %s", path, cloth_file_why());
     if (code) {
         output_checkpoint_free(checkpoint);
         return code;

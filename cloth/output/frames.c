@@ -36,7 +36,7 @@ struct output_frames {
 /* Cuts cache and index to the first n frames. */
 static void frames_cut(struct output_frames *frames, uint32_t n)
 {
-    output_pc2_cut(&frames->cache, n);
+    output_pc2_cut(&frames->cache, n, false);
     output_file_keep_lines(&frames->index, 1 + (uint64_t)n, NULL);
 }
 
@@ -51,7 +51,7 @@ static int frames_settle(void *context, uint32_t n, struct cloth_error *error)
         code = output_fail(error, "write a frame to", frames->index.path.text);
     code = code ? code : output_pc2_count(&frames->cache, n, error);
     if (code)
-        output_pc2_cut(&frames->cache, frames->settled);
+        output_pc2_cut(&frames->cache, frames->settled, true);
     else
         frames->settled = n;
     return code;

@@ -80,7 +80,7 @@ struct output_state *output_hdf5_begin(struct output_hdf5 *frames, uint64_t fram
 void output_hdf5_end(struct output_hdf5 *frames);
 
 /* Waits until no frame is in flight. */
-void output_hdf5_wait(const struct output_hdf5 *frames);
+void output_hdf5_wait(struct output_hdf5 *frames);
 
 /* Closes, when the settler is closed; a frame that was begun and has not ended is left out.
  * *frames becomes NULL. CLOTH_E_IO: some frames were not written; it names their number, the first

@@ -292,7 +292,7 @@ int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
 {
     struct data_packet *early;
     if (!comm_arrivals_expect(&comm->arrivals, key, target, packets, &early))
-        return base_no_memory("messages to come");
+        return DUITE_E_MEMORY;
     while (early) {
         struct data_packet *packet = early;
         early = packet->next;

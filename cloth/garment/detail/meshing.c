@@ -161,6 +161,7 @@ void meshing_mesh(struct meshing *meshing, double spacing)
     if (!first.code && (error->code || (last && is_poor(meshing)))) {
         *error = (struct cloth_error){0};
         mesh_at(meshing, spacing); /* nothing helps: as it was asked for */
-    } else if (error->code)
+    } else if (error->code == CLOTH_E_INPUT) {
         *error = first;
+    }
 }

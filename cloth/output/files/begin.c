@@ -13,7 +13,8 @@
 struct begin {
     const struct output_setup *setup;
     uint32_t n_points, n_bodies;
-    uint32_t most; /* bodies: of this run or the earlier one */
+    uint32_t before; /* bodies of the earlier run */
+    uint32_t most;   /* of this run or the earlier one */
 };
 
 /* A file of the folder; it is written with ".part" behind its name first. */
@@ -155,7 +156,8 @@ static int begin_replace(const struct begin *begin, struct cloth_error *error)
         const struct output_path path = output_path(folder, "%s", file.name);
         if (file.fill && rename(output_path(folder, "%s.part", file.name).text, path.text) != 0)
             return output_refuse(error, "replace", path.text);
-        if (!file.fill && unlink(path.text) != 0 && errno != ENOENT)
+        if (!file.fill && i / BODY_FILES < begin->before && unlink(path.text) != 0 &&
+            errno != ENOENT)
             return output_refuse(error, "remove", path.text);
     }
     output_sync_folder(folder);
@@ -177,8 +179,8 @@ int output_begin(const struct output_setup *setup, uint32_t n_points, struct clo
     struct begin begin = {.setup = setup,
                           .n_points = n_points,
                           .n_bodies = setup->bodies ? setup->bodies->n : 0,
-                          .most = output_bodies_before(setup->folder)};
-    begin.most = begin.n_bodies > begin.most ? begin.n_bodies : begin.most;
+                          .before = output_bodies_before(setup->folder)};
+    begin.most = begin.n_bodies > begin.before ? begin.n_bodies : begin.before;
     int code = begin_check(&begin, error);
     if (code)
         return code;

@@ -112,9 +112,10 @@ int output_pc2_count(const struct output_pc2 *cache, uint64_t n, struct cloth_er
                : output_fail(error, "count a frame in", cache->of.path.text);
 }
 
-void output_pc2_cut(const struct output_pc2 *cache, uint64_t n)
+void output_pc2_cut(const struct output_pc2 *cache, uint64_t n, bool counted)
 {
-    pc2_put_count(cache, n);
+    if (counted)
+        pc2_put_count(cache, n);
     output_file_cut(&cache->of, pc2_size(cache->n_points, n), NULL);
 }
 

@@ -34,8 +34,9 @@ int output_pc2_write(struct output_pc2 *cache, uint64_t frame, const double *x, 
                      size_t *finite, struct cloth_error *error);
 /* Counts n frames, when their floats are on the disk. Error: CLOTH_E_IO. */
 int output_pc2_count(const struct output_pc2 *cache, uint64_t n, struct cloth_error *error);
-/* Puts back the count of n frames and cuts off what follows them; best effort. */
-void output_pc2_cut(const struct output_pc2 *cache, uint64_t n);
+/* Cuts off all that follows n frames; best effort. counted: more may be counted, so their count is
+ * put back. */
+void output_pc2_cut(const struct output_pc2 *cache, uint64_t n, bool counted);
 int output_pc2_close(struct output_pc2 *cache, struct cloth_error *error);
 
 /* ---- Reading ---- */

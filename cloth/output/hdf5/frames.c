@@ -176,14 +176,17 @@ bool output_hdf5_takes(const struct output_hdf5 *frames, uint64_t frame)
     return frame % frames->setup.every == 0;
 }
 
-/* A settler that failed writes nothing more: then the caller does. */
+/* Waits for the first n frames. A settler that failed writes nothing more: then the caller does. */
+static void hdf5_await(struct output_hdf5 *frames, uint32_t n)
+{
+    if (!output_member_wait(&frames->member, n))
+        hdf5_settle(frames, n, NULL);
+}
+
 struct output_state *output_hdf5_begin(struct output_hdf5 *frames, uint64_t frame, double time)
 {
-    if (frames->given >= OUTPUT_HDF5_FLIGHT) {
-        const uint32_t leave = frames->given - OUTPUT_HDF5_FLIGHT + 1;
-        if (!output_member_wait(&frames->member, leave))
-            hdf5_settle(frames, leave, NULL);
-    }
+    if (frames->given >= OUTPUT_HDF5_FLIGHT)
+        hdf5_await(frames, frames->given - OUTPUT_HDF5_FLIGHT + 1);
     struct output_state *state = frames->flight + frames->given % OUTPUT_HDF5_FLIGHT;
     state->frame = frame;
     state->time = time;
@@ -195,9 +198,9 @@ void output_hdf5_end(struct output_hdf5 *frames)
     output_member_wrote(&frames->member, ++frames->given, NULL);
 }
 
-void output_hdf5_wait(const struct output_hdf5 *frames)
+void output_hdf5_wait(struct output_hdf5 *frames)
 {
-    output_member_wait(&frames->member, frames->given);
+    hdf5_await(frames, frames->given);
 }
 
 int output_hdf5_close(struct output_hdf5 **frames, struct cloth_error *error)

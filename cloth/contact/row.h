@@ -181,7 +181,7 @@ PHYS_INLINE double contact_row_held(const struct contact_row *row, double gap, d
  * room. */
 PHYS_INLINE double contact_row_yields(const struct contact_row *row, double lift, double k)
 {
-    return row->solid > 0 ? fmin(lift, contact_row_law(row, 0) / k) : lift;
+    return row->solid > 0 && row->hard > 0 ? fmin(lift, contact_row_law(row, 0) / k) : lift;
 }
 
 /* Begins a step of a contact that may open. */

@@ -138,7 +138,7 @@ static int await_step(struct flow_state *state, double status[FLOW_STATUS],
     flow_implicit_status(state, status);
     flow_contact_status(state, status);
     verdict->failed = status[FLOW_FAILED] + status[FLOW_BEYOND] > 0 || state->contact.failed;
-    return DUITE_OK;
+    return state->code;
 }
 
 /* True if contact moved a vertex beyond the solve, or a tie came or went: then a step may gain

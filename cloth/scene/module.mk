@@ -60,7 +60,7 @@ CLEANFILES += cloth/scene/schema/prose.c
 
 # The program prints the page of all keys, so it has the prose: a string for each line.
 cloth/scene/schema/prose.c: cloth/scene/schema/prose.md
-	$(AM_V_GEN)$(MKDIR_P) cloth/scene/schema && { echo '/* clang-format off: made of prose.md */' && \
+	$(AM_V_GEN)$(MKDIR_P) cloth/scene/schema && { echo '/* Made of prose.md. */' && echo '/* clang-format off */' && \
 	    echo '#include "cloth/scene/schema/rules.h"' && echo 'const char *const scene_prose[] = {' && \
 	    sed 's/[\\"]/\\&/g; s/.*/"&",/' $(srcdir)/cloth/scene/schema/prose.md && echo '0};'; } > $@.new && mv $@.new $@
 

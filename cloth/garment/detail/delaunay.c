@@ -43,12 +43,14 @@ void delaunay_free(struct delaunay *plane)
 
 static void log_change(struct delaunay *plane, struct delaunay_change change)
 {
-    if (plane->logs && cloth_list_put(&plane->changes, &change, sizeof change, NULL))
+    if (cloth_list_put(&plane->changes, &change, sizeof change, NULL))
         plane->failed = true;
 }
 
 static void log_triangle(struct delaunay *plane, uint32_t triangle)
 {
+    if (!plane->logs)
+        return;
     log_change(plane, (struct delaunay_change){.triangle = triangle,
                                                .vertex = DELAUNAY_NONE,
                                                .before = plane->triangle[triangle]});
@@ -56,6 +58,8 @@ static void log_triangle(struct delaunay *plane, uint32_t triangle)
 
 void delaunay_log_vertex(struct delaunay *plane, uint32_t vertex)
 {
+    if (!plane->logs)
+        return;
     const double *place = plane->place[vertex];
     log_change(plane, (struct delaunay_change){.triangle = DELAUNAY_NONE,
                                                .vertex = vertex,

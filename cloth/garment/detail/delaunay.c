@@ -147,21 +147,6 @@ uint32_t delaunay_new_triangle(struct delaunay *plane)
  *        \ | /          \   /
  *          d              d
  */
-struct delaunay_quad delaunay_quad_at(const struct delaunay *plane, uint32_t triangle, int i)
-{
-    const struct delaunay_triangle one = plane->triangle[triangle];
-    const struct delaunay_triangle two = plane->triangle[one.beside[i]];
-    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
-    const int j = two.beside[0] == triangle ? 0 : two.beside[1] == triangle ? 1 : 2;
-    const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-    return (struct delaunay_quad){
-        one.beside[i],
-        j,
-        {one.vertex[i], one.vertex[i1], two.vertex[j], one.vertex[i2]},
-        {one.beside[i2], two.beside[j1], two.beside[j2], one.beside[i1]},
-        {one.fixed >> i2 & 1, two.fixed >> j1 & 1, two.fixed >> j2 & 1, one.fixed >> i1 & 1}};
-}
-
 bool delaunay_may_flip(const struct delaunay *plane, const struct delaunay_quad *quad)
 {
     const double *a = plane->place[quad->corner[0]], *b = plane->place[quad->corner[2]];

@@ -125,8 +125,23 @@ struct delaunay_quad {
     uint32_t beside[4]; /* the triangles beyond the sides */
     unsigned fixed[4];  /* 1: the side is fixed */
 };
-/* That at the edge opposite corner i of a triangle, which is no edge of the hull. */
-struct delaunay_quad delaunay_quad_at(const struct delaunay *plane, uint32_t triangle, int i);
+/* That at the edge opposite corner i of a triangle, which is no edge of the hull. Inline, as flips,
+ * which take most of the time, are refused by the corners alone. */
+static inline struct delaunay_quad delaunay_quad_at(const struct delaunay *plane, uint32_t triangle,
+                                                    int i)
+{
+    const struct delaunay_triangle one = plane->triangle[triangle];
+    const struct delaunay_triangle two = plane->triangle[one.beside[i]];
+    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+    const int j = two.beside[0] == triangle ? 0 : two.beside[1] == triangle ? 1 : 2;
+    const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+    return (struct delaunay_quad){
+        one.beside[i],
+        j,
+        {one.vertex[i], one.vertex[i1], two.vertex[j], one.vertex[i2]},
+        {one.beside[i2], two.beside[j1], two.beside[j2], one.beside[i1]},
+        {one.fixed >> i2 & 1, two.fixed >> j1 & 1, two.fixed >> j2 & 1, one.fixed >> i1 & 1}};
+}
 
 /* Whether the other diagonal makes two triangles that are not turned over. */
 bool delaunay_may_flip(const struct delaunay *plane, const struct delaunay_quad *quad);

@@ -46,3 +46,12 @@ int cloth_fail(struct cloth_error *error, int code, const char *format, ...)
     error->code = code;
     return code;
 }
+
+void cloth_text_add(char *text, size_t size, const char *format, ...)
+{
+    const size_t used = strlen(text);
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text + used, size - used, format, list);
+    va_end(list);
+}

@@ -1,6 +1,8 @@
 #ifndef CLOTH_BASE_ERROR_H
 #define CLOTH_BASE_ERROR_H
 
+#include <stddef.h>
+
 /* How every function of the cloth that can fail reports: an int code, and one error message. The
  * first failure wins: cloth_fail does not overwrite an error that is already set. */
 
@@ -23,6 +25,10 @@ struct cloth_error {
  * unless an error is already set. Returns the code that is set, so that `return cloth_fail(...)`
  * reads well. `error` may be NULL. Local. */
 int cloth_fail(struct cloth_error *error, int code, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Adds to a text (printf form) as far as its size allows. Local. */
+void cloth_text_add(char *text, size_t size, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 #endif

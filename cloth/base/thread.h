@@ -3,9 +3,8 @@
 
 #include <pthread.h>
 #include <signal.h>
-#include <time.h>
 
-/* Threads beside those of the runtime, and the clock that they go by. */
+/* Threads beside those of the runtime. */
 
 /* Starts a thread that takes no signals: those are the other threads'. Returns 0 or an error
  * number. */
@@ -17,14 +16,6 @@ static inline int cloth_thread_start(pthread_t *thread, void *(*run)(void *conte
     const int failed = pthread_create(thread, NULL, run, context);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return failed;
-}
-
-/* Seconds of a clock that only runs forward. */
-static inline double cloth_seconds(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
 #endif

@@ -5,8 +5,8 @@
 #include "cloth/live/scene.h"
 #include "cloth/live/socket.h"
 
+#include "cloth/base/clock.h"
 #include "cloth/base/memory.h"
-#include "cloth/base/thread.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -1,6 +1,6 @@
 /* The thread that has the socket. A viewer is answered when it asks and there is something that it
  * lacks; only the end of the run is sent unasked. All viewers share the bytes of a message. */
-#include "cloth/base/thread.h"
+#include "cloth/base/clock.h"
 #include "cloth/live/publisher.h"
 #include "cloth/live/scene.h"
 

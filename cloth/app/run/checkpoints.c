@@ -7,6 +7,7 @@
 #include "cloth/app/run/checkpoints.h"
 
 #include "cloth/app/run/outputs.h"
+#include "cloth/base/clock.h"
 #include "cloth/output/output.h"
 
 #include <pthread.h>
@@ -14,7 +15,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 struct saved {
     uint32_t now, n_phases;
@@ -152,13 +152,6 @@ struct keeper {
     bool warned;
 };
 
-static double keeper_now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 /* ---- Its thread ---- */
 
 static void keeper_warn(struct keeper *keeper, const char *why)
@@ -229,7 +222,7 @@ int keeper_open(struct keeper **keeper, const struct outputs *of, struct cloth_e
     if (!made)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for checkpoints");
     made->of = of;
-    made->next = keeper_now() + of->options->checkpoint;
+    made->next = cloth_seconds() + of->options->checkpoint;
     made->part[0] = (struct output_part){of->settings, strlen(of->settings)};
     int code = output_checkpoints_open(&made->checkpoints, of->options->output, error);
     code = code ? code : keeper_start(made, error);
@@ -245,7 +238,7 @@ int keeper_open(struct keeper **keeper, const struct outputs *of, struct cloth_e
 int keeper_due(struct keeper *keeper)
 {
     pthread_mutex_lock(&keeper->lock);
-    const bool due = !keeper->asked && !keeper->busy && keeper_now() >= keeper->next;
+    const bool due = !keeper->asked && !keeper->busy && cloth_seconds() >= keeper->next;
     keeper->asked = keeper->asked || due;
     pthread_mutex_unlock(&keeper->lock);
     return due;
@@ -306,7 +299,7 @@ void restart_save(void *context, struct flow_checkpoint state)
     keeper->part[2] = (struct output_part){state.bytes, state.n};
     keeper->busy = true;
     keeper->asked = false;
-    keeper->next = keeper_now() + of->options->checkpoint;
+    keeper->next = cloth_seconds() + of->options->checkpoint;
     pthread_cond_broadcast(&keeper->changed);
     pthread_mutex_unlock(&keeper->lock);
 }

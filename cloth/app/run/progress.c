@@ -2,23 +2,17 @@
  * terminal it never reaches the last column: a line that wraps cannot be rewritten. */
 #include "cloth/app/run/progress.h"
 
+#include "cloth/base/clock.h"
+
 #include <inttypes.h>
 #include <stdio.h>
 #include <sys/ioctl.h>
-#include <time.h>
 #include <unistd.h>
-
-static double progress_now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 void progress_begin(struct progress *progress, const char *phase)
 {
     *progress = (struct progress){.phase = phase, .terminal = isatty(STDERR_FILENO) == 1};
-    progress->begun = progress->shown = progress_now();
+    progress->begun = progress->shown = cloth_seconds();
 }
 
 /* Columns that the line may have. */
@@ -94,7 +88,7 @@ void progress_step(struct progress *progress, uint64_t step, uint64_t steps,
                    const struct progress_counts *counts)
 {
     progress->first = progress->first ? progress->first : step;
-    double time = progress_now(), pause = progress->terminal ? 0.1 : 10;
+    double time = cloth_seconds(), pause = progress->terminal ? 0.1 : 10;
     if (time - progress->shown < pause && !(progress->terminal && step == steps))
         return;
     char line[400];

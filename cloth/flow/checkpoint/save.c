@@ -3,6 +3,8 @@
  * all earlier frames and rows are written when the program gets the checkpoint. */
 #include "cloth/flow/checkpoint/checkpoint.h"
 
+#include "cloth/base/clock.h"
+
 #include "cloth/flow/contact/mode.h"
 
 #include <stdlib.h>
@@ -78,7 +80,7 @@ static struct flow_saved describe_saved(const struct flow_state *state, bool fin
     saved.lasting = state->lasting;
     saved.report = *state->report;
     if (!finished)
-        saved.report.wall_seconds = state->saved_wall + flow_now() - state->from;
+        saved.report.wall_seconds = state->saved_wall + cloth_seconds() - state->from;
     saved.main_bytes = flow_saved_main_bytes(&saved);
     return saved;
 }

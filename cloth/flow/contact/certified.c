@@ -35,17 +35,6 @@ double flow_contact_stiffness(const struct flow *flow, double h)
 
 /* ---- Pairs that cannot be kept apart ---- */
 
-/* Appends to a text as far as it has room. */
-__attribute__((format(printf, 3, 4))) static void append_text(char *text, size_t size,
-                                                              const char *format, ...)
-{
-    const size_t used = strlen(text);
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text + used, size - used, format, list);
-    va_end(list);
-}
-
 /* The cloth of a vertex that counts over all cloths. */
 static uint32_t certified_cloth_of(const struct flow *flow, uint32_t vertex)
 {
@@ -67,21 +56,21 @@ static void certified_describe_pair(const struct flow_state *state,
     text[0] = 0;
     if (!flow->vertex)
         return;
-    append_text(text, size, "vertices");
+    cloth_text_add(text, size, "vertices");
     for (uint32_t k = 0; k < at->n; k++) {
         const uint32_t place = flow->tables.block[at->block[k]].first + at->row[k];
         const uint32_t vertex = flow->vertex[place], c = certified_cloth_of(flow, vertex);
         if (k && c != last)
-            append_text(text, size, " of '%.40s' and", flow->model->cloths[last].name);
-        append_text(text, size, " %" PRIu32 "%s", vertex - flow->cloth_first[c] + 1,
-                    at->held >> k & 1 ? " (pinned)" : "");
+            cloth_text_add(text, size, " of '%.40s' and", flow->model->cloths[last].name);
+        cloth_text_add(text, size, " %" PRIu32 "%s", vertex - flow->cloth_first[c] + 1,
+                       at->held >> k & 1 ? " (pinned)" : "");
         last = c;
     }
     if (at->n)
-        append_text(text, size, " of '%.40s'", flow->model->cloths[last].name);
+        cloth_text_add(text, size, " of '%.40s'", flow->model->cloths[last].name);
     if (other >= n_blocks)
-        append_text(text, size, " and obstacles[%" PRIu32 "], a %s", other - n_blocks,
-                    contact_kinds[flow->model->obstacles[other - n_blocks].kind]->name);
+        cloth_text_add(text, size, " and obstacles[%" PRIu32 "], a %s", other - n_blocks,
+                       contact_kinds[flow->model->obstacles[other - n_blocks].kind]->name);
 }
 
 /* Gets a list that tasks made, on every rank; the caller frees it. */

@@ -141,19 +141,23 @@ struct flow_seen {
 /* Looks at the way from kept_x to x: all pairs are certified, the near ones are listed. (pairs.c)
  * shorter: a shorter step can be made where it is hopeless. */
 int flow_contact_look(struct flow_state *state, bool shorter, struct flow_seen *seen);
-/* The lists of meetings whose features may have corners in a block, put into `to`; returns how
- * many. Marks the blocks that may keep contacts with corners in it, of all. Local. (pairs.c) */
+/* Makes the meetings of a checkpoint. (pairs.c) */
 struct flow_saved_side;
 int flow_contact_meet_again(struct flow_state *state, uint32_t n,
-                            const struct flow_saved_side *side); /* those of a checkpoint */
+                            const struct flow_saved_side *side);
+/* The lists of meetings whose features may have corners in a block, put into `to`; returns how
+ * many. Marks the blocks that may keep contacts with corners in it, of all. Local. (pairs.c) */
 uint32_t flow_contact_lists(const struct flow_state *state, uint32_t block, duite_object *to);
 void flow_contact_keepers(const struct flow_state *state, uint32_t block, unsigned char *keeps);
+/* Makes list `which` of a block's contacts, with room for so many. A failure is returned by the
+ * next fork. (memory.c) */
+void flow_contact_keep(struct flow_state *state, uint32_t block, unsigned which, uint32_t room);
+/* The same for the contacts of a checkpoint, at most n, in the list of the step's begin. */
+void flow_contact_keep_again(struct flow_state *state, uint32_t block, uint32_t n);
+/* Sets the lists of all blocks that have no contacts yet. */
+int flow_contact_none(struct flow_state *state);
 /* Fork the tasks that make the contacts of all blocks: `again` those of the solve, pressed, and the
  * failing pairs; `accept`, at the end of a step, the near pairs. (touch.c) */
-int flow_contact_none(struct flow_state *state); /* there are none yet */
-/* Room for the contacts of a block, at most n, that a checkpoint has, in its list of the step's
- * begin. */
-void flow_contact_keep_again(struct flow_state *state, uint32_t block, uint32_t n);
 int flow_contact_again(struct flow_state *state);
 int flow_contact_accept(struct flow_state *state);
 /* Forks the tasks that make ties of the contacts, for the next solve. (rows.c) */

@@ -59,6 +59,43 @@ int flow_contact_room(struct flow_state *state, uint32_t n)
     return flow_memory_agree(state);
 }
 
+/* ---- Lists of contacts ---- */
+
+void flow_contact_keep(struct flow_state *state, uint32_t block, unsigned which, uint32_t room)
+{
+    struct flow_kept_contacts *kept = state->contact.kept + block;
+    if (kept->list[which].generation && kept->room[which] >= room)
+        return;
+    if (kept->list[which].generation)
+        duite_free(state->rt, kept->list[which]); /* a failure is returned by the next fork */
+    while (kept->room[which] < room)
+        kept->room[which] = kept->room[which] ? 2 * kept->room[which] : FLOW_TIE_CLASS;
+    duite_new_sized(state->rt, DUITE_BYTE, 0,
+                    flow_contact_index_room(kept->room[which], state->flow->tables.n_blocks),
+                    &kept->list[which]);
+    duite_colocate(state->rt, kept->list[which], state->block[block].x);
+}
+
+void flow_contact_keep_again(struct flow_state *state, uint32_t block, uint32_t n)
+{
+    flow_contact_keep(state, block, state->contact.begin, n ? n : 1);
+    state->contact.kept[block].n[state->contact.begin] = n;
+}
+
+int flow_contact_none(struct flow_state *state)
+{
+    const struct flow_list none = {0};
+    int code = DUITE_OK;
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code; b++) {
+        flow_contact_keep(state, b, state->contact.now, 1);
+        code = duite_set_sized(state->rt, state->contact.kept[b].list[state->contact.now], &none,
+                               sizeof none);
+    }
+    return code;
+}
+
+/* ---- Freeing ---- */
+
 /* A failure is returned by the next call of the runtime. */
 void flow_contact_part(struct flow_state *state)
 {

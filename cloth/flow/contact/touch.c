@@ -5,6 +5,8 @@
 #include "cloth/flow/contact/mode.h"
 #include "cloth/flow/run/step.h"
 
+#include "cloth/base/order.h"
+
 #include <float.h>
 #include <stdlib.h>
 
@@ -49,26 +51,21 @@ struct touching {
 
 /* ---- Order ---- */
 
-static int compare_u32(uint32_t a, uint32_t b)
-{
-    return (a > b) - (a < b);
-}
-
 /* Order by the first side, then by the second. */
 static int compare_first(const struct flow_contact *a, const struct flow_contact *b)
 {
-    const int kind = compare_u32(a->kind, b->kind);
-    return kind ? kind : compare_u32(a->feature[0], b->feature[0]);
+    const int kind = cloth_compare_u32(a->kind, b->kind);
+    return kind ? kind : cloth_compare_u32(a->feature[0], b->feature[0]);
 }
 
 static int compare_contacts(const void *left, const void *right)
 {
     const struct flow_contact *a = left, *b = right;
     const int first = compare_first(a, b);
-    const int side = compare_u32(a->side[1], b->side[1]);
+    const int side = cloth_compare_u32(a->side[1], b->side[1]);
     if (first)
         return first;
-    return side ? side : compare_u32(a->feature[1], b->feature[1]);
+    return side ? side : cloth_compare_u32(a->feature[1], b->feature[1]);
 }
 
 /* The first contact of a list that is not before this one. */
@@ -360,40 +357,6 @@ static int touch_body(const duite_call *call, const struct touch_fields *on)
 
 /* ---- Forks ---- */
 
-/* A list for so many contacts of a block. */
-static void touch_make_list(struct flow_state *state, uint32_t block, unsigned which, uint32_t room)
-{
-    struct flow_kept_contacts *kept = state->contact.kept + block;
-    if (kept->list[which].generation && kept->room[which] >= room)
-        return;
-    if (kept->list[which].generation)
-        duite_free(state->rt, kept->list[which]); /* a failure is returned by the next fork */
-    while (kept->room[which] < room)
-        kept->room[which] = kept->room[which] ? 2 * kept->room[which] : FLOW_TIE_CLASS;
-    duite_new_sized(state->rt, DUITE_BYTE, 0,
-                    flow_contact_index_room(kept->room[which], state->flow->tables.n_blocks),
-                    &kept->list[which]);
-    duite_colocate(state->rt, kept->list[which], state->block[block].x);
-}
-
-void flow_contact_keep_again(struct flow_state *state, uint32_t block, uint32_t n)
-{
-    touch_make_list(state, block, state->contact.begin, n ? n : 1);
-    state->contact.kept[block].n[state->contact.begin] = n;
-}
-
-int flow_contact_none(struct flow_state *state)
-{
-    const struct flow_list none = {0};
-    int code = DUITE_OK;
-    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code; b++) {
-        touch_make_list(state, b, state->contact.now, 1);
-        code = duite_set_sized(state->rt, state->contact.kept[b].list[state->contact.now], &none,
-                               sizeof none);
-    }
-    return code;
-}
-
 /* Puts the meetings of a block and the points of their other blocks into `to`. Returns how many. */
 static size_t list_meetings(const struct flow_state *state, uint32_t block, duite_object *to)
 {
@@ -416,7 +379,7 @@ static int fork_touch(struct flow_state *state, struct touch_args *args, unsigne
     struct flow_kept_contacts *kept = contact->kept + args->block;
     const uint32_t found = contact->found[args->block];
     kept->n[to] = args->accept ? found : kept->n[contact->now] + found;
-    touch_make_list(state, args->block, to, kept->n[to]);
+    flow_contact_keep(state, args->block, to, kept->n[to]);
     args->room = kept->room[to];
     duite_object *rest = flow_contact_rest(state);
     const duite_object one[] = {kept->list[contact->now], kept->list[to]};

@@ -2,6 +2,7 @@
  * that all ranks get alike. */
 #include "cloth/flow/run.h"
 
+#include "cloth/base/clock.h"
 #include "cloth/base/memory.h"
 #include "cloth/flow/checkpoint/checkpoint.h"
 #include "cloth/flow/contact/mode.h"
@@ -16,14 +17,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-double flow_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 const duite_kernel *const *flow_kernels(void)
 {
@@ -124,6 +117,7 @@ void flow_free(struct flow *flow)
     free(flow->unused.vertex);
     free(flow->unused.position);
     free(flow->attached);
+    free(flow->saving.items); /* of a save that a failure ended */
     flow_watched_free(&flow->watched);
     free(flow->header);
     free(flow);
@@ -316,12 +310,12 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
     *report = (struct flow_report){0};
     flow->progress = progress;
     flow_run_begin(&state);
-    state.from = flow_now();
+    state.from = cloth_seconds();
     if (!state.code)
         run_steps(&state);
     if (!state.code)
         flow_noted(&state, duite_wait(rt)); /* the last frame is written, too */
-    report->wall_seconds = state.saved_wall + flow_now() - state.from;
+    report->wall_seconds = state.saved_wall + cloth_seconds() - state.from;
     if (!state.code)
         flow_finish(&state);
     if (!state.code && !report->stopped && !state.complete)

@@ -1,6 +1,7 @@
 #ifndef CLOTH_FLOW_STATE_BODIES_H
 #define CLOTH_FLOW_STATE_BODIES_H
 
+#include "cloth/base/clock.h"
 #include "cloth/flow/state/state.h"
 #include "cloth/physics/tiny.h"
 
@@ -215,7 +216,7 @@ static inline size_t flow_dots(const struct flow *flow)
 static inline void flow_part_ends(const duite_call *call, enum flow_part part)
 {
     struct flow_clock *clock = flow_of(call)->clock + call->worker;
-    const double now = flow_now();
+    const double now = cloth_seconds();
     clock->seconds[part] += now - clock->from;
     clock->from = now;
 }
@@ -224,7 +225,7 @@ static inline void flow_part_ends(const duite_call *call, enum flow_part part)
  * worker's line. */
 static inline int flow_timed(const duite_call *call, duite_body *body, enum flow_part part)
 {
-    flow_of(call)->clock[call->worker].from = flow_now();
+    flow_of(call)->clock[call->worker].from = cloth_seconds();
     const phys_tiny before = phys_tiny_off();
     const int code = body(call);
     phys_tiny_back(before);

@@ -185,7 +185,4 @@ static inline bool flow_is_preconditioned(const struct flow *flow)
  * end. NULL: there is none, and flow->trouble says so. Local. (run/memory.c) */
 void *flow_take(struct flow *flow, size_t n, size_t size);
 
-/* Seconds since some start. Local. */
-double flow_now(void);
-
 #endif

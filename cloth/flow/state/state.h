@@ -297,7 +297,7 @@ struct flow_state {
     bool complete;        /* a checkpoint that it goes on from has all steps */
     bool saving;          /* a checkpoint is due: no step begins before it */
     double saved_wall;    /* s: of the runs that it goes on from */
-    double from;          /* of flow_now: when the first step began */
+    double from;          /* s: when the first step began */
     double *seam_squares; /* the field seam_peaks, of the last step */
 };
 

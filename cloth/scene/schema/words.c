@@ -62,44 +62,33 @@ int scene_word_value(const struct model_word *words, const char *word, bool *kno
     return words->value;
 }
 
-/* Adds to a text of a size, cut to it. */
-__attribute__((format(printf, 3, 4))) static void append(char *text, size_t size,
-                                                         const char *format, ...)
-{
-    const size_t used = strlen(text);
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text + used, size - used, format, list);
-    va_end(list);
-}
-
 char *scene_allowed_words(const char *word, const char *const *candidates, size_t n, char *text,
                           size_t size)
 {
     const char *nearest = nearest_word(word, candidates, n);
     *text = 0;
     if (nearest)
-        append(text, size, "; did you mean '%s'? Allowed: ", nearest);
+        cloth_text_add(text, size, "; did you mean '%s'? Allowed: ", nearest);
     else
-        append(text, size, "; allowed: ");
+        cloth_text_add(text, size, "; allowed: ");
     for (size_t i = 0; i < n; i++)
-        append(text, size, "%s%s", i ? ", " : "", candidates[i]);
+        cloth_text_add(text, size, "%s%s", i ? ", " : "", candidates[i]);
     return text;
 }
 
 static void append_keys(const struct scene_rule *keys, char *text, size_t size)
 {
     for (const struct scene_rule *key = keys; key->key; key++)
-        append(text, size, "%s%s", key == keys ? "" : ", ", key->key);
+        cloth_text_add(text, size, "%s%s", key == keys ? "" : ", ", key->key);
 }
 
 static void append_integer(const struct scene_rule *rule, char *text, size_t size)
 {
     if (rule->max > 0 && rule->min >= rule->max)
-        append(text, size, "%.0f", rule->max);
+        cloth_text_add(text, size, "%.0f", rule->max);
     else
-        append(text, size, "a whole number from %.0f to %.0f", rule->min,
-               rule->max > 0 ? rule->max : (double)UINT32_MAX);
+        cloth_text_add(text, size, "a whole number from %.0f to %.0f", rule->min,
+                       rule->max > 0 ? rule->max : (double)UINT32_MAX);
 }
 
 static void append_list(const struct scene_rule *rule, char *text, size_t size)
@@ -110,34 +99,34 @@ static void append_list(const struct scene_rule *rule, char *text, size_t size)
                                [SCENE_TEXT] = "texts"};
     const char *items = all[rule->inside->type];
     if (rule->length)
-        append(text, size, "a list of %zu %s", rule->length, items);
+        cloth_text_add(text, size, "a list of %zu %s", rule->length, items);
     else if (rule->max > 0)
-        append(text, size, "a list of %s %g %s", rule->filled ? "1 to" : "at most", rule->max,
-               items);
+        cloth_text_add(text, size, "a list of %s %g %s", rule->filled ? "1 to" : "at most",
+                       rule->max, items);
     else
-        append(text, size, "a %slist of %s", rule->filled ? "non-empty " : "", items);
+        cloth_text_add(text, size, "a %slist of %s", rule->filled ? "non-empty " : "", items);
 }
 
 static void append_number(const struct scene_rule *rule, char *text, size_t size)
 {
     const char *const ranges[] = {"", " > 0", " >= 0", " > 0 and < 1", " >= 0 and <= 1000"};
-    append(text, size, "a finite number%s", ranges[rule->range]);
+    cloth_text_add(text, size, "a finite number%s", ranges[rule->range]);
     if (rule->type == SCENE_NUMBER_OR_LIST && rule->length)
-        append(text, size, " or a list of %zu of them", rule->length);
+        cloth_text_add(text, size, " or a list of %zu of them", rule->length);
     else if (rule->type == SCENE_NUMBER_OR_LIST)
-        append(text, size, " or a list of them");
+        cloth_text_add(text, size, " or a list of them");
 }
 
 static void append_words(const struct scene_rule *rule, char *text, size_t size)
 {
     for (const struct model_word *word = rule->words; word->word; word++)
-        append(text, size, "%s%s", *text ? " or " : "", word->word);
+        cloth_text_add(text, size, "%s%s", *text ? " or " : "", word->word);
 }
 
 static void append_unit(const struct scene_rule *rule, char *text, size_t size)
 {
     if (rule->unit)
-        append(text, size, " (%s)", rule->unit);
+        cloth_text_add(text, size, " (%s)", rule->unit);
 }
 
 char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size)
@@ -146,14 +135,15 @@ char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size
     switch (rule->type) {
     case SCENE_MAP:
     case SCENE_ONE_OF:
-        append(text, size, "a map %s ", rule->type == SCENE_MAP ? "of" : "with exactly one of");
+        cloth_text_add(text, size, "a map %s ",
+                       rule->type == SCENE_MAP ? "of" : "with exactly one of");
         append_keys(rule->inside, text, size);
         break;
     case SCENE_NAMED:
-        append(text, size, "a non-empty map of names");
+        cloth_text_add(text, size, "a non-empty map of names");
         break;
     case SCENE_EDITS:
-        append(text, size, "a map KEY: VALUE, such as time.h: 0.002");
+        cloth_text_add(text, size, "a map KEY: VALUE, such as time.h: 0.002");
         break;
     case SCENE_LIST:
         append_list(rule, text, size);
@@ -167,7 +157,7 @@ char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size
         append_number(rule, text, size);
         break;
     case SCENE_TEXT:
-        append(text, size, "a text");
+        cloth_text_add(text, size, "a text");
         break;
     case SCENE_CHOICE:
         break;

@@ -1,5 +1,5 @@
-/* What draws for the bench "output": pictures of the sheet's last frame, by what duite-view draws
- * with, and films, by duite-view itself. A context stays open from picture to picture. */
+/* Draws for the bench "output": pictures of the sheet's last frame, with the renderer of
+ * duite-view, and films, by duite-view itself. A context stays open from picture to picture. */
 #include "bench/output/folder.h"
 #include "bench/serve.h"
 #include "cloth/view/show.h"

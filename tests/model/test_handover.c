@@ -1,6 +1,6 @@
-/* Messages to send (runtime/comm): whoever posts one polls afterwards, but only one polls at a
- * time; what is posted meanwhile is sent by that one, or by the main thread when it leaves a
- * collective call. Nothing may be left when all have polled. MPI sends at once here and receives
+/* Messages to send (runtime/comm). Each thread that posts one polls afterwards, but only one polls
+ * at a time. It sends what others post meanwhile, or the main thread does when it leaves a
+ * collective call. No message may be left when all have polled. MPI sends at once here and receives
  * nothing. */
 #include "tests/model/runtime.h"
 

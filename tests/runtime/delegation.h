@@ -4,7 +4,7 @@
 #include <duite.h>
 #include <stdatomic.h>
 
-/* What the tests of tasks that run on other ranks share. */
+/* Shared by the tests of tasks that run on other ranks. */
 
 enum { TASKS = 40 };
 
@@ -28,9 +28,9 @@ uint64_t delegation_count(duite *rt);
 
 /* Cases that ask whether all values are those of fork order. `fork` forks what does MIX's work on
  * one of TASKS objects, once or several times; all objects live on one rank, and what is read is 7.
- * An object then holds `start` and `each` times its number. What all overwrite holds `last` times
- * the last number, and what they contribute to `each` times the sum of the numbers. Bodies run on
- * other ranks if and only if they may. */
+ * An object then holds `start` and `each` times its number. The object that all overwrite holds
+ * `last` times the last number; the one that they contribute to, `each` times the sum of the
+ * numbers. Bodies run on other ranks if and only if they may. */
 struct delegation_values {
     void (*fork)(duite *rt, int32_t number, const duite_object object[4]);
     int32_t start, each, last;

@@ -6,8 +6,8 @@
 #include <duite_policy.h>
 #include <stdatomic.h>
 
-/* What the tests of migration share: a balancer that does what the test wants, kernels, and graphs
- * of one fork. */
+/* Shared by the tests of migration: a balancer that obeys the test, kernels, and graphs of one
+ * fork. */
 
 enum {
     STAY = -1,
@@ -21,7 +21,7 @@ enum { MOVING_BLOCKS = 64, MOVING_RANKS = 16 };
 extern int wanted;
 extern atomic_int ran; /* bodies of STEP and STAYS, here */
 
-/* What the balancer saw last; on rank 0. */
+/* The last sight of the balancer; on rank 0. */
 extern struct moving_seen {
     int calls;
     duite_blocks blocks; /* of which the arrays are gone */

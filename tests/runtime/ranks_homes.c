@@ -1,4 +1,4 @@
-/* What settles the home of an object: whatever is told of it afterwards changes nothing. Objects go
+/* The home of an object is settled once; later calls do not change it. Objects go
  * to the ranks one after the other; one that could still follow another would go elsewhere. */
 
 #include "tests/negative/misuse.h"

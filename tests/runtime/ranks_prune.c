@@ -1,5 +1,5 @@
-/* What a rank keeps of other ranks' tasks and objects: nothing of forks that touch nothing of it,
- * copies until they are overwritten; and who says so (duite_is_local). */
+/* A rank keeps nothing of other ranks' tasks that touch nothing of it, and copies until they are
+ * overwritten; duite_is_local tells. */
 
 #include "tests/negative/misuse.h"
 #include "tests/support/ranks.h"
@@ -115,7 +115,7 @@ static void asking_nothing(duite *rt, const duite_object *small)
     duite_free(rt, same);
 }
 
-/* What is wrong is found as everywhere else. */
+/* Wrong forks are refused as everywhere else. */
 static void misuse(duite *rt, const duite_object *small)
 {
     const duite_object twice[2] = {small[0], small[0]}, none[2] = {small[0], DUITE_NO_OBJECT};

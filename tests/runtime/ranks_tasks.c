@@ -1,5 +1,5 @@
-/* Mappings that see the tasks of recorded graphs: what they are shown and when, what is not
- * allowed, and what `taskgraph` and `list` make of graphs that were made for them. */
+/* Mappings that see the tasks of recorded graphs: what they are shown and when, their answers that
+ * are refused, and the answers of `taskgraph` and `list` to graphs that were made for them. */
 #include "tests/negative/misuse.h"
 #include "tests/support/ranks.h"
 

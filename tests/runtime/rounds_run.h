@@ -6,9 +6,9 @@
 #include <duite_policy.h>
 
 /* Rounds that run without a runtime. Values are numbers that tell what they were made of. The
- * reference runs the forks of a source one after the other; what the passes left for all ranks runs
- * in random order, rounds overlapping, and each task must find there what it found in the
- * reference. */
+ * reference runs the forks of a source one after the other. The nodes that the passes made for all
+ * ranks run in random order, and rounds overlap. Each task must find the values that it found in
+ * the reference. */
 
 enum {
     ROUNDS = 3,

@@ -1,5 +1,5 @@
-/* What the environment chooses for a program that chooses nothing itself, what goes before it, and
- * what is refused; and how many cores a batch system or a container leaves a rank. */
+/* The environment chooses for a program that chooses nothing itself; the program goes before it;
+ * bad values are refused. A batch system or a container limits the cores of a rank. */
 
 #include "runtime/workers/share.h"
 #include "tests/negative/misuse.h"
@@ -90,8 +90,8 @@ static void forget_limits(void)
         unsetenv(LIMITS[i]);
 }
 
-/* Of so many cores that the process may use, with these variables (ended by NULL, each with its
- * value) and these cgroups. */
+/* A rank's share of the cores that the process may use, with these variables (ended by NULL, each
+ * with its value) and these cgroups. */
 static struct work_share share_of(unsigned cores, unsigned n_ranks, unsigned asked,
                                   const char *const *variables, const char *folder)
 {
@@ -172,8 +172,8 @@ static void put(const char *folder, const char *name, const char *text)
     ck_assert_int_eq(fclose(file), 0);
 }
 
-/* Of a cgroup and of all above it, version 2 and 1, and of one in a container, whose path is not
- * there. Shared by ranks, rounded down. */
+/* Quotas of a cgroup and of all above it, version 2 and 1, and of one in a container, whose path is
+ * not there. Ranks share them, rounded down. */
 UNIT_TEST(quotas_of_cgroups)
 {
     static const char *const none[] = {NULL}, *const task[] = {"SLURM_CPUS_PER_TASK", "1", NULL};
@@ -302,7 +302,7 @@ UNIT_TEST(wrong_numbers)
     refuses("DUITE_SEED", "18446744073709551616", seed);
 }
 
-/* What the program set wrongly is not blamed on the environment. */
+/* The environment is not blamed for what the program set wrongly. */
 UNIT_TEST(the_fault_of_the_program)
 {
     setenv("DUITE_SCHEDULER", "fifo", 1);

@@ -1,6 +1,6 @@
-/* What a scheduler is told of a task: what the fork said, and which worker has its data warm; what
- * those know that look at paths to the end of a graph or at distances in the machine; and ones that
- * do not keep to the rules. */
+/* A scheduler is told of each task what its fork said and which worker has its data warm. Some also
+ * know paths to the end of a graph, or distances in the machine. Those that break the rules are
+ * named. */
 #include "tests/negative/misuse.h"
 #include "tests/runtime/passive.h"
 #include "tests/support/unit.h"

@@ -1,5 +1,5 @@
 /* Mappings see the same tasks in virtual time as in a run: random graphs are recorded, replayed and
- * traced, and what the predictor hands to a mapping is compared with what the runtime would. */
+ * traced, and the predictor must hand to a mapping the rows that the runtime hands to it. */
 #include "runtime/api/instance.h"
 #include "runtime/sched/sched.h"
 #include "tests/negative/misuse.h"

@@ -38,9 +38,9 @@ struct meet_loop {
     const double (*place)[2]; /* start[n_edges] */
 };
 
-/* Whether two parts of the loop that are not neighbours come nearer than `near` to each other, or
- * two neighbours fold back on each other; edge[0] <= edge[1] are where. *found says which; it is
- * the first one in the order of the edges. Error: CLOTH_E_MEMORY. Local. */
+/* Sets *found if two parts of the loop that are not neighbours come nearer than `near` to each
+ * other, or two neighbours fold back on each other. edge[0] <= edge[1] are the first such edges in
+ * their order. Error: CLOTH_E_MEMORY. Local. */
 int meet_find(const struct meet_loop *loop, double near, bool *found, uint32_t edge[2],
               struct cloth_error *error);
 

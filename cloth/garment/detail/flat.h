@@ -25,12 +25,11 @@ int flat_make(struct delaunay *plane, const struct flat_loop *loop, double edge,
 /* The centre of the circle through a triangle's corners. */
 void flat_centre(const struct delaunay *plane, uint32_t triangle, double centre[2]);
 
-/* Makes triangles better that have an angle below what the aim is: moves, adds and takes out
- * vertices nearby, and keeps what makes the worst of them better. sharp: of the boundary's
- * vertices. */
+/* Improves triangles that have an angle below the aim. Moves, adds and takes out vertices nearby,
+ * and keeps a change that makes the worst of them better. sharp: of the boundary's vertices. */
 void flat_improve(struct delaunay *plane, const unsigned char *sharp);
 
-/* Whether a triangle is not to be blamed: one of its vertices is sharp. */
+/* True if a triangle is not to be blamed: one of its vertices is sharp. */
 bool flat_excused(const struct delaunay *plane, const unsigned char *sharp, uint32_t triangle);
 
 /* Lists the vertices (double[2]) of equilateral triangles of a given edge length that are inside a

@@ -1,7 +1,7 @@
 /* Bodies: gaps against brute force over all triangles, signs against the winding number, normals of
  * edges and corners, what is apart; the real body where it is beside the source tree. Meshes that
- * bodies cannot be made of leave the bodies before them as they were (what further ones are told is
- * in tests/cloth/scene/sentences.txt); what is inside out is turned round, or a hole. */
+ * are refused leave the bodies before them as they were (tests/cloth/scene/sentences.txt has more
+ * of them). A part that is inside out is turned round, or a hole. */
 #include "cloth/contact/shape.h"
 #include "tests/cloth/contact/bodies.h"
 #include "tests/cloth/contact/distances.h"
@@ -286,7 +286,7 @@ UNIT_LOOP(a_real_body, 0, access(real_body_path(), R_OK) == 0)
     free(hit);
 }
 
-/* ---- What is refused, and what is turned ---- */
+/* ---- Refused, and turned ---- */
 
 static void expect(const char *text)
 {

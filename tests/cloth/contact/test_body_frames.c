@@ -193,8 +193,8 @@ UNIT_TEST(angles)
 }
 
 /* A corner of a box goes along an edge to the other corner of it, where two triangles have no area
- * any more. What is left is a wedge, of which the inside is inside, and normals have the length 1:
- * that of the corner is along a sum of those of the triangles with an area. */
+ * any more. A wedge is left. Its inside is inside, and normals have the length 1: that of the
+ * corner is along a sum of those of the triangles with an area. */
 UNIT_TEST(triangles_that_lose_their_area)
 {
     struct surface box;

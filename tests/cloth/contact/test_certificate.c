@@ -1,5 +1,5 @@
-/* What a certificate must say, by cases that are known; and that a cut makes it hold, also where
- * corners are cut further. Whether what is certain is true, test_certificate_exact.c says. */
+/* Certificates of known cases; a cut makes one hold, also where corners are cut further.
+ * test_certificate_exact.c asks if the certain is true. */
 #include "cloth/contact/certificate.h"
 #include "tests/cloth/contact/pairs.h"
 #include "tests/support/unit.h"
@@ -73,7 +73,7 @@ UNIT_TEST(not_finite)
 
 /* ---- Cuts ---- */
 
-/* Whether the plane of a cut may move. */
+/* True if the plane of a cut may move. */
 static bool flies(const phys_vec x[4], const phys_vec y[4])
 {
     double least = INFINITY;
@@ -84,8 +84,8 @@ static bool flies(const phys_vec x[4], const phys_vec y[4])
     return least > 2 * THICKNESS;
 }
 
-/* What the cut says holds, also if other pairs cut the same corners further, now or in a later
- * round; where the plane may have moved with corners that are then cut, once it is cut again. */
+/* A cut holds, also if other pairs cut the same corners further, now or in a later round. If the
+ * plane may have moved with such corners, it holds once the pair is cut again. */
 static void check_cut(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
                       unsigned held, const double t[4])
 {

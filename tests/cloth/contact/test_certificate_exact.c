@@ -1,7 +1,7 @@
-/* What contact_certify and contact_cut say is certain, against exact arithmetic that knows nothing
- * of directions: a pair may touch only where its corners lie in a plane, and where its features are
- * no farther apart than what it still moves. Halves of the step are looked at in the same way until
- * one of the two is excluded, or they are 2^-100 of the step.
+/* Verdicts of contact_certify and contact_cut against exact arithmetic that knows nothing of
+ * directions. A pair may touch only where its corners lie in a plane, and where its features are no
+ * farther apart than it still moves. Halves of the step are looked at in the same way until one of
+ * the two is excluded, or they are 2^-100 of the step.
  *
  * A coordinate is an integer of units of 2^-SCALE m, doubled at each halving, so that nothing is
  * ever rounded. All lie against corner 0, whose motion is that of the frame. */
@@ -131,7 +131,7 @@ static int coefficient_sign(struct part *p, int i)
     return mpz_sgn(one);
 }
 
-/* Whether the corners never lie in a plane. */
+/* True if the corners never lie in a plane. */
 static bool never_flat(struct part *p)
 {
     const int first = coefficient_sign(p, 0);
@@ -217,7 +217,7 @@ static void find_reach(enum contact_pair pair, struct part *p)
     mpz_mul_2exp(reach, reach, 1);
 }
 
-/* Whether the pair provably never touches in the part of the step at this depth. */
+/* True if the pair provably never touches in the part of the step at this depth. */
 static bool never_touches(enum contact_pair pair, int depth)
 {
     struct part *p = part_at + depth;
@@ -293,7 +293,7 @@ UNIT_TEST(touch_is_seen)
         }
 }
 
-/* Of pairs that are not certain many do touch. */
+/* Many pairs that are not certain do touch. */
 UNIT_TEST(many_touch)
 {
     int touch = 0;

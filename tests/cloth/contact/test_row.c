@@ -267,8 +267,8 @@ UNIT_TEST(opened_pinch_gives_back_its_energy)
     }
 }
 
-/* What only waits for room is not thrown: here a spring, N/m, holds the mass down, and it ends
- * where the law has the spring's force, or where the contact is open. */
+/* A mass that waits for room is not thrown. A spring, N/m, holds it down, and it ends where the law
+ * has the spring's force, or where the contact is open. */
 static void open_against(double spring)
 {
     const double down = 2e-4;

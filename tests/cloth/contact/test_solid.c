@@ -1,5 +1,5 @@
-/* Triangles against moving convex shapes. What is certified is held against the shape at many times
- * between both ends: where its points are then is said here once more, as what is inside. */
+/* Triangles against moving convex shapes. Certified ones are held against the shape at many times
+ * between both ends. Its places at these times, and its inside, are computed here once more. */
 #include "tests/cloth/contact/solids.h"
 #include "tests/support/unit.h"
 
@@ -106,7 +106,7 @@ UNIT_LOOP(what_is_far_is_certified, 0, N_SHAPES)
     ck_assert_int_eq(n, quick(MANY));
 }
 
-/* Of a shape that stays every triangle can be cut; of one that moves, those that it lets. */
+/* Every triangle at a shape that stays can be cut; at one that moves, those that it lets. */
 UNIT_LOOP(what_is_cut_is_certified, 0, N_SHAPES)
 {
     for (int still = 0; still < 2; still++) {
@@ -192,7 +192,7 @@ UNIT_TEST(cuts_along_that_of_the_begin)
         ck_assert_double_eq_tol(part[k], (0.1 - 1e-4) / 0.4, 1e-6);
 }
 
-/* Nothing is cut of a corner that is held. */
+/* A corner that is held is not cut. */
 UNIT_LOOP(held_corners_stay, 0, N_SHAPES)
 {
     int failed = 0;
@@ -240,7 +240,7 @@ UNIT_LOOP(apart, 0, N_SHAPES)
     ck_assert_int_gt(n, quick(MANY) / 8);
 }
 
-/* What passes by is at no time within the reach; far triangles do pass by. */
+/* Triangles that pass by are at no time within the reach; far triangles do pass by. */
 UNIT_LOOP(passing_by, 0, N_SHAPES)
 {
     int by = 0, far = 0;

@@ -1,5 +1,5 @@
-/* What holds of every kind of the table, also of the next one: its descriptor is whole, its parts
- * belong together, and elements do not know which others they stand with. */
+/* Every kind of the table, also the next one, has a whole descriptor and parts that belong
+ * together, and its elements do not know which others they stand with. */
 #include "cloth/flow/run/source.h"
 #include "tests/cloth/element/samples.h"
 
@@ -8,7 +8,7 @@
 
 /* ---- Descriptors ---- */
 
-/* What is missing in a descriptor, or is too much; NULL: nothing. */
+/* The member that a descriptor lacks, or has too much; NULL: it is whole. */
 static const char *flaw_of(const struct element_kind *k)
 {
     const uint32_t all = k->corners * (k->corners - 1) / 2;

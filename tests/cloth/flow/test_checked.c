@@ -1,7 +1,7 @@
 /* Every kernel of the flow in checking mode, where bodies run on guarded copies, twice, with
  * different bytes under what they overwrite: small scenes in several blocks, each with another part
  * of the model. The linker puts the function below in the place of the one that calls bodies
- * (module.mk), so the last case knows which kernels no scene has run. What ranks send each other is
+ * (module.mk), so the last case knows which kernels no scene has run. Messages between ranks are
  * seen on two of them (test_ranks.sh).
  *
  *   test_checked [quick|long]
@@ -33,7 +33,7 @@ int __wrap_check_call(struct check *check, const struct check_task *task, duite_
 
 /* ---- Cases ---- */
 
-/* What scenes choose from, as sets of the words that they have for it. */
+/* The choices of scenes, as sets of their words. */
 enum { MOST_CHOICES = 16, CHOICE_TEXT = 48 };
 struct choices {
     size_t n;
@@ -72,7 +72,7 @@ static const char *const newton = "newton={steps: 2, tolerance: 1e-9}";
 
 static bool whole;
 
-/* Whether choice i of n is run with choice k of m: without the long test each with one other. */
+/* True if choice i of n is run with choice k of m: without the long test each with one other. */
 static bool paired(size_t i, size_t n, size_t k, size_t m)
 {
     return whole || (n < m ? k % n == i : i % m == k);
@@ -230,7 +230,7 @@ UNIT_TEST(timed_joints)
     run_how(&(struct how){.system = true}, SETS(joints, "cloths[0].material=hinges"));
 }
 
-/* What gives a step up, and begins it again with half the length. */
+/* Scenes that give a step up and begin it again with half its length. */
 UNIT_TEST(halved_steps)
 {
     for (size_t i = 0; i < integrators.n; i++) {

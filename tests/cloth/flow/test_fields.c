@@ -1,6 +1,6 @@
-/* The table of fields against runs: what exists is made in the size that the table says, and freed;
- * what a step does with a field between two steps is what the table calls it. Work fields may be
- * anything when a step begins; a state field may not. */
+/* The table of fields against runs. Fields that exist are made in the size that the table says, and
+ * freed. A step uses a field as the table calls it. Work fields may be anything when a step begins;
+ * a state field may not. */
 #include "cloth/flow/checkpoint/checkpoint.h"
 #include "cloth/flow/contact/mode.h"
 #include "cloth/flow/run/setup.h"
@@ -116,7 +116,7 @@ UNIT_TEST(every_field_has_a_run)
 
 /* ---- What lasts from step to step ---- */
 
-/* What is done to the fields of one kind before each step but the first. */
+/* Changes the fields of one kind before each step but the first. */
 typedef void change(struct session *s, int field, uint32_t block, double *numbers, size_t n);
 
 static void to_nothing(struct session *s, int field, uint32_t block, double *numbers, size_t n)

@@ -99,7 +99,7 @@ static bool same(const struct delaunay_triangle *a, const struct delaunay_triang
            memcmp(a->beside, b->beside, sizeof a->beside) == 0 && a->fixed == b->fixed;
 }
 
-/* What is undone is as it was, whatever was done. */
+/* Undoing restores all, whatever was done. */
 UNIT_TEST(changes_are_undone)
 {
     UNIT_OWNED(delaunay_free) struct delaunay plane;

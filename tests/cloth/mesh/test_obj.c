@@ -1,5 +1,5 @@
-/* What the OBJ reader makes of good files, however they are written, and of those that it refuses
- * and that tests/cloth/scene/sentences.txt cannot hold. */
+/* The OBJ reader reads good files, however they are written, and refuses bad ones, here those that
+ * tests/cloth/scene/sentences.txt cannot hold. */
 #include "tests/cloth/mesh/tools.h"
 
 #include <locale.h>

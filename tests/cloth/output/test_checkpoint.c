@@ -1,5 +1,5 @@
-/* The file of a checkpoint: what is written reads back; whatever is cut off or changed is noticed;
- * of several the newest that is whole serves; one that cannot be written leaves those before it. */
+/* The file of a checkpoint reads back as it was written, and a cut or a change of it is noticed.
+ * The newest whole one of several serves. One that cannot be written leaves those before it. */
 #include "cloth/output/checkpoint.h"
 #include "tests/cloth/output/sample.h"
 #include "tests/support/unit.h"
@@ -91,7 +91,7 @@ UNIT_TEST(three_are_kept)
     check_mark(5);
 }
 
-/* That is killed when the next one is there, and the oldest is not gone yet. */
+/* The run is killed when the next one is there, and the oldest is not gone yet. */
 UNIT_TEST(three_are_kept_after_a_run_that_was_killed)
 {
     for (unsigned char i = 1; i <= 4; i++)

@@ -1,5 +1,5 @@
-/* What is written of blocks, ranks and shapes is read again for the frames that it counts from,
- * whatever becomes of the run; what is damaged is refused. */
+/* Blocks, ranks and shapes are read again for the frames that they count from, whatever becomes of
+ * the run. A damaged file is refused. */
 #include "cloth/output/colours.h"
 #include "tests/cloth/output/sample.h"
 #include "tests/support/unit.h"

@@ -17,7 +17,7 @@ static _Atomic enum mode mode = OFF;
 static int reason = ENOSPC; /* why calls fail */
 static _Atomic long calls_left;
 
-/* Whether this call is the one that fails; a dying process does not come back. */
+/* True if this call is the one that fails; a dying process does not come back. */
 static int strikes(void)
 {
     if (mode == OFF || calls_left-- != 0)
@@ -201,7 +201,8 @@ UNIT_TEST(full_disk_keeps_whole_frames)
     }
 }
 
-/* What a thread cannot bring to the disk is said by what follows, which is taken away, too. */
+/* A later call tells what a thread could not bring to the disk; its own frame is taken away, too.
+ */
 UNIT_TEST(full_disk_is_said_later)
 {
     int through = 0;

@@ -1,4 +1,4 @@
-/* What a frames folder holds, byte by byte where others read it, and what is read back or refused.
+/* A folder of frames, byte by byte where others read it; it is read back, or refused.
  */
 #include "tests/cloth/output/sample.h"
 #include "tests/support/unit.h"

@@ -1,4 +1,5 @@
-/* What a run replaces in a folder of frames, and what it refuses to: then nothing has changed. */
+/* Files that a run replaces in a folder of frames, and those that it refuses to: then no file has
+ * changed. */
 #include "tests/cloth/contact/bodies.h"
 #include "tests/cloth/output/sample.h"
 #include "tests/support/unit.h"
@@ -61,7 +62,7 @@ UNIT_TEST(mesh_of_the_user)
     ck_assert_int_ne(access(sample_path("cloth.obj.part"), F_OK), 0);
 }
 
-/* Of so many boxes; the caller frees their memory. */
+/* Makes so many boxes; the caller frees their memory. */
 static struct contact_bodies boxes_make(uint32_t n)
 {
     static struct surface box;
@@ -97,8 +98,8 @@ static const char *const FILES[] = {"cloth.obj",  "cloth.pc2",  "frames.csv",
                                     "scene.json", "body-0.obj", "body-1.obj"};
 enum { N_FILES = sizeof FILES / sizeof *FILES };
 
-/* What the run reads, by another path: a file of an earlier run, also the second body, which would
- * go without a successor; and what files are written to first. */
+/* The run reads a file by another path: one of an earlier run, also the second body, which would go
+ * without a successor; or one that files are written to first. */
 UNIT_TEST(would_replace_an_input)
 {
     struct contact_bodies two = boxes_make(2), one = boxes_make(1);

@@ -1,5 +1,5 @@
-/* What --set says arrives in the model: it changes values, makes what is not there, appends to
- * lists, and leaves other uses of what it changes alone. */
+/* A --set arrives in the model: it changes values, makes absent ones, appends to lists, and leaves
+ * other uses of an alias alone. */
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
 

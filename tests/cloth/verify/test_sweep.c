@@ -100,7 +100,7 @@ UNIT_TEST(few)
     ck_assert_uint_eq(check_soup(made), 0);
 }
 
-/* What no exact answer exists for is refused; what is smaller than it can have is 0. */
+/* Numbers without an exact answer are refused; those below the least that it can have are 0. */
 UNIT_TEST(bounds)
 {
     static struct soup soup;

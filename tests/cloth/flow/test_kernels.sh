@@ -1,11 +1,11 @@
 #!/bin/sh
-# What a kernel declares wrongly does not compile (cloth/flow/state/kernel.h), and the compiler's error is about that.
+# Kernels that are declared wrongly do not compile (cloth/flow/state/kernel.h), and the compiler's error is about that.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
 compiles() {
     # shellcheck disable=SC2086
-    LC_ALL=C ${CC:-cc} -std=c17 -fsyntax-only -Werror -DHAVE_CONFIG_H -I. -I"$srcdir" -I"$srcdir/runtime" ${MPI_CFLAGS:-} -DWRONG="$1" \
+    LC_ALL=C ${CC:-cc} -std=c17 -D_GNU_SOURCE -fsyntax-only -Werror -DHAVE_CONFIG_H -I. -I"$srcdir" -I"$srcdir/runtime" ${MPI_CFLAGS:-} -DWRONG="$1" \
         "$srcdir/tests/cloth/flow/kernels_wrong.c"
 }
 

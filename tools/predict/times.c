@@ -13,12 +13,12 @@ enum { OWN_KINDS = 64, MAX_GAPS = 1 << 16 };
 struct times_mean {
     double seconds;
     uint64_t n;
+    float median;
 };
 
 struct predict_times {
     struct trace_bodies *bodies;
-    struct times_mean *kernel, own[OWN_KINDS];
-    float *median;                  /* by kernel, then by kind of the runtime's own tasks */
+    struct times_mean *mean;        /* by kernel, then by kind of the runtime's own tasks */
     double all_bodies, all_medians; /* of kernels */
     bool steady;
     uint32_t n_kernels;
@@ -38,13 +38,23 @@ static double mean_value(const struct times_mean *mean)
     return mean->n ? mean->seconds / (double)mean->n : 0;
 }
 
-static void times_event(struct predict_times *times, const struct trace_event *event, double tick)
+/* The mean that an event counts in; NULL: it is no task, or one within another. */
+static struct times_mean *times_mean_of(const struct predict_times *times,
+                                        const struct trace_event *event)
 {
-    double seconds = tick * (double)(event->took - event->within);
     if (event->kind == TRACE_OWN && event->kernel < OWN_KINDS)
-        mean_add(&times->own[event->kernel], seconds);
+        return &times->mean[times->n_kernels + event->kernel];
     if (event->kind == TRACE_TASK && !(event->flags & TRACE_NESTED))
-        mean_add(&times->kernel[event->kernel], seconds);
+        return &times->mean[event->kernel];
+    return NULL;
+}
+
+static void times_event(const struct predict_times *times, const struct trace_event *event,
+                        double tick)
+{
+    struct times_mean *mean = times_mean_of(times, event);
+    if (mean)
+        mean_add(mean, tick * (double)(event->took - event->within));
 }
 
 /* The runtime's time between two tasks of a worker, with no event between them. */
@@ -98,76 +108,75 @@ bool predict_times_messages(const struct predict_times *times, double *message, 
 
 /* ---- Medians ---- */
 
-static int times_compare_seconds(const void *a, const void *b)
+/* The value that stands at k when n values are sorted; reorders them (Hoare's selection). */
+static float times_select(float *value, size_t n, size_t k)
 {
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
+    ptrdiff_t low = 0, high = (ptrdiff_t)n - 1;
+    while (low < high) {
+        const float pivot = value[k];
+        ptrdiff_t i = low, j = high;
+        while (i <= j) {
+            while (value[i] < pivot)
+                i++;
+            while (pivot < value[j])
+                j--;
+            if (i > j)
+                break;
+            const float other = value[i];
+            value[i++] = value[j];
+            value[j--] = other;
+        }
+        low = j < (ptrdiff_t)k ? i : low;
+        high = (ptrdiff_t)k < i ? j : high;
+    }
+    return value[k];
 }
 
-struct times_body {
-    uint32_t kernel;
-    float seconds;
-};
-
-static int times_compare_bodies(const void *a, const void *b)
+/* Adds the bodies of a run to the lists of their kernels. end: of each list as it grows. */
+static void times_list_bodies(const struct predict_times *times, const struct trace_run *run,
+                              float **end)
 {
-    const struct times_body *x = a, *y = b;
-    if (x->kernel != y->kernel)
-        return x->kernel < y->kernel ? -1 : 1;
-    return (x->seconds > y->seconds) - (x->seconds < y->seconds);
-}
-
-/* The body of an event, of the runtime's own tasks, too; false: it has none. */
-static bool times_body_of(const struct predict_times *times, const struct trace_event *event,
-                          double tick, struct times_body *body)
-{
-    double seconds = tick * (double)(event->took - event->within);
-    const bool own = event->kind == TRACE_OWN && event->kernel < OWN_KINDS;
-    if (!own && (event->kind != TRACE_TASK || event->flags & TRACE_NESTED))
-        return false;
-    if (!own)
-        predict_times_find(times, event->number, &seconds);
-    *body = (struct times_body){event->kernel + (own ? times->n_kernels : 0), (float)seconds};
-    return true;
-}
-
-static size_t times_bodies(const struct predict_times *times, const struct trace_run *run,
-                           struct times_body *body)
-{
-    size_t n = 0;
     for (uint32_t r = 0; r < run->n_ranks; r++)
         for (size_t p = 0; p < run->rank[r].n_pieces; p++)
-            for (size_t i = 0; i < run->rank[r].piece[p].n; i++)
-                n += times_body_of(times, &run->rank[r].piece[p].event[i],
-                                   run->rank[r].header->tick, &body[n]);
-    return n;
+            for (size_t i = 0; i < run->rank[r].piece[p].n; i++) {
+                const struct trace_event *event = &run->rank[r].piece[p].event[i];
+                const struct times_mean *mean = times_mean_of(times, event);
+                double seconds = run->rank[r].header->tick * (double)(event->took - event->within);
+                if (mean && event->kind == TRACE_TASK)
+                    trace_bodies_find(times->bodies, event->number, &seconds);
+                if (mean)
+                    *end[mean - times->mean]++ = (float)seconds;
+            }
 }
 
 /* False without memory. */
 static bool times_medians(struct predict_times *times, const struct trace_run *run)
 {
-    size_t n = 1;
-    for (uint32_t r = 0; r < run->n_ranks; r++)
-        n += run->rank[r].n_events;
-    struct times_body *body = base_alloc(n * sizeof *body);
-    times->median = base_alloc_zero((run->n_kernels + OWN_KINDS) * sizeof *times->median);
-    if (body && times->median) {
-        n = times_bodies(times, run, body);
-        if (n)
-            qsort(body, n, sizeof *body, times_compare_bodies);
+    const size_t n_means = times->n_kernels + OWN_KINDS;
+    size_t n = 0;
+    for (size_t k = 0; k < n_means; k++)
+        n += times->mean[k].n;
+    float *body = base_alloc((n + 1) * sizeof *body), **end = base_alloc(n_means * sizeof *end);
+    const bool fine = body && end;
+    if (fine) {
+        end[0] = body;
+        for (size_t k = 1; k < n_means; k++)
+            end[k] = end[k - 1] + times->mean[k - 1].n;
+        times_list_bodies(times, run, end);
     }
-    for (size_t first = 0, end; body && times->median && first < n; first = end) {
-        for (end = first; end < n && body[end].kernel == body[first].kernel;)
-            end++;
-        const float median = body[first + (end - first) / 2].seconds;
-        times->median[body[first].kernel] = median;
-        for (size_t i = first; i < end && body[i].kernel < times->n_kernels; i++) {
-            times->all_bodies += (double)body[i].seconds;
-            times->all_medians += (double)median;
-        }
+    for (size_t k = 0; fine && k < n_means; k++) {
+        struct times_mean *mean = &times->mean[k];
+        if (!mean->n)
+            continue;
+        float *first = end[k] - mean->n;
+        mean->median = times_select(first, mean->n, mean->n / 2);
+        for (size_t i = 0; i < mean->n && k < times->n_kernels; i++)
+            times->all_bodies += (double)first[i];
+        if (k < times->n_kernels)
+            times->all_medians += (double)mean->n * (double)mean->median;
     }
-    const bool fine = body && times->median;
     base_free(body);
+    base_free(end);
     return fine;
 }
 
@@ -177,7 +186,7 @@ struct predict_times *predict_times_new(const struct trace_run *run, bool steady
 {
     struct predict_times *times = base_alloc_zero(sizeof *times);
     if (!times || !(times->bodies = trace_bodies_new(run)) ||
-        !(times->kernel = base_alloc_zero((run->n_kernels + 1) * sizeof *times->kernel)) ||
+        !(times->mean = base_alloc_zero((run->n_kernels + OWN_KINDS) * sizeof *times->mean)) ||
         !(times->gap = base_alloc(MAX_GAPS * sizeof *times->gap))) {
         predict_times_free(times);
         return NULL;
@@ -194,7 +203,6 @@ struct predict_times *predict_times_new(const struct trace_run *run, bool steady
             }
             times_messages(times, piece, run->rank[r].header->tick);
         }
-    qsort(times->gap, times->n_gaps, sizeof *times->gap, times_compare_seconds);
     if (!times_medians(times, run)) {
         predict_times_free(times);
         return NULL;
@@ -207,9 +215,8 @@ void predict_times_free(struct predict_times *times)
     if (!times)
         return;
     trace_bodies_free(times->bodies);
-    base_free(times->kernel);
+    base_free(times->mean);
     base_free(times->gap);
-    base_free(times->median);
     base_free(times);
 }
 
@@ -218,19 +225,19 @@ bool predict_times_find(const struct predict_times *times, uint64_t number, doub
     return trace_bodies_find(times->bodies, number, seconds);
 }
 
+static double times_value(const struct predict_times *times, size_t k)
+{
+    return times->steady ? (double)times->mean[k].median : mean_value(&times->mean[k]);
+}
+
 double predict_times_kernel(const struct predict_times *times, uint32_t kernel)
 {
-    if (times->steady)
-        return times->median[kernel];
-    return mean_value(&times->kernel[kernel]);
+    return times_value(times, kernel);
 }
 
 double predict_times_own(const struct predict_times *times, uint32_t kind)
 {
-    if (kind >= OWN_KINDS)
-        return 0;
-    return times->steady ? (double)times->median[times->n_kernels + kind]
-                         : mean_value(&times->own[kind]);
+    return kind < OWN_KINDS ? times_value(times, times->n_kernels + kind) : 0;
 }
 
 double predict_times_sums(const struct predict_times *times)
@@ -238,7 +245,8 @@ double predict_times_sums(const struct predict_times *times)
     static const uint32_t kinds[] = {TASK_COMBINE, TASK_PIECES, TASK_NODE_SUM, TASK_NODE_PARTIAL};
     double seconds = 0;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-        seconds += predict_times_own(times, kinds[i]) * (double)times->own[kinds[i]].n;
+        seconds +=
+            predict_times_own(times, kinds[i]) * (double)times->mean[times->n_kernels + kinds[i]].n;
     return seconds;
 }
 
@@ -250,5 +258,5 @@ void predict_times_spread(const struct predict_times *times, double *bodies, dou
 
 double predict_times_gap(const struct predict_times *times)
 {
-    return times->n_gaps ? times->gap[times->n_gaps / 2] : 0;
+    return times->n_gaps ? times_select(times->gap, times->n_gaps, times->n_gaps / 2) : 0;
 }

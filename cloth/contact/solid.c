@@ -257,3 +257,20 @@ bool contact_solid_apart(const struct contact_solid *solid, const double low[3],
         return true;
     return box_divided(solid, low, high, begin, end, reach);
 }
+
+double contact_solid_way(const struct contact_solid *solid)
+{
+    const struct contact_place *begin = solid->place + CONTACT_BEGIN,
+                               *end = solid->place + CONTACT_END;
+    const phys_vec at = end->at - begin->at;
+    double way = sqrt(phys_dot(&at, &at));
+    if (!solid->moves)
+        return 0;
+    for (int i = 0; i < 3; i++) {
+        double turn[3];
+        for (int c = 0; c < 3; c++)
+            turn[c] = end->axis[i][c] - begin->axis[i][c];
+        way += (solid->half[i] + solid->radius) * sqrt(contact_inner(turn, turn));
+    }
+    return solid->endless ? INFINITY : way;
+}

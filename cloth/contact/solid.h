@@ -85,4 +85,7 @@ bool contact_solid_cut(const struct contact_solid *solid, const phys_vec x[3], c
 bool contact_solid_apart(const struct contact_solid *solid, const double low[3],
                          const double high[3], double reach);
 
+/* The most, m, that a point of the shape goes in the step; of a plane that moves INFINITY. */
+double contact_solid_way(const struct contact_solid *solid);
+
 #endif

@@ -12,6 +12,10 @@
 
 #include <math.h>
 
+/* Triangles, or vertices, that follow each other and are left out at once where a box around all of
+ * them is out of reach. */
+enum { GROUP = 32 };
+
 struct meeting {
     const struct flow *flow;
     const struct model *model;
@@ -19,6 +23,7 @@ struct meeting {
     const struct contact_shape *shape;
     struct contact_pose pose;
     struct contact_solid solid;
+    double way;               /* m: that points of the shape go in the step at most */
     bool sweeps;              /* as the mode does (mode.h) */
     uint32_t obstacle;        /* behind all cloths */
     const uint32_t *attached; /* by point of the skin */
@@ -261,26 +266,59 @@ static void look_at_vertices(struct meeting *m)
     }
 }
 
+/* ---- All of a skin ---- */
+
+/* True if n points are out of the shape's reach in the step and, if they and the shape move on as
+ * in this step, in the next one. So is all that lies between them. */
+static bool are_apart(const struct meeting *m, uint32_t n, const uint32_t *point)
+{
+    phys_vec low = m->x[point[0]], high = low;
+    for (uint32_t i = 0; i < n; i++) {
+        const phys_vec x = m->x[point[i]], y = m->y[point[i]], at[3] = {x, y, y + (y - x)};
+        for (int k = 0; k < 3; k++)
+            for (int c = 0; c < 3; c++) {
+                low[c] = at[k][c] < low[c] ? at[k][c] : low[c];
+                high[c] = at[k][c] > high[c] ? at[k][c] : high[c];
+            }
+    }
+    return contact_solid_apart(&m->solid, (const double[3]){low[0], low[1], low[2]},
+                               (const double[3]){high[0], high[1], high[2]},
+                               flow_contact_reach(m->model) + m->way);
+}
+
+/* Looks at all triangles, or vertices, that may be in reach. n_corners: points of each. */
+static void look_at_near(struct meeting *m, uint32_t n, uint32_t n_corners, const uint32_t *point,
+                         void (*look)(struct meeting *m, uint32_t number))
+{
+    for (uint32_t i = 0; i < n; i += GROUP) {
+        const uint32_t some = n - i < GROUP ? n - i : GROUP;
+        if (are_apart(m, n_corners * some, point + (size_t)n_corners * i))
+            continue;
+        for (uint32_t k = i; k < i + some; k++)
+            if (!are_left_out(m, n_corners, point + (size_t)n_corners * k))
+                look(m, k);
+    }
+}
+
+static void list_still_triangle(struct meeting *m, uint32_t triangle)
+{
+    const uint32_t *point = m->skin.corner[triangle];
+    const phys_vec y[3] = {m->y[point[0]], m->y[point[1]], m->y[point[2]]};
+    list_triangle(m, triangle, y);
+}
+
 /* Edges and triangles that are near a shape from outside; of bodies vertices alone count. */
 static void look_at_places(struct meeting *m)
 {
-    for (uint32_t i = 0; i < m->skin.n_triangles && !m->shape->body; i++) {
-        const uint32_t *point = m->skin.corner[i];
-        const phys_vec y[3] = {m->y[point[0]], m->y[point[1]], m->y[point[2]]};
-        if (!are_left_out(m, 3, point))
-            list_triangle(m, i, y);
-    }
+    if (!m->shape->body)
+        look_at_near(m, m->skin.n_triangles, 3, *m->skin.corner, list_still_triangle);
     look_at_vertices(m);
 }
 
 static void meet_shape_look_at(struct meeting *m)
 {
-    for (uint32_t i = 0; i < m->skin.n_triangles; i++)
-        if (!are_left_out(m, 3, m->skin.corner[i]))
-            look_at_triangle(m, i);
-    for (uint32_t i = 0; i < m->skin.n_vertices; i++)
-        if (!are_left_out(m, 1, m->skin.vertex + i))
-            meet_shape_look_at_vertex(m, i);
+    look_at_near(m, m->skin.n_triangles, 3, *m->skin.corner, look_at_triangle);
+    look_at_near(m, m->skin.n_vertices, 1, m->skin.vertex, meet_shape_look_at_vertex);
 }
 
 /* ---- The task ---- */
@@ -307,6 +345,7 @@ static int meet_shape_body(const duite_call *call, const struct meet_shape_field
     contact_pose_over(shape, flow->model->keys, &flow->model->bodies, args->from, args->to,
                       &m.pose);
     contact_solid_make(shape, &m.pose, &m.solid);
+    m.way = contact_solid_way(&m.solid);
     const struct flow_skin skin = flow_skin_open(on->skin);
     m.skin = skin.skin;
     m.attached = skin.attached;

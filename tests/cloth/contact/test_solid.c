@@ -240,6 +240,23 @@ UNIT_LOOP(apart, 0, N_SHAPES)
     ck_assert_int_gt(n, quick(MANY) / 8);
 }
 
+/* No point of a surface goes farther in the step; without a turn all of them go as far. */
+UNIT_LOOP(way_of_the_shape, 0, N_SHAPES)
+{
+    for (int i = 0; i < quick(MANY); i++) {
+        struct meeting m;
+        struct contact_solid_point on;
+        const double turn = i % 2 ? 0.3 : 0;
+        make_shape((uint32_t)_i, 0.3, turn, &m);
+        place_triangle(any_size(1e-3, 1), 0.1, true, 0, &m);
+        contact_solid_nearest(&m.solid, CONTACT_END, m.y, &on);
+        const double way = contact_solid_way(&m.solid);
+        const double went = sqrt(phys_dot(&on.velocity, &on.velocity));
+        ck_assert_double_le(went, way + 1e-12);
+        ck_assert(turn > 0 || m.solid.endless || way < went + 1e-9);
+    }
+}
+
 /* Triangles that pass by are at no time within the reach; far triangles do pass by. */
 UNIT_LOOP(passing_by, 0, N_SHAPES)
 {

@@ -30,6 +30,7 @@ bench_libbench_a_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_
 	-DBENCH_BLENDER='"$(abs_top_srcdir)/bench/rivals/blender_sphere.py"' \
 	-DBENCH_VIEW_MISSING='"$(VIEW_MISSING)"' \
 	-DBENCH_SCENES='"$(abs_top_srcdir)/cloth/scenes"' \
+	-DBENCH_PEERS='"$(abs_top_srcdir)/bench/contact/peers"' \
 	-DBENCH_STATES_SCENE='"$(abs_top_srcdir)/bench/cg/states.yaml"' \
 	-DBENCH_WORN_SCENE='"$(abs_top_srcdir)/bench/garments/worn.yaml"' \
 	-DBENCH_HANGING_SCENE='"$(abs_top_srcdir)/bench/garments/hanging.yaml"' \
@@ -39,7 +40,7 @@ bench_libbench_a_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_
 check_PROGRAMS += bench/duite-bench
 bench_duite_bench_SOURCES = bench/duite-bench.c
 bench_duite_bench_LDADD = $(BENCH_LIBRARY)
-EXTRA_DIST += bench/experiments bench/garments/experiments.sh bench/garments/hanging.yaml bench/garments/worn.yaml \
+EXTRA_DIST += bench/experiments bench/contact/peers bench/garments/experiments.sh bench/garments/hanging.yaml bench/garments/worn.yaml \
 	bench/vassilev/panels.awk bench/vassilev/jeans.yaml bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/cg/states.yaml bench/tiles.c \
 	bench/results/epyc-2026-11-22.md bench/results/xeon-2026-11-24.md bench/results/xeon-2026-11-27.md
 

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <time.h>
@@ -33,6 +34,12 @@ const char *serve_failure(void)
 int serve_no_memory(void)
 {
     return serve_fail("out of memory");
+}
+
+uint64_t serve_most_bytes(void)
+{
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) ? 0 : 1024 * (uint64_t)usage.ru_maxrss;
 }
 
 double serve_seconds(void)

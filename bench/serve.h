@@ -33,6 +33,8 @@ const char *serve_failure(void);
 
 /* Seconds since some fixed moment. */
 double serve_seconds(void);
+/* The most memory that the process ever had; 0 if the system does not say. */
+uint64_t serve_most_bytes(void);
 
 /* Rank r takes the r-th of the cores that it may use, as a binding mpirun would. */
 void serve_bind(int rank);

@@ -26,14 +26,17 @@ extern const struct serve_run contact_map_runs[];
 
 /* ---- Scenes ---- */
 
-/* Reads a scene of cloth/scenes by its name, to the end of the part that the bench runs. self: "on"
+/* Reads a scene of the bench by its name, to the end of the part that the bench runs. self: "on"
  * or "off" with certified contact, or "" for what the file says. quick: a tiny one. The model
  * belongs to the caller, also after a failure. 0, or what serve_fail returns. */
 int contact_scene_read(struct model *model, const char *name, const char *self, bool quick);
 
 /* scene name= self= balance= threads= scheduler= quick= what=: a run tells what=wall: seconds of
- * all steps; frame: seconds for each 1 / fps that was simulated; intersections: the most in a
- * frame; contacts: the most at a time; moved: tasks and objects that went to other ranks. */
+ * all steps; frame: seconds for each 1 / fps that was simulated; step: for each step that was made;
+ * intersections: the most in a frame; contacts: the most at a time; solves, iterations, queries (of
+ * two sides), pairs (certified): for each step that was made; halved: steps; cuts: of vertices;
+ * pinches: pairs; moved: tasks and objects that went to other ranks; memory: the most bytes of the
+ * process. */
 extern const struct serve_run contact_scene_runs[];
 
 /* Of the sphere's sheet after ms= of its run, kept by threads= and quick=.
@@ -57,7 +60,13 @@ extern const struct serve_run contact_instruction_runs[];
 
 /* ---- Plans ---- */
 
+/* Plans the intersections and the counts of a scene, and returns what=: wall, frame or step. */
+const struct measure_series *contact_plan_scene(struct measure *measure,
+                                                const struct bench_options *options,
+                                                const char *name, const char *what);
+
 extern const struct bench_case contact_self, contact_frames, contact_part, contact_iterations,
-    contact_twist, contact_instructions, contact_intersections, contact_maps;
+    contact_twist, contact_instructions, contact_intersections, contact_maps, contact_peers,
+    contact_ring, contact_memory;
 
 #endif

@@ -37,16 +37,31 @@ static struct measure_series *scene(struct measure *measure, const struct bench_
                           strstr(settings, "balance=") ? "" : " balance=none", what);
 }
 
-/* Seconds, what=wall or frame, and how many intersections its frames have. */
-static const struct measure_series *plan_scene(struct measure *measure,
-                                               const struct bench_options *options,
-                                               const char *name, const char *what)
+/* Counts of a run, which are the same on all machines and from run to run. */
+static const struct {
+    const char *what, *unit, *name;
+} COUNTS[] = {{"solves", "solves", "solves_per_step"},
+              {"iterations", "iterations", "iterations_per_step"},
+              {"halved", "steps", "steps_halved"},
+              {"contacts", "contacts", "contacts"},
+              {"cuts", "cuts", "cuts"},
+              {"queries", "queries", "queries_per_step"},
+              {"pairs", "pairs", "pairs_per_step"},
+              {"pinches", "pairs", "pinches"}};
+enum { N_COUNTS = sizeof COUNTS / sizeof *COUNTS };
+
+const struct measure_series *contact_plan_scene(struct measure *measure,
+                                                const struct bench_options *options,
+                                                const char *name, const char *what)
 {
-    char settings[20];
+    char settings[40];
     snprintf(settings, sizeof settings, "name=%s", name);
     const struct measure_series *time = scene(measure, options, 0, settings, what);
     const struct measure_series *found = scene(measure, options, 0, settings, "intersections");
     measure_intersections(measure, name, found);
+    for (int i = 0; i < N_COUNTS; i++)
+        measure_value(measure, scene(measure, options, 0, settings, COUNTS[i].what), 1,
+                      COUNTS[i].unit, "%s_%s", name, COUNTS[i].name);
     return time;
 }
 
@@ -78,7 +93,7 @@ static void plan_frames(struct measure *measure, const struct bench_options *opt
     const struct measure_series *ours[2];
     measure->cold = true;
     for (int i = 0; i < 2; i++) {
-        ours[i] = plan_scene(measure, options, name[i], "frame");
+        ours[i] = contact_plan_scene(measure, options, name[i], "frame");
         measure_value(measure, ours[i], 1, "s", "%s_seconds_per_frame", name[i]);
     }
     const struct measure_series *rival =
@@ -93,6 +108,69 @@ const struct bench_case contact_frames = {
     "seconds for each 1/25 s of sphere.yaml until 0.6 s and of stack.yaml until 0.2 s, in steps of "
     "8 ms",
     plan_frames, contact_scene_runs, 2};
+
+/* ---- Scenes that others published ---- */
+
+/* s: what they state, of a frame or a step. */
+static const struct {
+    const char *name, *what;
+    double published;
+} PEERS[] = {{"peers_drape", "frame", 2.1},  {"peers_curtain", "frame", 3.9},
+             {"peers_twist", "frame", 6.6},  {"peers_needle", "frame", 9.2},
+             {"peers_stack", "frame", 18.1}, {"peers_ribbon", "frame", 1.7},
+             {"peers_layers", "step", 0.21}};
+enum { N_PEERS = sizeof PEERS / sizeof *PEERS };
+
+static void plan_peers(struct measure *measure, const struct bench_options *options)
+{
+    measure->cold = true;
+    for (int i = 0; i < N_PEERS; i++) {
+        const struct measure_series *time =
+            contact_plan_scene(measure, options, PEERS[i].name, PEERS[i].what);
+        measure_value(measure, time, 1, "s", "%s", PEERS[i].name);
+        measure_value(measure, time, 1 / PEERS[i].published, "x", "%s_vs_published", PEERS[i].name);
+    }
+}
+
+const struct bench_case contact_peers = {
+    "peers",
+    "the begin of scenes that others published, bench/contact/peers: seconds for each 1/60 s, of "
+    "layers a step. Published, whole scenes: drape 2.1, curtain 3.9, twist 6.6, needle 9.2, stack "
+    "18.1, ribbon 1.7 on an NVIDIA L4; layers 0.21 on a processor that is not named",
+    plan_peers, contact_scene_runs, 1};
+
+static void plan_ring(struct measure *measure, const struct bench_options *options)
+{
+    measure->cold = true;
+    measure_value(measure, contact_plan_scene(measure, options, "ring", "wall"), 1, "s",
+                  "ring_seconds");
+}
+
+const struct bench_case contact_ring = {
+    "ring", "peers/ring.yaml: a sheet of 1,681 vertices is drawn through eight capsules in 0.4 s",
+    plan_ring, contact_scene_runs, 2};
+
+/* ---- Memory ---- */
+
+static void plan_memory(struct measure *measure, const struct bench_options *options)
+{
+    static const char *const settings[] = {"name=cross", "name=cross_still"};
+    const struct measure_series *of[2];
+    measure->cold = true;
+    for (int i = 0; i < 2; i++) {
+        struct measure_series *series = scene(measure, options, 0, settings[i], "memory");
+        series->fresh = true;
+        of[i] = series;
+    }
+    measure_value(measure, of[0], 1e-6, "MB", "memory_cross_megabytes");
+    measure_ratio(measure, of[0], of[1], "memory_cross_vs_still");
+}
+
+const struct bench_case contact_memory = {
+    "memory",
+    "the most memory of three steps in which two sheets go through each other at 200 m/s, if "
+    "nothing stopped them, against the same sheets at rest",
+    plan_memory, contact_scene_runs, 1};
 
 /* ---- The contact part of a step, and what contacts cost a solve ---- */
 

@@ -6,6 +6,7 @@
 #include "bench/cg/cg.h"
 #include "bench/sets.h"
 #include "bench/tasks/tasks.h"
+#include "bench/temporary.h"
 #include "cloth/app/check/intersections.h"
 #include "cloth/scene/scene.h"
 
@@ -17,15 +18,70 @@
 
 /* ---- Scenes ---- */
 
-/* s: where the part ends that is run; with --quick its cloths are of so many vertices. */
+/* A mesh that a scene reads and turned.awk makes. */
+struct turned {
+    const char *shape, *key; /* the scene's key that names its file; NULL: the scene reads none */
+    int n, quick_n;          /* divisions */
+};
+
+/* s: where the part ends that is run; with --quick its grids are of so many vertices. */
 static const struct part {
     const char *name;
     double end, quick_end;
     int cloths, nx, ny;
-} PARTS[] = {{"sheet", 0.48, 0.01, 1, 20, 20},
-             {"sphere", 0.6, 0.16, 1, 20, 20},
-             {"stack", 0.2, 0.1, 5, 12, 12},
-             {"twist", 1.5, 0.1, 1, 21, 7}};
+    struct turned mesh;
+    const char *folder, *file; /* NULL: cloth/scenes, and the name */
+    const char *set;           /* NULL: nothing but these is changed */
+} PARTS[] = {{"sheet", 0.48, 0.01, 1, 20, 20, {0}, NULL, NULL, NULL},
+             {"sphere", 0.6, 0.16, 1, 20, 20, {0}, NULL, NULL, NULL},
+             {"stack", 0.2, 0.1, 5, 12, 12, {0}, NULL, NULL, NULL},
+             {"twist", 1.5, 0.1, 1, 21, 7, {0}, NULL, NULL, NULL},
+             {"peers_drape", 1, 0.1, 5, 16, 16, {0}, BENCH_PEERS, "drape", NULL},
+             {"peers_curtain", 1, 0.01, 15, 8, 8, {0}, BENCH_PEERS, "curtain", NULL},
+             {"peers_twist",
+              0.2,
+              0.04,
+              0,
+              0,
+              0,
+              {"tube", "cloths[0].mesh.file", 360, 24},
+              BENCH_PEERS,
+              "twist",
+              NULL},
+             {"peers_needle",
+              0.5,
+              0.01,
+              5,
+              16,
+              16,
+              {"cone", "obstacles[0].body.obj", 40, 12},
+              BENCH_PEERS,
+              "needle",
+              NULL},
+             {"peers_stack", 0.2, 0.01, 10, 12, 12, {0}, BENCH_PEERS, "stack", NULL},
+             {"peers_ribbon",
+              0.5,
+              0.01,
+              25,
+              2,
+              20,
+              {"bowl", "obstacles[0].body.obj", 64, 64},
+              BENCH_PEERS,
+              "ribbon",
+              NULL},
+             {"peers_layers", 0.1, 0.02, 50, 6, 6, {0}, BENCH_PEERS, "layers", NULL},
+             {"ring", 0.45, 0.02, 1, 12, 12, {0}, BENCH_PEERS, "ring", NULL},
+             {"cross", 0.015, 0.005, 2, 8, 8, {0}, BENCH_PEERS, "cross", NULL},
+             {"cross_still",
+              0.015,
+              0.005,
+              2,
+              8,
+              8,
+              {0},
+              BENCH_PEERS,
+              "cross",
+              "cloths[0].velocity=[0, 0, 0]"}};
 enum { N_PARTS = sizeof PARTS / sizeof *PARTS };
 
 static void make_small(struct sets *sets, const struct part *part)
@@ -37,12 +93,32 @@ static void make_small(struct sets *sets, const struct part *part)
     add_set(sets, "grain=60");
 }
 
-int contact_scene_read(struct model *model, const char *name, const char *self, bool quick)
+/* The mesh in a folder that goes again when the scene is read. */
+static int make_turned(struct sets *sets, const struct turned *mesh, bool quick, const char *folder)
+{
+    char command[3 * TEMPORARY_PATH];
+    if (!mesh->shape)
+        return 0;
+    snprintf(command, sizeof command, "awk -v shape=%s -v n=%d -f '%s/turned.awk' > '%s/%s.obj'",
+             mesh->shape, quick ? mesh->quick_n : mesh->n, BENCH_PEERS, folder, mesh->shape);
+    add_set(sets, "%s='%s/%s.obj'", mesh->key, folder, mesh->shape);
+    return system(command) ? serve_fail("no mesh: %s", command) : 0;
+}
+
+static int read_part(struct model *model, const struct part *part, struct sets *sets)
 {
     struct cloth_error error = {0};
+    char path[TEMPORARY_PATH];
+    snprintf(path, sizeof path, "%s/%s.yaml", part->folder ? part->folder : BENCH_SCENES,
+             part->file ? part->file : part->name);
+    return scene_read(model, path, sets->n, sets->set, &error) ? serve_fail("%s", error.text) : 0;
+}
+
+int contact_scene_read(struct model *model, const char *name, const char *self, bool quick)
+{
     struct sets sets = {0};
     const struct part *part = PARTS;
-    char path[4200];
+    char folder[TEMPORARY_PATH];
     while (part < PARTS + N_PARTS && strcmp(part->name, name) != 0)
         part++;
     if (part == PARTS + N_PARTS)
@@ -52,8 +128,14 @@ int contact_scene_read(struct model *model, const char *name, const char *self, 
     add_set(&sets, "time.end=%.17g", quick ? part->quick_end : part->end);
     if (*self)
         add_set(&sets, "contact={mode: certified, self: %s}", self);
-    snprintf(path, sizeof path, "%s/%s.yaml", BENCH_SCENES, name);
-    return scene_read(model, path, sets.n, sets.set, &error) ? serve_fail("%s", error.text) : 0;
+    add_set(&sets, "%s", part->set ? part->set : "");
+    if (temporary_make(NULL, "duite-mesh", folder))
+        return 1;
+    int code = make_turned(&sets, &part->mesh, quick, folder);
+    if (!code)
+        code = read_part(model, part, &sets);
+    temporary_remove(folder);
+    return code;
 }
 
 /* ---- Frames ---- */
@@ -116,8 +198,26 @@ static int look(const struct film *film, const struct model *model, double *most
 
 /* ---- A run ---- */
 
-enum { WALL, FRAME, INTERSECTIONS, CONTACTS, MOVED, WHATS };
-static const char *const WHAT[WHATS] = {"wall", "frame", "intersections", "contacts", "moved"};
+enum {
+    WALL,
+    FRAME,
+    STEP,
+    INTERSECTIONS,
+    CONTACTS,
+    SOLVES,
+    ITERATIONS,
+    HALVED,
+    CUTS,
+    QUERIES,
+    PAIRS,
+    PINCHES,
+    MOVED,
+    MEMORY,
+    WHATS
+};
+static const char *const WHAT[WHATS] = {
+    "wall",   "frame", "step",    "intersections", "contacts", "solves", "iterations",
+    "halved", "cuts",  "queries", "pairs",         "pinches",  "moved",  "memory"};
 
 /* What the run with these settings told, and has not been asked for yet: NAN of what has. */
 struct told {
@@ -126,11 +226,26 @@ struct told {
     uint64_t hash; /* of its end; 0: there was no run yet */
 };
 
+static double per_step(const struct flow_report *report, uint64_t n)
+{
+    return (double)n / (double)report->steps;
+}
+
 static void tell(struct told *told, const struct flow_report *report, double fps)
 {
     told->value[WALL] = report->wall_seconds;
     told->value[FRAME] = report->wall_seconds / (report->simulated_seconds * fps);
+    told->value[STEP] = report->wall_seconds / (double)report->steps;
     told->value[CONTACTS] = (double)report->contacts;
+    told->value[SOLVES] = per_step(report, report->steps + report->steps_halved +
+                                               report->steps_retaken + report->contact_solves);
+    told->value[ITERATIONS] = per_step(report, report->cg_iterations_total);
+    told->value[HALVED] = (double)report->steps_halved;
+    told->value[CUTS] = (double)report->contact_cuts;
+    told->value[QUERIES] = per_step(report, report->contact_queries);
+    told->value[PAIRS] = per_step(report, report->contact_pairs);
+    told->value[MEMORY] = (double)serve_most_bytes();
+    told->value[PINCHES] = (double)report->contact_pinches;
     told->value[MOVED] = (double)(report->counters.delegated + report->counters.migrated);
 }
 
@@ -204,7 +319,7 @@ static int run(struct serve_request *request, struct told *told)
 /* The run with the settings of a request, all but what is asked for; NULL: there is no room. */
 static struct told *find(const char *text)
 {
-    static struct told all[16];
+    static struct told all[32];
     const char *what = strstr(text, " what=");
     const int length = what ? (int)(what - text) : (int)strlen(text);
     for (struct told *told = all; told < all + sizeof all / sizeof *all; told++) {

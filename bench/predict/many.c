@@ -84,16 +84,8 @@ static int many(void *context, struct serve_request *request, double *value)
 static int many_bytes(void *context, struct serve_request *request, double *value)
 {
     (void)context;
-    char line[200];
-    double kilobytes = 0;
     const int code = many_predict(request);
-    FILE *file = fopen("/proc/self/status", "r");
-    while (file && fgets(line, sizeof line, file))
-        if (sscanf(line, "VmHWM: %lf kB", &kilobytes) == 1)
-            break;
-    if (file)
-        fclose(file);
-    *value = 1024 * kilobytes;
+    *value = (double)serve_most_bytes();
     return code;
 }
 

@@ -2,9 +2,6 @@
  * sheet: four ranks against one. */
 #include "bench/ranks/ranks.h"
 
-#include <stdio.h>
-#include <string.h>
-
 static struct measure_series *add(struct measure *measure, const struct bench_options *options,
                                   unsigned ranks)
 {
@@ -22,20 +19,6 @@ static void plan(struct measure *measure, const struct bench_options *options)
     measure_value(measure, one, 1e-6, "MB", "memory_r1");
     measure_value(measure, four, 1e-6, "MB", "memory_r4");
     measure_ratio(measure, four, one, "memory_r4_vs_r1");
-}
-
-/* Bytes, or 0 if the system does not say. */
-static double peak(void)
-{
-    char line[200];
-    double kilobytes = 0;
-    FILE *file = fopen("/proc/self/status", "r");
-    while (file && fgets(line, sizeof line, file))
-        if (sscanf(line, "VmHWM: %lf kB", &kilobytes) == 1)
-            break;
-    if (file)
-        fclose(file);
-    return 1024 * kilobytes;
 }
 
 static void forget_mesh(void *context)
@@ -70,7 +53,7 @@ static int memory(void *context, struct serve_request *request, double *value)
 {
     struct ranks_session *session = context;
     const int code = run(session, request);
-    *value = peak();
+    *value = (double)serve_most_bytes();
     sheet_free(&session->sheet);
     return code;
 }

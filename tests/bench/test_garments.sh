@@ -22,9 +22,9 @@ pattern_least_angle >= 20
 map_ms <= 20
 body_ns_per_vertex <= 200
 self_ns_per_vertex <= 700
-jeans_repulsion_seconds <= 2
-jeans_certified_seconds <= 5
-walk_seconds_per_frame <= 0.5
+jeans_repulsion_seconds <= 1.2
+jeans_certified_seconds <= 2
+walk_seconds_per_frame <= 0.35
 velocity_correction_cost <= 1.1
 intersections <= 0
 END

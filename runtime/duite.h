@@ -68,6 +68,13 @@ const char *duite_message(void);
  * constant text. */
 const char *duite_code_text(int code);
 
+/* The version of the library that runs; DUITE_VERSION is that of this header: 10000 major + 100
+ * minor + patch. A program runs with the library of its header and with later ones of the same
+ * major version. These may know longer structures: the program says how long its own are, and what
+ * lies beyond keeps its default. Local. Returns: the version. */
+#define DUITE_VERSION 100
+int duite_version(void);
+
 typedef struct duite duite; /* a running runtime */
 
 /* Names a shared object: a value, freely copied, the same on all ranks. */
@@ -270,6 +277,7 @@ enum { DUITE_MAX_THREADS = 4096 }; /* max. workers of a rank */
 
 /* The options of duite_start. Begin with duite_options_default. */
 typedef struct duite_options {
+    size_t size;   /* bytes of this structure in the program's header */
     MPI_Comm comm; /* the ranks that take part; duplicated. Default MPI_COMM_WORLD */
     const duite_kernel *const *kernels; /* ended by NULL; the list is copied, the kernels are not */
     const duite_law *const *laws;       /* of the program, ended by NULL; default NULL: none */
@@ -353,12 +361,21 @@ typedef struct duite_options {
  * is left, and MPI may not be called any more: the program saves its data and ends. Open MPI may
  * end the job first, with a message of its own. */
 
-/* The defaults of the fields. Options must begin with these, since zeros are no communicator and no
- * policies (DUITE_E_ARGUMENT). Fields that the program sets afterwards count first, then the
- * variables of the environment, which are read here, then the built-in defaults. A variable that
- * makes no sense (an unknown policy, text instead of a number) is an error of duite_start, which
- * names it, unless the program sets the field. Local. Returns: the options. */
-duite_options duite_options_default(void);
+/* Writes the defaults to options of `size` bytes, as duite_options_default does, for programs in
+ * other languages. Local. Errors: DUITE_E_ARGUMENT (options of so many bytes have never been). */
+int duite_options_set(duite_options *options, size_t size);
+
+/* The defaults of the fields. Options must begin with these, since zeros are no size, no
+ * communicator and no policies (DUITE_E_ARGUMENT). Fields that the program sets afterwards count
+ * first, then the variables of the environment, which are read here, then the built-in defaults. A
+ * variable that makes no sense (an unknown policy, text instead of a number) is an error of
+ * duite_start, which names it, unless the program sets the field. Local. Returns: the options. */
+static inline duite_options duite_options_default(void)
+{
+    duite_options options;
+    duite_options_set(&options, sizeof options);
+    return options;
+}
 
 /* The built-in policies by name, or from a shared library if the name has a / in it
  * (duite_policy.h). The lists of names have the default first and end with NULL; they leave out the
@@ -731,9 +748,16 @@ typedef struct duite_counters {
     uint64_t recognised_rounds; /* whole rounds of these */
 } duite_counters;
 
+/* Writes the first `size` bytes of the counters, as duite_count_all does, for programs in other
+ * languages. Collective. Errors: as of duite_count_all. */
+int duite_count_sized(duite *rt, duite_counters *counters, size_t size);
+
 /* Sums over all workers and ranks since start. After a duite_wait the counts are exact. Collective.
  * Errors: DUITE_E_ARGUMENT (nowhere to put the counters), DUITE_E_MPI. */
-int duite_count_all(duite *rt, duite_counters *counters);
+static inline int duite_count_all(duite *rt, duite_counters *counters)
+{
+    return duite_count_sized(rt, counters, sizeof *counters);
+}
 
 #ifdef __cplusplus
 }

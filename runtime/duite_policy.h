@@ -11,6 +11,9 @@
  * the function, rank and worker. The function is not broken off; when it returns the run goes on.
  * Built-in policies are not named.
  *
+ * A table begins with its size, sizeof(duite_scheduler) and the like. duite_start refuses one of
+ * another size, as of a policy that was compiled with another version of this header.
+ *
  * In a run, a function of a policy that is not built in and calls exit ends the process with
  * EXIT_FAILURE, whatever status it asked for, and standard error names the policy and the function.
  */
@@ -68,6 +71,7 @@ typedef struct duite_near {
 
 /* A scheduler decides which worker runs which task next. */
 typedef struct duite_scheduler {
+    size_t size; /* sizeof(duite_scheduler) */
     const char *name;
     const char *summary;
     size_t state_size; /* bytes of private state a worker, at most 2^30; zeroed before start; used
@@ -133,6 +137,7 @@ typedef struct duite_task_graph {
 
 /* A mapping decides which rank keeps an object. */
 typedef struct duite_mapping {
+    size_t size; /* sizeof(duite_mapping) */
     const char *name;
     const char *summary;
     /* Writes home[n], each in 0 .. n_ranks - 1. Must be deterministic: every rank calls it with the
@@ -199,6 +204,7 @@ typedef struct duite_blocks {
 
 /* A balancer decides which ready tasks run on another rank, and which objects move there. */
 typedef struct duite_balancer {
+    size_t size; /* sizeof(duite_balancer) */
     const char *name;
     const char *summary;
     size_t state_size; /* bytes of private state a worker, at most 2^30; zeroed before start; used

@@ -10,7 +10,7 @@ RUNTIME_PAGES = \
 	runtime/man/duite_abandon.3 runtime/man/DUITE_ARGS.3 runtime/man/duite_balancer.3 runtime/man/duite_balancer_find.3 \
 	runtime/man/duite_balancer_names.3 runtime/man/duite_blocks.3 runtime/man/duite_body.3 runtime/man/duite_build.3 \
 	runtime/man/duite_call.3 runtime/man/duite_code.3 runtime/man/duite_code_text.3 runtime/man/duite_colocate.3 \
-	runtime/man/duite_contribute.3 runtime/man/duite_cores.3 runtime/man/duite_count.3 runtime/man/duite_count_all.3 \
+	runtime/man/duite_contribute.3 runtime/man/duite_cores.3 runtime/man/duite_count.3 runtime/man/duite_count_all.3 runtime/man/duite_count_sized.3 \
 	runtime/man/duite_counters.3 runtime/man/duite_end.3 runtime/man/duite_fail.3 runtime/man/DUITE_FORK.3 \
 	runtime/man/duite_fork.3 runtime/man/duite_fork_at.3 runtime/man/duite_fork_with.3 runtime/man/duite_free.3 \
 	runtime/man/duite_get.3 runtime/man/duite_get_at.3 runtime/man/duite_get_count.3 runtime/man/duite_graph.3 \
@@ -20,13 +20,14 @@ RUNTIME_PAGES = \
 	runtime/man/duite_mapping.3 runtime/man/duite_mapping_find.3 runtime/man/duite_mapping_names.3 runtime/man/duite_message.3 \
 	runtime/man/duite_mode.3 runtime/man/duite_mpi_begin.3 runtime/man/duite_mpi_end.3 runtime/man/duite_near.3 \
 	runtime/man/duite_new.3 runtime/man/duite_new_sized.3 runtime/man/duite_object.3 runtime/man/duite_object_graph.3 \
-	runtime/man/duite_options.3 runtime/man/duite_options_default.3 runtime/man/duite_out.3 runtime/man/duite_oversubscribed.3 \
+	runtime/man/duite_options.3 runtime/man/duite_options_default.3 runtime/man/duite_options_set.3 runtime/man/duite_out.3 runtime/man/duite_oversubscribed.3 \
 	runtime/man/duite_param.3 runtime/man/duite_prefetch.3 runtime/man/duite_random.3 runtime/man/duite_rank.3 \
 	runtime/man/duite_ranks.3 runtime/man/duite_ready.3 runtime/man/duite_replay.3 runtime/man/duite_replay_while.3 \
 	runtime/man/duite_request.3 runtime/man/duite_resize.3 runtime/man/duite_scheduler.3 runtime/man/duite_scheduler_find.3 \
 	runtime/man/duite_scheduler_names.3 runtime/man/duite_set.3 runtime/man/duite_set_sized.3 runtime/man/duite_start.3 \
 	runtime/man/duite_stop.3 runtime/man/duite_task_graph.3 runtime/man/duite_task_options.3 runtime/man/duite_threads.3 \
-	runtime/man/duite_trace_end.3 runtime/man/duite_trace_step.3 runtime/man/duite_type.3 runtime/man/duite_wait.3
+	runtime/man/duite_trace_end.3 runtime/man/duite_trace_step.3 runtime/man/duite_type.3 runtime/man/duite_version.3 \
+	runtime/man/duite_wait.3
 $(RUNTIME_PAGES): runtime/man.stamp
 	@test -f $@ || { rm -f runtime/man.stamp && $(MAKE) $(AM_MAKEFLAGS) runtime/man.stamp; }
 runtime/man.stamp: runtime/man.awk runtime/duite.h runtime/duite_policy.h
@@ -36,7 +37,7 @@ CLEANFILES += $(RUNTIME_PAGES) runtime/man.stamp
 EXTRA_DIST += runtime/man.awk
 libduite_la_SOURCES = $(include_HEADERS)
 libduite_la_LIBADD = $(METIS_LIBS) $(HWLOC_LIBS) $(XXHASH_LIBS) $(MPI_LIBS) -lm
-libduite_la_LDFLAGS = $(AM_LDFLAGS) -version-info 0:0:0 -export-symbols-regex '^duite_'
+libduite_la_LDFLAGS = $(AM_LDFLAGS) -version-info 1:0:0 -export-symbols-regex '^duite_'
 libduite_core_la_SOURCES = $(libduite_la_SOURCES)
 libduite_core_la_LDFLAGS = $(AM_LDFLAGS)
 libduite_core.a: libduite_core.la

@@ -41,6 +41,11 @@ complete() { # everything that duite.h and duite_policy.h declare is there
     test -s "$scratch/declared" && test ! -s "$scratch/absent"
 }
 
+one_version() {
+    version=$(pc --modversion | awk -F. '{ print 10000 * $1 + 100 * $2 + $3 }')
+    grep -qx "#define DUITE_VERSION $version" "$prefix/include/duite.h"
+}
+
 pages() {
     sed -n '/^typedef/d; s/^[a-z].*[ *]\(duite_[a-z_0-9]*\)(.*/\1/p' "$prefix/include/duite.h" "$prefix/include/duite_policy.h" > "$scratch/called"
     test -s "$scratch/called" && while read -r name; do
@@ -74,6 +79,7 @@ ok "the man page is there" test -s "$prefix/share/man/man3/duite.3"
 ok "each function has one" pages
 ok "libduite.so exports duite_* only" exports_ours_only
 ok "libduite.so has everything that its headers declare" complete
+ok "duite.h is of the version that pkg-config tells" one_version
 ok "there is no static library, and configure says why" no_static_library
 ok "make install DESTDIR" install_staged
 ok "make uninstall leaves no file" uninstalled

@@ -153,7 +153,8 @@ static int map_with_links(const duite_object_graph *graph, int n_ranks, uint64_t
     return code;
 }
 
-static const duite_mapping WITH_LINKS = {.name = "metis_contacts",
+static const duite_mapping WITH_LINKS = {.size = sizeof(duite_mapping),
+                                         .name = "metis_contacts",
                                          .summary = "METIS, with contacts as edges or without",
                                          .map = map_with_links};
 

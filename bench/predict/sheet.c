@@ -23,8 +23,10 @@ static int map_lopsided(const duite_object_graph *graph, int n_ranks, uint64_t s
         home[i] = 4 * i < 3 * graph->n ? 0 : n_ranks - 1;
     return 0;
 }
-static const duite_mapping LOPSIDED = {
-    .name = "lopsided", .summary = "three quarters on one rank", .map = map_lopsided};
+static const duite_mapping LOPSIDED = {.size = sizeof(duite_mapping),
+                                       .name = "lopsided",
+                                       .summary = "three quarters on one rank",
+                                       .map = map_lopsided};
 
 static const duite_mapping *find_mapping(const char *name)
 {

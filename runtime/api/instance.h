@@ -71,9 +71,10 @@ int api_agree_at_start(duite *rt, const duite_options *options, int code);
 
 /* ---- options.c ---- */
 
-/* Check the options: first those without which the ranks cannot even talk, then the rest. The rest
- * may be wrong on one rank alone; all ranks agree on that later. Errors: arguments. */
-int api_check_options(const duite_options *options);
+/* Checks of the options: first those without which the ranks cannot even talk, as they become whole
+ * (duite_options.size), then the rest. The rest may be wrong on one rank alone; all ranks agree on
+ * that later. Errors: arguments. */
+int api_take_options(const duite_options *given, duite_options *whole);
 int api_check_options_rest(const duite_options *options);
 
 /* Policies that are not built in are watched from now on: one that does not return is named. The

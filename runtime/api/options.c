@@ -8,11 +8,12 @@
 #include "runtime/base/policy.h"
 #include "runtime/sched/sched.h"
 
+#include <config.h>
 #include <duite_policy.h>
-
 #include <errno.h>
 #include <inttypes.h>
 #include <limits.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,12 +64,13 @@ static int environment_memo(void)
     return !strcmp(text, "0") ? 0 : !strcmp(text, "always") ? 2 : -1;
 }
 
-duite_options duite_options_default(void)
+static duite_options options_defaults(void)
 {
     const char *scheduler = getenv("DUITE_SCHEDULER"), *mapping = getenv("DUITE_MAPPING"),
                *balance = getenv("DUITE_BALANCE");
     const char *check = getenv("DUITE_CHECK");
     return (duite_options){
+        .size = sizeof(duite_options),
         .comm = MPI_COMM_WORLD,
         .check = !check                       ? 0
                  : !strcmp(check, "accesses") ? 1
@@ -87,6 +89,68 @@ duite_options duite_options_default(void)
         .bind = 1};
 }
 
+/* ---- Sizes ---- */
+
+/* Options as the first version had them: shorter ones have never been. */
+static const size_t LEAST_OPTIONS = offsetof(duite_options, memo) + sizeof(int);
+
+/* calls: the call that takes the options. */
+static int options_check_size(const char *calls, size_t size)
+{
+    if (size < LEAST_OPTIONS)
+        return base_error(DUITE_E_ARGUMENT,
+                          "%s: options of %zu bytes (size) have never been; begin with "
+                          "duite_options_default(), and change what is to differ",
+                          calls, size);
+    if (size > sizeof(duite_options))
+        return base_error(
+            DUITE_E_ARGUMENT,
+            "%s: the program's duite.h has options of %zu bytes, and this library, "
+            "version %d, knows %zu: a library at least as new as the header is needed",
+            calls, size, duite_version(), sizeof(duite_options));
+    return DUITE_OK;
+}
+
+int duite_version(void)
+{
+    return DUITE_VERSION;
+}
+
+int duite_options_set(duite_options *options, size_t size)
+{
+    duite_options whole = options_defaults();
+    const int code = options_check_size("duite_options_set", size);
+    if (!options)
+        return base_error(DUITE_E_ARGUMENT, "duite_options_set: nowhere to put the options");
+    whole.size = size;
+    memset(options, 0, size);
+    if (!code)
+        memcpy(options, &whole, size);
+    return code;
+}
+
+int api_take_options(const duite_options *given, duite_options *whole)
+{
+    if (!given)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: no options; begin with duite_options_default()");
+    const int code = options_check_size("duite_start", given->size);
+    if (code)
+        return code;
+    *whole = options_defaults();
+    memcpy(whole, given, given->size);
+    if (whole->comm == (MPI_Comm)0) /* this handle ends the process in some MPIs */
+        return base_error(
+            DUITE_E_ARGUMENT,
+            "duite_start: no communicator (comm); begin with duite_options_default(), "
+            "and change what is to differ");
+    if (whole->comm == MPI_COMM_NULL)
+        return base_error(DUITE_E_ARGUMENT, "duite_start: the communicator is MPI_COMM_NULL");
+    return DUITE_OK;
+}
+
+/* ---- Checks ---- */
+
 static int options_state_too_large(const duite_scheduler *scheduler, const duite_balancer *balance)
 {
     const bool schedules = scheduler->state_size > BASE_MAX_STATE;
@@ -96,21 +160,6 @@ static int options_state_too_large(const duite_scheduler *scheduler, const duite
                       schedules ? "scheduler" : "balancer",
                       schedules ? scheduler->name : balance->name,
                       schedules ? scheduler->state_size : balance->state_size, BASE_MAX_STATE);
-}
-
-int api_check_options(const duite_options *options)
-{
-    if (!options)
-        return base_error(DUITE_E_ARGUMENT,
-                          "duite_start: no options; begin with duite_options_default()");
-    if (options->comm == (MPI_Comm)0) /* this handle ends the process in some MPIs */
-        return base_error(
-            DUITE_E_ARGUMENT,
-            "duite_start: no communicator (comm); begin with duite_options_default(), "
-            "and change what is to differ");
-    if (options->comm == MPI_COMM_NULL)
-        return base_error(DUITE_E_ARGUMENT, "duite_start: the communicator is MPI_COMM_NULL");
-    return DUITE_OK;
 }
 
 /* The environment names a policy that cannot be found; the search has set the message. */
@@ -154,12 +203,17 @@ static int options_check_environment(const duite_options *options)
 static int options_check_policies(const duite_options *options)
 {
     const duite_scheduler *s = options->scheduler;
+    const duite_mapping *m = options->mapping;
+    const duite_balancer *b = options->balance;
+    if ((s && base_policy_fits(&sched_policies, s, "duite_start")) ||
+        (m && base_policy_fits(&map_policies, m, "duite_start")) ||
+        (b && base_policy_fits(&balance_policies, b, "duite_start")))
+        return DUITE_E_ARGUMENT;
     if (!s || !s->name || !s->place || !s->serve || !s->victim || !s->chain)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: no scheduler, or one without all its functions");
-    if (!options->mapping || !options->mapping->name || !options->mapping->map)
+    if (!m || !m->name || !m->map)
         return base_error(DUITE_E_ARGUMENT, "duite_start: no mapping");
-    const duite_balancer *b = options->balance;
     if (!b || !b->name || !b->victim != !b->grant)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: no balancer, or one with only one of victim and grant");
@@ -219,10 +273,13 @@ int api_check_options_rest(const duite_options *options)
 /* Such a policy may never return, or exit: it is named then. */
 int api_mark_policies(duite *rt, const duite_options *options)
 {
-    const char *policy[BASE_POLICY_KINDS] = {
-        [BASE_SCHEDULER] = sched_is_foreign(options->scheduler) ? options->scheduler->name : NULL,
-        [BASE_MAPPING] = map_is_foreign(options->mapping) ? options->mapping->name : NULL,
-        [BASE_BALANCER] = balance_is_foreign(options->balance) ? options->balance->name : NULL};
+    const char *policy[BASE_POLICY_KINDS] = {NULL};
+    if (!base_policy_is_ours(&sched_policies, options->scheduler))
+        policy[BASE_SCHEDULER] = options->scheduler->name;
+    if (!base_policy_is_ours(&map_policies, options->mapping))
+        policy[BASE_MAPPING] = options->mapping->name;
+    if (!base_policy_is_ours(&balance_policies, options->balance))
+        policy[BASE_BALANCER] = options->balance->name;
     if (!(policy[BASE_SCHEDULER] || policy[BASE_MAPPING] || policy[BASE_BALANCER]))
         return DUITE_OK;
     const int code = base_marks_start(&rt->marks, policy, rt->share.workers, rt->graph.rank);

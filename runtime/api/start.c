@@ -238,12 +238,14 @@ static int instance_start_parts(duite *rt, MPI_Comm mpi, const duite_options *op
     return instance_start_workers(rt, options, instance_start_graph(rt, options));
 }
 
-int duite_start(duite **out, const duite_options *options)
+int duite_start(duite **out, const duite_options *given)
 {
+    duite_options whole;
+    const duite_options *options = &whole;
     if (!out)
         return base_error(DUITE_E_ARGUMENT, "duite_start: nowhere to put the runtime");
     *out = NULL;
-    int code = api_check_options(options);
+    int code = api_take_options(given, &whole);
     if (!code)
         code = instance_start_mpi();
     if (code)

@@ -278,20 +278,22 @@ static int counters_gather(duite *rt, duite_counters *counters)
     return code;
 }
 
-int duite_count_all(duite *rt, duite_counters *counters)
+int duite_count_sized(duite *rt, duite_counters *counters, size_t size)
 {
+    duite_counters all = {0};
     int code = api_enter(rt, "duite_count_all");
     if (code || !counters)
         return code ? code
                     : base_error(DUITE_E_ARGUMENT, "duite_count_all: nowhere to put the counters");
-    *counters = (duite_counters){0};
-    work_count(rt->pool, counters);
+    work_count(rt->pool, &all);
     if (rt->comm)
-        comm_count(rt->comm, &counters->messages, &counters->bytes);
-    code = counters_gather(rt, counters);
-    counters->graphs_recorded = rt->graphs_recorded;
-    counters->migrated = rt->migration.objects;
+        comm_count(rt->comm, &all.messages, &all.bytes);
+    code = counters_gather(rt, &all);
+    all.graphs_recorded = rt->graphs_recorded;
+    all.migrated = rt->migration.objects;
     if (rt->memo)
-        plan_memo_count(rt->memo, counters);
+        plan_memo_count(rt->memo, &all);
+    memset(counters, 0, size);
+    memcpy(counters, &all, size < sizeof all ? size : sizeof all);
     return code;
 }

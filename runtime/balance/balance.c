@@ -11,12 +11,16 @@ static const char *const balance_names[] = {BALANCE_ROWS(BASE_POLICY_NAME) NULL,
                                             BALANCE_TEST_ROWS(BASE_POLICY_NAME) NULL};
 static const void *const balance_tables[] = {BALANCE_ROWS(BALANCE_TABLE) NULL,
                                              BALANCE_TEST_ROWS(BALANCE_TABLE) NULL};
-static const struct base_policies balancers = {"balancer", "duite_own_balancer", balance_names,
-                                               balance_tables};
+const struct base_policies balance_policies = {.kind = "balancer",
+                                               .type = "duite_balancer",
+                                               .symbol = "duite_own_balancer",
+                                               .size = sizeof(duite_balancer),
+                                               .names = balance_names,
+                                               .tables = balance_tables};
 
 const duite_balancer *duite_balancer_find(const char *name)
 {
-    return base_policy_find(&balancers, name);
+    return base_policy_find(&balance_policies, name);
 }
 
 const char *const *duite_balancer_names(void)
@@ -26,12 +30,7 @@ const char *const *duite_balancer_names(void)
 
 const char *const *balance_test_names(void)
 {
-    return base_policy_test_names(&balancers);
-}
-
-bool balance_is_foreign(const duite_balancer *balancer)
-{
-    return !base_policy_is_ours(&balancers, balancer);
+    return base_policy_test_names(&balance_policies);
 }
 
 /* ---- What several share ---- */
@@ -60,6 +59,7 @@ static int chance_draw(struct balance_chance *own, int n)
 
 /* none: every task runs where the owner rule says, and no rank requests tasks of another. */
 const duite_balancer balance_none = {
+    .size = sizeof(duite_balancer),
     .name = "none",
     .summary = "tasks run where the objects they write live",
 };
@@ -100,6 +100,7 @@ static int delegate_grant(void *state, const duite_request *request, const duite
 }
 
 const duite_balancer balance_delegate = {
+    .size = sizeof(duite_balancer),
     .name = "delegate",
     .summary = "idle ranks get ready tasks that cost more than their transfer",
     .state_size = sizeof(struct balance_chance),
@@ -118,6 +119,7 @@ static int scatter_place(void *state, const duite_leaf *leaf)
 }
 
 const duite_balancer balance_scatter = {
+    .size = sizeof(duite_balancer),
     .name = "scatter",
     .summary = "tasks on random ranks from the seed, for tests",
     .state_size = sizeof(struct balance_chance),
@@ -140,6 +142,7 @@ static uint64_t wander_migrate(void *state, const duite_blocks *blocks, int *hom
 }
 
 const duite_balancer balance_wander = {
+    .size = sizeof(duite_balancer),
     .name = "wander",
     .summary = "blocks of objects and tasks on random ranks from the seed, for tests",
     .state_size = sizeof(struct balance_chance),

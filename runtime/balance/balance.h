@@ -1,6 +1,8 @@
 #ifndef DUITE_BALANCE_BALANCE_H
 #define DUITE_BALANCE_BALANCE_H
 
+#include "runtime/base/policy.h"
+
 #include <duite_policy.h>
 #include <stdbool.h>
 
@@ -21,7 +23,7 @@ BALANCE_TEST_ROWS(BALANCE_DECLARE)
 /* The names of those for tests, ended by NULL. */
 const char *const *balance_test_names(void);
 
-/* True if the balancer is not built in. */
-bool balance_is_foreign(const duite_balancer *balancer);
+/* All of them. */
+extern const struct base_policies balance_policies;
 
 #endif

@@ -100,6 +100,7 @@ static uint64_t migrate_blocks(void *state, const duite_blocks *blocks, int *hom
 }
 
 const duite_balancer balance_migrate = {
+    .size = sizeof(duite_balancer),
     .name = "migrate",
     .summary = "blocks of objects move from ranks whose tasks take longer",
     .state_size = sizeof(struct migrate_state),

@@ -4,6 +4,7 @@
 
 #include "runtime/base/error.h"
 
+#include <config.h>
 #include <dlfcn.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -22,7 +23,20 @@ static const void *policy_load(const struct base_policies *policies, const char 
     else if (!policy)
         base_error(DUITE_E_ARGUMENT, "the library defines no %s (duite_policy.h)",
                    policies->symbol);
-    return policy;
+    return policy && !base_policy_fits(policies, policy, file) ? policy : NULL;
+}
+
+int base_policy_fits(const struct base_policies *policies, const void *table, const char *what)
+{
+    size_t size;
+    memcpy(&size, table, sizeof size);
+    if (size == policies->size)
+        return DUITE_OK;
+    return base_error(DUITE_E_ARGUMENT,
+                      "%s: the table of the %s has %zu bytes (its size), and that of this library "
+                      "%zu: .size = sizeof(%s), compiled with the duite_policy.h of version %s, is "
+                      "expected",
+                      what, policies->kind, size, policies->size, policies->type, PACKAGE_VERSION);
 }
 
 struct policy_names {

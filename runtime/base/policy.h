@@ -19,8 +19,9 @@
 /* The policies of one kind. The built-in ones stand twice, in the same order: those for programs,
  * NULL, those for tests, NULL. The latter are adversaries: found by name, but in no list of all. */
 struct base_policies {
-    const char *kind;   /* "scheduler" */
-    const char *symbol; /* what a shared library calls its own */
+    const char *kind, *type; /* "scheduler", "duite_scheduler" */
+    const char *symbol;      /* what a shared library calls its own */
+    size_t size;             /* bytes of a table, which begins with this number */
     const char *const *names;
     const void *const *tables;
 };
@@ -34,6 +35,10 @@ const void *base_policy_find(const struct base_policies *policies, const char *n
 
 /* The names of those for tests, ended by NULL. */
 const char *const *base_policy_test_names(const struct base_policies *policies);
+
+/* Refuses a table of another size, as of a policy for another version of duite_policy.h; what: the
+ * call or file. Local. Errors: DUITE_E_ARGUMENT. */
+int base_policy_fits(const struct base_policies *policies, const void *table, const char *what);
 
 /* True if the table is one of the built-in ones, those for tests among them. */
 bool base_policy_is_ours(const struct base_policies *policies, const void *table);

@@ -152,6 +152,7 @@ static int list_map_tasks(const duite_task_graph *graph, int *home)
 }
 
 const duite_mapping map_list = {
+    .size = sizeof(duite_mapping),
     .name = "list",
     .summary = "blocks where the tasks of a recorded graph are over first (HEFT)",
     .map = map_by_metis,

@@ -10,12 +10,16 @@
 /* No mapping is for tests only. */
 static const char *const map_names[] = {MAP_ROWS(BASE_POLICY_NAME) NULL, NULL};
 static const void *const map_tables[] = {MAP_ROWS(MAP_TABLE) NULL, NULL};
-static const struct base_policies mappings = {"mapping", "duite_own_mapping", map_names,
-                                              map_tables};
+const struct base_policies map_policies = {.kind = "mapping",
+                                           .type = "duite_mapping",
+                                           .symbol = "duite_own_mapping",
+                                           .size = sizeof(duite_mapping),
+                                           .names = map_names,
+                                           .tables = map_tables};
 
 const duite_mapping *duite_mapping_find(const char *name)
 {
-    return base_policy_find(&mappings, name);
+    return base_policy_find(&map_policies, name);
 }
 
 const char *const *duite_mapping_names(void)
@@ -23,17 +27,13 @@ const char *const *duite_mapping_names(void)
     return map_names;
 }
 
-bool map_is_foreign(const duite_mapping *mapping)
-{
-    return !base_policy_is_ours(&mappings, mapping);
-}
-
 /* A mapping that is not built in has no message of its own. */
 static int map_failed(const duite_mapping *own, int code)
 {
-    return code && map_is_foreign(own) ? base_error(code, "mapping %s failed with code %d (%s)",
-                                                    own->name, code, duite_code_text(code))
-                                       : code;
+    return code && !base_policy_is_ours(&map_policies, own)
+               ? base_error(code, "mapping %s failed with code %d (%s)", own->name, code,
+                            duite_code_text(code))
+               : code;
 }
 
 int map_ask(const struct map_policy *mapping, const duite_object_graph *graph, int n_ranks,
@@ -78,6 +78,7 @@ static int block_map(const duite_object_graph *graph, int n_ranks, uint64_t seed
 }
 
 const duite_mapping map_block = {
+    .size = sizeof(duite_mapping),
     .name = "block",
     .summary = "contiguous ranges of equal weight, in the order the objects were made",
     .map = block_map,
@@ -95,6 +96,7 @@ static int cyclic_map(const duite_object_graph *graph, int n_ranks, uint64_t see
 }
 
 const duite_mapping map_cyclic = {
+    .size = sizeof(duite_mapping),
     .name = "cyclic",
     .summary = "object after object to rank after rank",
     .map = cyclic_map,
@@ -113,6 +115,7 @@ static int random_map(const duite_object_graph *graph, int n_ranks, uint64_t see
 }
 
 const duite_mapping map_random = {
+    .size = sizeof(duite_mapping),
     .name = "random",
     .summary = "each object to a random rank, from the seed",
     .map = random_map,

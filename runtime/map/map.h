@@ -22,8 +22,8 @@ MAP_ROWS(MAP_DECLARE)
  * too. */
 int map_by_metis(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home);
 
-/* True if the mapping is not built in. */
-bool map_is_foreign(const duite_mapping *mapping);
+/* All of them. */
+extern const struct base_policies map_policies;
 
 /* A mapping, and the mark of the worker that asks it. */
 struct map_policy {

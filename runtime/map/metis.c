@@ -75,6 +75,7 @@ int map_by_metis(const duite_object_graph *graph, int n_ranks, uint64_t seed, in
 }
 
 const duite_mapping map_metis = {
+    .size = sizeof(duite_mapping),
     .name = "metis",
     .summary = "METIS on the hinted objects: equal weights, few bytes between ranks",
     .map = map_by_metis,

@@ -82,6 +82,7 @@ static int taskgraph_map_tasks(const duite_task_graph *graph, int *home)
 }
 
 const duite_mapping map_taskgraph = {
+    .size = sizeof(duite_mapping),
     .name = "taskgraph",
     .summary = "METIS on the tasks of a recorded graph, with what they cost and read",
     .map = map_by_metis,

@@ -12,12 +12,16 @@ static const char *const sched_names[] = {SCHED_ROWS(BASE_POLICY_NAME) NULL,
                                           SCHED_TEST_ROWS(BASE_POLICY_NAME) NULL};
 static const void *const sched_tables[] = {SCHED_ROWS(SCHED_TABLE) NULL,
                                            SCHED_TEST_ROWS(SCHED_TABLE) NULL};
-static const struct base_policies schedulers = {"scheduler", "duite_own_scheduler", sched_names,
-                                                sched_tables};
+const struct base_policies sched_policies = {.kind = "scheduler",
+                                             .type = "duite_scheduler",
+                                             .symbol = "duite_own_scheduler",
+                                             .size = sizeof(duite_scheduler),
+                                             .names = sched_names,
+                                             .tables = sched_tables};
 
 const duite_scheduler *duite_scheduler_find(const char *name)
 {
-    return base_policy_find(&schedulers, name);
+    return base_policy_find(&sched_policies, name);
 }
 
 const char *const *duite_scheduler_names(void)
@@ -27,12 +31,7 @@ const char *const *duite_scheduler_names(void)
 
 const char *const *sched_test_names(void)
 {
-    return base_policy_test_names(&schedulers);
-}
-
-bool sched_is_foreign(const duite_scheduler *scheduler)
-{
-    return !base_policy_is_ours(&schedulers, scheduler);
+    return base_policy_test_names(&sched_policies);
 }
 
 /* ---- Decisions ---- */
@@ -127,6 +126,7 @@ static int sched_chain_owner(void *state, const duite_ready *task)
  * to the worker that ran the last one: stolen data stay with the thief. After Acar, Blelloch &
  * Blumofe, The data locality of work stealing, SPAA 2000. */
 const duite_scheduler sched_steal = {
+    .size = sizeof(duite_scheduler),
     .name = "steal",
     .summary = "own newest first, steal the oldest of a random victim",
     .state_size = sizeof(struct sched_state),
@@ -172,6 +172,7 @@ static unsigned locality_victim(void *state, unsigned attempt)
 }
 
 const duite_scheduler sched_locality = {
+    .size = sizeof(duite_scheduler),
     .name = "locality",
     .summary = "own newest first, steal the oldest of the nearest in the machine",
     .state_size = sizeof(struct locality_state),
@@ -188,6 +189,7 @@ const duite_scheduler sched_locality = {
  * stealing evens out unequal work. After Markatos & LeBlanc, Using processor affinity in loop
  * scheduling on shared-memory multiprocessors, IEEE TPDS 5(4), 1994. */
 const duite_scheduler sched_owner = {
+    .size = sizeof(duite_scheduler),
     .name = "owner",
     .summary = "the worker of each block of objects, newest first; idle ones steal",
     .state_size = sizeof(struct sched_state),
@@ -201,6 +203,7 @@ const duite_scheduler sched_owner = {
 /* fifo: one queue for all, served in the order in which tasks became ready. The baseline that
  * balances best and ignores affinity. */
 const duite_scheduler sched_fifo = {
+    .size = sizeof(duite_scheduler),
     .name = "fifo",
     .summary = "one queue for all, oldest first",
     .place = sched_place_shared,
@@ -212,6 +215,7 @@ const duite_scheduler sched_fifo = {
 /* lifo: one queue for all, newest first. A new task runs while its data are warm, on any worker;
  * the oldest may starve until the rest is done. */
 const duite_scheduler sched_lifo = {
+    .size = sizeof(duite_scheduler),
     .name = "lifo",
     .summary = "one queue for all, newest first",
     .place = sched_place_shared,
@@ -226,6 +230,7 @@ const duite_scheduler sched_lifo = {
  * for schedules Hu, Parallel sequencing and assembly line problems, Operations Research 9(6),
  * 1961. */
 const duite_scheduler sched_priority = {
+    .size = sizeof(duite_scheduler),
     .name = "priority",
     .summary = "one queue for all, the largest priority first, then the longest path to the end",
     .place = sched_place_shared,
@@ -239,6 +244,7 @@ const duite_scheduler sched_priority = {
  * and nobody steals. The baseline of every comparison: data stay where they are, and uneven blocks
  * stay uneven. */
 const duite_scheduler sched_static = {
+    .size = sizeof(duite_scheduler),
     .name = "static",
     .summary = "a fixed worker for each block of objects, no stealing",
     .state_size = sizeof(struct sched_state),
@@ -290,6 +296,7 @@ static int shuffle_chain(void *state, const duite_ready *task)
 }
 
 const duite_scheduler sched_shuffle = {
+    .size = sizeof(duite_scheduler),
     .name = "shuffle",
     .summary = "random decisions from the seed, for tests",
     .state_size = sizeof(struct sched_state),

@@ -1,6 +1,8 @@
 #ifndef DUITE_SCHED_SCHED_H
 #define DUITE_SCHED_SCHED_H
 
+#include "runtime/base/policy.h"
+
 #include <duite_policy.h>
 #include <stdbool.h>
 
@@ -24,8 +26,8 @@ SCHED_TEST_ROWS(SCHED_DECLARE)
 /* The names of those for tests, ended by NULL. */
 const char *const *sched_test_names(void);
 
-/* True if the scheduler is not built in. */
-bool sched_is_foreign(const duite_scheduler *scheduler);
+/* All of them. */
+extern const struct base_policies sched_policies;
 
 /* The decisions by affinity: a ready task stays with the worker that made it ready, but in a replay
  * goes to the worker that ran the last task on the same data. Chained: if that is this worker. */

@@ -93,7 +93,7 @@ static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int 
 /* Nothing is forked while objects have no home, and only stop is left. */
 static void wrong_mapping(int wrong, int code, const char *name)
 {
-    const duite_mapping mapping = {.name = "wrong", .map = map};
+    const duite_mapping mapping = {.size = sizeof(duite_mapping), .name = "wrong", .map = map};
     duite_options options = misuse_options(MPI_COMM_WORLD);
     int32_t value = -1;
     duite *rt;

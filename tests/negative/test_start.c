@@ -103,7 +103,9 @@ UNIT_TEST(options_left_at_zero)
     const duite_options whole = misuse_options(MPI_COMM_WORLD);
     duite_options options = {0};
 
-    refuses_options(&options, "no communicator (comm)"); /* before MPI is initialised */
+    refuses_options(&options, "options of 0 bytes (size)"); /* before MPI is initialised */
+    options.size = whole.size;
+    refuses_options(&options, "no communicator (comm)");
     misuse_mpi();
     refuses_options(&options, "duite_options_default()");
     options.comm = MPI_COMM_WORLD;
@@ -149,6 +151,70 @@ UNIT_TEST(malformed_policies)
                     "the balancer delegate wants a state of 18446744073709551615 bytes");
     balance = *duite_balancer_find("none");
     OPTIONS_REFUSED((options.balance = &balance, balance.name = NULL), "balancer");
+}
+
+/* A table of another duite_policy.h: longer or shorter, or without its size. */
+UNIT_TEST(policies_of_other_versions)
+{
+    duite_scheduler scheduler = *duite_scheduler_find("fifo");
+    duite_mapping mapping = *duite_mapping_find("block");
+    duite_balancer balance = *duite_balancer_find("none");
+    size_t *const sizes[] = {&scheduler.size, &mapping.size, &balance.size};
+    const char *const sentences[] = {"the table of the scheduler has",
+                                     "the table of the mapping has",
+                                     "the table of the balancer has"};
+
+    misuse_mpi();
+    for (int i = 0; i < 3; i++)
+        for (size_t change = 0; change < 3; change++) {
+            const size_t size = *sizes[i];
+            *sizes[i] = change ? size + 8 * (2 * change - 3) : 0;
+            OPTIONS_REFUSED((options.scheduler = &scheduler, options.mapping = &mapping,
+                             options.balance = &balance),
+                            sentences[i]);
+            *sizes[i] = size;
+        }
+}
+
+/* Options of a shorter header, followed by the program's own data, and of a longer one. */
+UNIT_TEST(options_of_other_versions)
+{
+    struct {
+        duite_options options;
+        char beyond[16];
+    } own;
+
+    misuse_mpi();
+    own.options = misuse_options(MPI_COMM_WORLD);
+    for (size_t size = 0; size < own.options.size; size++)
+        OPTIONS_REFUSED((options.size = size), "have never been");
+    OPTIONS_REFUSED((options.size += 8), "a library at least as new as the header is needed");
+    memset(&own, 1, sizeof own);
+    ck_assert_int_eq(duite_options_set(&own.options, sizeof own.options + 8), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_options_set(NULL, sizeof own.options), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_options_set(&own.options, sizeof own.options), DUITE_OK);
+    ck_assert_uint_eq(own.options.size, sizeof own.options);
+    ck_assert_int_eq(duite_version(), DUITE_VERSION);
+}
+
+/* A shorter structure of counters is not written beyond its end; of a longer one the rest is 0. */
+UNIT_TEST(counters_of_other_versions)
+{
+    struct {
+        duite_counters counters;
+        unsigned char beyond[16];
+    } of;
+
+    rt = misuse_start(MPI_COMM_WORLD, 1);
+    memset(&of, 1, sizeof of);
+    ck_assert_int_eq(duite_count_sized(rt, &of.counters, sizeof of), DUITE_OK);
+    for (size_t i = 0; i < sizeof of.beyond; i++)
+        ck_assert_uint_eq(of.beyond[i], 0);
+    memset(&of, 1, sizeof of);
+    ck_assert_int_eq(duite_count_sized(rt, &of.counters, sizeof(uint64_t)), DUITE_OK);
+    ck_assert_uint_eq(of.counters.tasks, 0);
+    ck_assert_uint_eq(of.counters.placed, UINT64_C(0x0101010101010101));
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
 
 /* After refusals a start works. */

@@ -41,7 +41,10 @@ static uint64_t migrate(void *state, const duite_blocks *blocks, int *home)
     return 1;
 }
 
-const duite_balancer TOLD = {.name = "told", .summary = "what the test wants", .migrate = migrate};
+const duite_balancer TOLD = {.size = sizeof(duite_balancer),
+                             .name = "told",
+                             .summary = "what the test wants",
+                             .migrate = migrate};
 
 static int step_body(const duite_call *call)
 {

@@ -25,7 +25,8 @@ static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int 
     return here && wrong == FAILS ? DUITE_E_SYSTEM : DUITE_OK;
 }
 
-static const duite_mapping MAPPING = {.name = "wrong", .summary = "for tests", .map = map};
+static const duite_mapping MAPPING = {
+    .size = sizeof(duite_mapping), .name = "wrong", .summary = "for tests", .map = map};
 
 static int build(duite *rt, void *context)
 {

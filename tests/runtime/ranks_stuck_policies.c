@@ -162,11 +162,15 @@ static duite_end serve(void *state)
     return DUITE_NEWEST;
 }
 
-static const duite_mapping MAPPING = {
-    .name = "hanging", .summary = "for tests", .map = map, .map_tasks = map_tasks};
+static const duite_mapping MAPPING = {.size = sizeof(duite_mapping),
+                                      .name = "hanging",
+                                      .summary = "for tests",
+                                      .map = map,
+                                      .map_tasks = map_tasks};
 static const duite_mapping MAPPING_LATER = {
-    .name = "hanging", .summary = "for tests", .map = map_later};
-static const duite_balancer ASKING = {.name = "hanging",
+    .size = sizeof(duite_mapping), .name = "hanging", .summary = "for tests", .map = map_later};
+static const duite_balancer ASKING = {.size = sizeof(duite_balancer),
+                                      .name = "hanging",
                                       .summary = "for tests",
                                       .state_size = sizeof(int),
                                       .start = begin,
@@ -179,7 +183,8 @@ static const duite_balancer ASKING = {.name = "hanging",
                                        .place = send},
                             MOVING = {
                                 .name = "hanging", .summary = "for tests", .migrate = migrate};
-static const duite_scheduler SCHEDULER = {.name = "hanging",
+static const duite_scheduler SCHEDULER = {.size = sizeof(duite_scheduler),
+                                          .name = "hanging",
                                           .summary = "for tests",
                                           .state_size = sizeof(unsigned),
                                           .start = start,

@@ -43,8 +43,11 @@ static int look(const duite_task_graph *graph, int *home)
     return seen.code;
 }
 
-static const duite_mapping TOLD = {
-    .name = "told", .summary = "for tests", .map = map_first, .map_tasks = look};
+static const duite_mapping TOLD = {.size = sizeof(duite_mapping),
+                                   .name = "told",
+                                   .summary = "for tests",
+                                   .map = map_first,
+                                   .map_tasks = look};
 
 static int add(const duite_call *call)
 {

@@ -279,8 +279,10 @@ static int fails(const duite_object_graph *graph, int n_ranks, uint64_t seed, in
 
 UNIT_TEST(names_of_parts)
 {
-    const duite_mapping turned = {.name = "turned", .summary = "", .map = quadrants};
-    const duite_mapping broken = {.name = "broken", .summary = "", .map = fails};
+    const duite_mapping turned = {
+        .size = sizeof(duite_mapping), .name = "turned", .summary = "", .map = quadrants};
+    const duite_mapping broken = {
+        .size = sizeof(duite_mapping), .name = "broken", .summary = "", .map = fails};
     int before[BLOCKS];
     make(RANKS);
     memcpy(before, grid.home, sizeof before);

@@ -65,7 +65,8 @@ static unsigned listen(void *state, const duite_ready *task)
     return 0;
 }
 
-static const duite_scheduler LISTENING = {.name = "listening",
+static const duite_scheduler LISTENING = {.size = sizeof(duite_scheduler),
+                                          .name = "listening",
                                           .summary = "for tests",
                                           .place = listen,
                                           .serve = passive_serve,
@@ -240,7 +241,8 @@ static unsigned always(void *state, unsigned attempt)
  * it was. */
 UNIT_TEST(misbehaving)
 {
-    static const duite_scheduler WRONG = {.name = "wrong",
+    static const duite_scheduler WRONG = {.size = sizeof(duite_scheduler),
+                                          .name = "wrong",
                                           .summary = "for tests",
                                           .place = nowhere,
                                           .serve = no_end,

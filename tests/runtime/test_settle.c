@@ -36,7 +36,8 @@ static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int 
     return 0;
 }
 
-static const duite_mapping RECORDER = {.name = "recorder", .summary = "", .map = map};
+static const duite_mapping RECORDER = {
+    .size = sizeof(duite_mapping), .name = "recorder", .summary = "", .map = map};
 
 static void make(int first, int n)
 {
@@ -202,7 +203,8 @@ UNIT_TEST(without_hints)
 
 UNIT_TEST(wrong_mapping)
 {
-    const duite_mapping wrong = {.name = "wrong", .summary = "", .map = map_wrongly};
+    const duite_mapping wrong = {
+        .size = sizeof(duite_mapping), .name = "wrong", .summary = "", .map = map_wrongly};
 
     make(0, 4);
     map_hint(&table, object[2], 6, 1, &object[0], NULL);

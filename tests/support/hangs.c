@@ -31,7 +31,8 @@ static int chain(void *state, const duite_ready *task)
     return 0;
 }
 
-const duite_scheduler duite_own_scheduler = {.name = "hangs",
+const duite_scheduler duite_own_scheduler = {.size = sizeof(duite_scheduler),
+                                             .name = "hangs",
                                              .summary = "",
                                              .state_size = sizeof(int),
                                              .place = place,

@@ -216,7 +216,8 @@ static unsigned listen(void *state, const duite_ready *task)
 /* Two objects, forked once and replayed in two rounds: data are warm from the second one on. */
 UNIT_TEST(warmth)
 {
-    static const duite_scheduler LISTENING = {.name = "listening",
+    static const duite_scheduler LISTENING = {.size = sizeof(duite_scheduler),
+                                              .name = "listening",
                                               .summary = "for tests",
                                               .place = listen,
                                               .serve = passive_serve,

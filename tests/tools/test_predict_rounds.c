@@ -139,8 +139,11 @@ static int map_compare(const duite_task_graph *graph, int *home)
     return DUITE_OK;
 }
 
-static const duite_mapping COMPARE = {
-    .name = "compare", .summary = "by turns", .map = map_by_turns, .map_tasks = map_compare};
+static const duite_mapping COMPARE = {.size = sizeof(duite_mapping),
+                                      .name = "compare",
+                                      .summary = "by turns",
+                                      .map = map_by_turns,
+                                      .map_tasks = map_compare};
 
 /* ---- A run, and its prediction ---- */
 

@@ -92,10 +92,18 @@ typedef struct duite_object {
 /* Element types of objects. */
 typedef enum duite_type {
     DUITE_BYTE = 1, /* bytes without arithmetic: only laws of the program accumulate into them */
-    DUITE_I32,      /* sums of integers wrap around */
+    DUITE_I32,      /* signed integers; sums and products of integers wrap around */
     DUITE_I64,
-    DUITE_F32,
-    DUITE_F64
+    DUITE_F32, /* float */
+    DUITE_F64, /* double */
+    DUITE_I8,
+    DUITE_I16,
+    DUITE_U8, /* unsigned integers */
+    DUITE_U16,
+    DUITE_U32,
+    DUITE_U64,
+    DUITE_CF32, /* float complex, double complex */
+    DUITE_CF64
 } duite_type;
 
 /* How a task uses a parameter. Under the first four modes the body uses it itself. Under the
@@ -141,10 +149,14 @@ typedef struct duite_law {
     void (*combine)(void *left, const void *right, size_t count, duite_type type);
 } duite_law;
 
-/* Built-in laws, for any type but bytes; they need no listing. Min and max keep the first of equal
- * elements (0 and -0 are equal) in fork order; NaN wins against all numbers, the last of several
- * NaNs. (A body that compares by < drops NaN itself.) */
-extern const duite_law duite_sum, duite_min, duite_max;
+/* Built-in laws, for any type but bytes; they need no listing. Min and max, which complex numbers
+ * have not, keep the first of equal elements (0 and -0 are equal) in fork order; NaN wins against
+ * all numbers, the last of several NaNs. (A body that compares by < drops NaN itself.) The last two
+ * lines are for integers: of their bits, and of their truth, which is not 0: all and any leave 1 or
+ * 0. */
+extern const duite_law duite_sum, duite_product, duite_min, duite_max;
+extern const duite_law duite_bits_and, duite_bits_or, duite_bits_xor;
+extern const duite_law duite_all, duite_any;
 
 /* ---- Kernels ---- */
 

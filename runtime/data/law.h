@@ -13,7 +13,9 @@
 static inline size_t data_type_size(duite_type type)
 {
     static const unsigned char size[] = {
-        [DUITE_BYTE] = 1, [DUITE_I32] = 4, [DUITE_I64] = 8, [DUITE_F32] = 4, [DUITE_F64] = 8};
+        [DUITE_BYTE] = 1, [DUITE_I8] = 1,   [DUITE_U8] = 1,   [DUITE_I16] = 2, [DUITE_U16] = 2,
+        [DUITE_I32] = 4,  [DUITE_U32] = 4,  [DUITE_F32] = 4,  [DUITE_I64] = 8, [DUITE_U64] = 8,
+        [DUITE_F64] = 8,  [DUITE_CF32] = 8, [DUITE_CF64] = 16};
     return (size_t)type < sizeof size ? size[type] : 0;
 }
 const char *data_type_name(duite_type type);
@@ -51,7 +53,8 @@ static inline const duite_law *data_law_of(const duite_kernel *kernel, size_t i)
 /* Writes the law's neutral elements. */
 void data_law_neutral(const duite_law *law, void *values, size_t count, duite_type type);
 
-/* True if the law is for objects of this type. */
+/* Objects that the law is for: the types in words, and whether one of them is this one. */
+const char *data_law_types(const duite_law *law);
 bool data_law_fits(const duite_law *law, duite_type type);
 
 /* Hashes the names and types of the listed laws, and of the laws that a kernel names. */

@@ -74,7 +74,7 @@ void data_table_stop(struct data_table *table);
 int data_object_refuse(duite_type type, size_t count, size_t max);
 static inline int data_object_check(duite_type type, size_t count, size_t max)
 {
-    enum { LARGEST_TYPE = 8 };
+    enum { LARGEST_TYPE = 16 };
     const bool fits = data_type_size(type) && max && max <= DATA_MAX_BYTES / LARGEST_TYPE;
     return fits && count <= max ? 0 : data_object_refuse(type, count, max);
 }

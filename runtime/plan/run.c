@@ -14,6 +14,7 @@
 #include "runtime/base/memory.h"
 #include "runtime/data/object.h"
 
+#include <complex.h>
 #include <string.h>
 
 /* ---- Beginning and end ---- */
@@ -235,12 +236,16 @@ static void node_run_copy(const struct task *task)
 
 bool plan_flag_holds(duite_type type, const void *values)
 {
-    static const char zero[8];
+    static const char zero[16];
     switch (type) {
     case DUITE_F32:
         return *(const float *)values != 0;
     case DUITE_F64:
         return *(const double *)values != 0;
+    case DUITE_CF32:
+        return *(const float complex *)values != 0;
+    case DUITE_CF64:
+        return *(const double complex *)values != 0;
     default:
         return memcmp(values, zero, data_type_size(type)) != 0;
     }

@@ -344,20 +344,23 @@ UNIT_TEST(while_a_flag_holds)
 /* An object that no task of the graph writes, of every type: 0 ends after one round. */
 UNIT_TEST(flags_of_every_type)
 {
-    static const duite_type TYPES[] = {DUITE_BYTE, DUITE_I32, DUITE_I64, DUITE_F32, DUITE_F64};
+    static const duite_type TYPES[] = {DUITE_BYTE, DUITE_I32, DUITE_I64, DUITE_F32,
+                                       DUITE_F64,  DUITE_U16, DUITE_CF32};
     duite *rt = start(2, "fifo");
     struct loop loop = {.x = number(rt, 0), .y = number(rt, 0)};
 
     ck_assert_int_eq(duite_new(rt, DUITE_I32, 1, &loop.flag), 0);
     const duite_graph graph = record(rt, loop_build, &loop);
 
-    for (size_t i = 0; i < 5; i++) {
+    for (size_t i = 0; i < sizeof TYPES / sizeof *TYPES; i++) {
         const unsigned char byte[3] = {1, 0, 0};
         const int32_t i32[3] = {256, 0, 0};
         const int64_t i64[3] = {INT64_C(1) << 40, 0, 0};
         const float f32[3] = {1e-30f, 0, 0}, minus = -0.0f;
         const double f64[3] = {1e-300, 0, 0};
-        const void *const values[] = {byte, i32, i64, f32, f64};
+        const uint16_t u16[3] = {256, 0, 0};
+        const float cf32[6] = {minus, 1e-30f, 0};
+        const void *const values[] = {byte, i32, i64, f32, f64, u16, cf32};
         duite_object flag;
 
         ck_assert_int_eq(duite_new(rt, TYPES[i], 3, &flag), 0);

@@ -3,31 +3,55 @@
 #include "tests/negative/misuse.h"
 #include "tests/support/unit.h"
 
+#include <complex.h>
+#include <duite_policy.h>
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
-enum { WIDTH = 4 };
+enum { WIDTH = 4, LARGEST = 16 };
+
+static size_t size_of(duite_type type)
+{
+    switch (type) {
+    case DUITE_I16:
+    case DUITE_U16:
+        return 2;
+    case DUITE_I32:
+    case DUITE_U32:
+    case DUITE_F32:
+        return 4;
+    case DUITE_I64:
+    case DUITE_U64:
+    case DUITE_F64:
+    case DUITE_CF32:
+        return 8;
+    case DUITE_CF64:
+        return 16;
+    default:
+        return 1;
+    }
+}
 
 /* Contributes the argument, as many elements of it as there are. */
 static int give(const duite_call *call)
 {
-    const size_t size =
-        call->param[0].type == DUITE_I32 || call->param[0].type == DUITE_F32 ? 4 : 8;
-
-    memcpy(call->param[0].data, call->args, duite_count(call, 0) * size);
+    memcpy(call->param[0].data, call->args, duite_count(call, 0) * size_of(call->param[0].type));
     return 0;
 }
 
 #define GIVES(law_)                                                                                \
     {                                                                                              \
         .name = "give by " #law_, .body = give, .access = {DUITE_CW},                              \
-        .args_size = WIDTH * sizeof(double), .law = {                                              \
+        .args_size = WIDTH * LARGEST, .law = {                                                     \
             &duite_##law_                                                                          \
         }                                                                                          \
     }
-static const duite_kernel GIVE_SUM = GIVES(sum), GIVE_MIN = GIVES(min), GIVE_MAX = GIVES(max);
+static const duite_kernel GIVE_SUM = GIVES(sum), GIVE_PRODUCT = GIVES(product),
+                          GIVE_MIN = GIVES(min), GIVE_MAX = GIVES(max), GIVE_AND = GIVES(bits_and),
+                          GIVE_OR = GIVES(bits_or), GIVE_XOR = GIVES(bits_xor),
+                          GIVE_ALL_TRUE = GIVES(all), GIVE_ANY_TRUE = GIVES(any);
 
 /* The place of the smallest value, the first of equal ones: a structure in bytes. */
 struct least {
@@ -97,8 +121,9 @@ static duite *rt;
 
 static void begin(void)
 {
-    static const duite_kernel *const KERNELS[] = {&GIVE_SUM,   &GIVE_MIN, &GIVE_MAX,
-                                                  &FIND_LEAST, &GIVE_ALL, NULL};
+    static const duite_kernel *const KERNELS[] = {
+        &GIVE_SUM, &GIVE_PRODUCT,  &GIVE_MIN,      &GIVE_MAX,   &GIVE_AND, &GIVE_OR,
+        &GIVE_XOR, &GIVE_ALL_TRUE, &GIVE_ANY_TRUE, &FIND_LEAST, &GIVE_ALL, NULL};
     static const duite_law *const LAWS[] = {&LEAST, &duite_min, &DIGITS, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
 
@@ -118,13 +143,13 @@ static void end(void)
 static void combine(const duite_kernel *kernel, duite_type type, const void *old, size_t n,
                     const void *given, void *values)
 {
-    const size_t bytes = WIDTH * (type == DUITE_I32 || type == DUITE_F32 ? 4 : 8);
+    const size_t bytes = WIDTH * size_of(type);
     duite_object object;
 
     ck_assert_int_eq(duite_new(rt, type, WIDTH, &object), DUITE_OK);
     duite_set(rt, object, old);
     for (size_t i = 0; i < n; i++) {
-        char args[WIDTH * sizeof(double)] = {0};
+        char args[WIDTH * LARGEST] = {0};
 
         memcpy(args, (const char *)given + i * bytes, bytes);
         ck_assert_int_eq(duite_fork(rt, kernel, args, 1, &object), DUITE_OK);
@@ -213,6 +238,119 @@ UNIT_TEST(not_numbers)
           V(INFINITY, DBL_MAX, -INFINITY, -INFINITY), V(INFINITY, DBL_MAX, 0, -INFINITY));
     CHECK(GIVE_MAX, DUITE_F32, float, V(-INFINITY, -INFINITY, INFINITY, 0),
           V(-INFINITY, -FLT_MAX, INFINITY, INFINITY), V(-INFINITY, -FLT_MAX, 0, INFINITY));
+}
+
+/* ---- Every integer type ---- */
+
+struct integer_type {
+    duite_type type;
+    int is_signed;
+};
+
+/* An element as a number of 64 bits with the sign of its type; a number's last bytes are an element
+ * (little endian). */
+static int64_t element_of(const struct integer_type *of, const void *element)
+{
+    const int shift = 64 - 8 * (int)size_of(of->type);
+    uint64_t bits = 0;
+
+    memcpy(&bits, element, size_of(of->type));
+    return of->is_signed ? (int64_t)(bits << shift) >> shift : (int64_t)bits;
+}
+
+static int64_t law_of(const duite_kernel *kernel, int is_signed, int64_t l, int64_t r)
+{
+    const uint64_t a = (uint64_t)l, b = (uint64_t)r;
+    const int less = is_signed ? r < l : b < a;
+
+    return kernel == &GIVE_SUM        ? (int64_t)(a + b)
+           : kernel == &GIVE_PRODUCT  ? (int64_t)(a * b)
+           : kernel == &GIVE_MIN      ? (less ? r : l)
+           : kernel == &GIVE_MAX      ? (less ? l : r)
+           : kernel == &GIVE_AND      ? (l & r)
+           : kernel == &GIVE_OR       ? (l | r)
+           : kernel == &GIVE_XOR      ? (l ^ r)
+           : kernel == &GIVE_ALL_TRUE ? (l && r)
+                                      : (l || r);
+}
+
+/* All of these are associative, so any order of the contributions leaves the same. */
+static void every_law(const struct integer_type *of, const duite_kernel *kernel, uint64_t *random)
+{
+    const size_t size = size_of(of->type);
+    unsigned char given[5][WIDTH * 8], is[WIDTH * 8];
+
+    for (size_t k = 0; k < 5; k++)
+        for (size_t i = 0; i < WIDTH * 8; i++) /* zeros and ones among them: ends of the types */
+            given[k][i] = (unsigned char)(duite_random(random) % 4 ? duite_random(random)
+                                          : k % 2                  ? 0xff
+                                                                   : 0);
+    for (size_t i = 0; i < WIDTH && *random % 3 == 0; i++)
+        memset(given[i] + i * size, i % 2 ? 0xff : 0, size);
+    unsigned char packed[4][WIDTH * 8];
+    for (size_t k = 0; k < 4; k++)
+        memcpy((unsigned char *)packed + k * WIDTH * size, given[k + 1], WIDTH * size);
+    combine(kernel, of->type, given[0], 4, packed, is);
+    for (size_t i = 0; i < WIDTH; i++) {
+        int64_t should = element_of(of, given[0] + i * size);
+        for (size_t k = 1; k < 5; k++) {
+            should = law_of(kernel, of->is_signed, should, element_of(of, given[k] + i * size));
+            should = element_of(of, &should); /* wraps around */
+        }
+        ck_assert_msg(element_of(of, is + i * size) == should, "%s of type %d", kernel->name,
+                      (int)of->type);
+    }
+}
+
+UNIT_TEST(every_integer)
+{
+    static const struct integer_type TYPES[] = {{DUITE_I8, 1},  {DUITE_I16, 1}, {DUITE_I32, 1},
+                                                {DUITE_I64, 1}, {DUITE_U8, 0},  {DUITE_U16, 0},
+                                                {DUITE_U32, 0}, {DUITE_U64, 0}};
+    static const duite_kernel *const KERNELS[] = {&GIVE_SUM, &GIVE_PRODUCT,  &GIVE_MIN,
+                                                  &GIVE_MAX, &GIVE_AND,      &GIVE_OR,
+                                                  &GIVE_XOR, &GIVE_ALL_TRUE, &GIVE_ANY_TRUE};
+    uint64_t random = 7;
+
+    for (size_t t = 0; t < sizeof TYPES / sizeof *TYPES; t++)
+        for (size_t k = 0; k < sizeof KERNELS / sizeof *KERNELS; k++)
+            for (int round = 0; round < 20; round++)
+                every_law(&TYPES[t], KERNELS[k], &random);
+}
+
+/* (1 + 2i) + (3 - i) = 4 + i and (1 + 2i) (3 - i) = 5 + 5i; then the old value in front. */
+UNIT_TEST(complex_numbers)
+{
+    CHECK(GIVE_SUM, DUITE_CF32, float complex, V(1, I, 0, 0), V(5 + I, 1 + I, 0, 0),
+          V(1 + 2 * I, 1, 0, 0), V(3 - I, 0, 0, 0));
+    CHECK(GIVE_PRODUCT, DUITE_CF64, double complex, V(1, I, 2, 1), V(5 + 5 * I, -5 + 5 * I, 0, 1),
+          V(1 + 2 * I, 1 + 2 * I, 1, 1), V(3 - I, 3 - I, 0, 1));
+    CHECK(GIVE_PRODUCT, DUITE_F32, float, V(1, 2, 0, 1), V(6, 40, 0, 1), V(2, 4, 1, 1),
+          V(3, 5, 2, 1));
+}
+
+/* Order means nothing for complex numbers, bits and truth for integers alone; the fork is refused
+ * with the law and the type. */
+UNIT_TEST(laws_without_meaning)
+{
+    static const struct {
+        const duite_kernel *kernel;
+        duite_type type;
+        const char *sentence;
+    } CASES[] = {{&GIVE_MIN, DUITE_CF32, "min"},      {&GIVE_MAX, DUITE_CF64, "cf64"},
+                 {&GIVE_AND, DUITE_F64, "bits_and"},  {&GIVE_XOR, DUITE_CF32, "bits_xor"},
+                 {&GIVE_ALL_TRUE, DUITE_F32, "f32"},  {&GIVE_SUM, DUITE_BYTE, "bytes"},
+                 {&GIVE_ANY_TRUE, DUITE_BYTE, "any"}, {&GIVE_PRODUCT, DUITE_BYTE, "product"}};
+    const char args[WIDTH * LARGEST] = {0};
+    duite_object object;
+
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        ck_assert_int_eq(duite_new(rt, CASES[i].type, WIDTH, &object), DUITE_OK);
+        ck_assert_int_eq(duite_fork(rt, CASES[i].kernel, args, 1, &object), DUITE_E_LAW);
+        ck_assert_msg(strstr(duite_message(), CASES[i].sentence), "%s", duite_message());
+        ck_assert_int_eq(duite_wait(rt), DUITE_E_LAW);
+        duite_free(rt, object);
+    }
 }
 
 UNIT_TEST(structures_in_bytes)

@@ -14,14 +14,19 @@ size_t prog_size(duite_type type)
     switch (type) {
     case DUITE_BYTE:
         return 1;
+    case DUITE_U16:
+        return 2;
+    case DUITE_CF64:
+        return 16;
     case DUITE_I32:
     case DUITE_F32:
         return 4;
     case DUITE_I64:
     case DUITE_F64:
         return 8;
+    default:
+        return 0;
     }
-    return 0;
 }
 
 static uint64_t digest(uint64_t hash, const void *data, size_t size)
@@ -69,11 +74,19 @@ static void put(duite_type type, duite_mode mode, void *data, size_t i, uint64_t
     uint64_t *big = data;
     float *f32 = data;
     double *f64 = data;
+    uint16_t *half = data;
     const unsigned odd = mode == DUITE_W ? 0 : mode == DUITE_RW ? 17 : 1;
 
     switch (type) {
     case DUITE_BYTE:
         byte[i] = (uint8_t)(odd ? byte[i] * odd + bits : bits);
+        break;
+    case DUITE_U16:
+        half[i] = (uint16_t)(odd ? half[i] * odd + bits : bits);
+        break;
+    case DUITE_CF64:
+        put(DUITE_F64, mode, f64, 2 * i, bits);
+        put(DUITE_F64, mode, f64, 2 * i + 1, bits * 5 + 1);
         break;
     case DUITE_I32:
         word[i] = odd ? word[i] * odd + (uint32_t)bits : (uint32_t)bits;
@@ -86,6 +99,8 @@ static void put(duite_type type, duite_mode mode, void *data, size_t i, uint64_t
         break;
     case DUITE_F64:
         f64[i] = !odd ? double_of(bits) : (odd == 1 ? f64[i] : f64[i] * 0.5) + double_of(bits);
+        break;
+    default:
         break;
     }
 }

@@ -112,6 +112,14 @@ static int is_named(const struct prog_op *op, unsigned object)
     return 0;
 }
 
+/* Laws of bytes and of numbers; min and max mean nothing for complex ones. */
+static int is_law_of(duite_type type, enum prog_law law)
+{
+    if (type == DUITE_CF64)
+        return law == PROG_SUM || law == PROG_MIX;
+    return (type == DUITE_BYTE) == (law == PROG_WEAVE);
+}
+
 static int fits(const struct make_scope *scope, unsigned place, duite_mode mode, enum prog_law law)
 {
     const struct prog_object *object = &scope->object[place];
@@ -120,7 +128,7 @@ static int fits(const struct make_scope *scope, unsigned place, duite_mode mode,
         return 0;
     if (!accumulates(mode))
         return 1;
-    return !object->max && (object->type == DUITE_BYTE) == (law == PROG_WEAVE) &&
+    return !object->max && is_law_of(object->type, law) &&
            (scope->right[place] != DUITE_CWP || scope->law[place] == law);
 }
 
@@ -166,6 +174,8 @@ static const duite_law *draw_law(struct maker *m, unsigned place, duite_mode mod
         return prog_law_given(scope->law[place]);
     if (scope->object[place].type == DUITE_BYTE)
         return prog_law_given(PROG_WEAVE);
+    if (scope->object[place].type == DUITE_CF64)
+        return prog_law_given(make_one_in(m, 2) ? PROG_SUM : PROG_MIX);
     return prog_law_given((enum prog_law)make_below(m, PROG_WEAVE));
 }
 

@@ -27,6 +27,7 @@ LAW_OF(i32_of, int32_t, (int32_t)((uint32_t)l * 5u + ((uint32_t)r ^ 0x2au)),
        (int32_t)((uint32_t)l + (uint32_t)r))
 LAW_OF(i64_of, int64_t, (int64_t)((uint64_t)l * 5u + ((uint64_t)r ^ 0x2au)),
        (int64_t)((uint64_t)l + (uint64_t)r))
+LAW_OF(u16_of, uint16_t, (uint16_t)(l * 5u + (r ^ 0x2au)), (uint16_t)(l + r))
 LAW_OF(f32_of, float, l * 0.375f + r * 0.5f, l + r)
 LAW_OF(f64_of, double, l * 0.375 + r * 0.5, l + r)
 
@@ -57,6 +58,14 @@ void prog_combine(enum prog_law law, duite_type type, size_t count, void *left, 
         case DUITE_F64:
             COMBINE(double, f64_of, law);
             break;
+        case DUITE_U16:
+            COMBINE(uint16_t, u16_of, law);
+            break;
+        case DUITE_CF64: /* sums and mixes alone, both part by part */
+            prog_combine(law, DUITE_F64, 2, (double *)left + 2 * i, (const double *)right + 2 * i);
+            break;
+        default:
+            break;
         }
 }
 
@@ -83,6 +92,14 @@ void prog_neutral(enum prog_law law, duite_type type, size_t count, void *values
             break;
         case DUITE_F64:
             NEUTRAL(double, (double)INFINITY, -(double)INFINITY);
+            break;
+        case DUITE_U16:
+            ((uint16_t *)values)[i] = law == PROG_MIN ? UINT16_MAX : (uint16_t)own;
+            break;
+        case DUITE_CF64:
+            prog_neutral(law, DUITE_F64, 2, (double *)values + 2 * i);
+            break;
+        default:
             break;
         }
 }

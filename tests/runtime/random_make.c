@@ -69,8 +69,8 @@ static size_t draw_count(struct maker *m)
 
 void make_new(struct maker *m)
 {
-    static const duite_type TYPES[] = {DUITE_BYTE, DUITE_I32, DUITE_I64,
-                                       DUITE_F32,  DUITE_F64, DUITE_F64};
+    static const duite_type TYPES[] = {DUITE_BYTE, DUITE_I32, DUITE_I64, DUITE_F32,
+                                       DUITE_F64,  DUITE_F64, DUITE_U16, DUITE_CF64};
     struct make_scope *scope = m->scope;
 
     if (scope->n_live == MAX_LIVE || scope->n == PROG_MAX_TABLE)

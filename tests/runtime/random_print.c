@@ -22,6 +22,15 @@ void prog_print_element(duite_type type, const void *data, size_t i, char *text,
     case DUITE_F64:
         snprintf(text, size, "%.17g (%a)", ((const double *)data)[i], ((const double *)data)[i]);
         break;
+    case DUITE_U16:
+        snprintf(text, size, "%u", ((const uint16_t *)data)[i]);
+        break;
+    case DUITE_CF64:
+        snprintf(text, size, "%a, %a", ((const double *)data)[2 * i],
+                 ((const double *)data)[2 * i + 1]);
+        break;
+    default:
+        break;
     }
 }
 

@@ -69,13 +69,16 @@ static void run_round(struct prog_machine *m, const struct prog_graph *graph)
 
 static int holds(struct prog_cell *flag)
 {
-    static const unsigned char zero[8];
+    static const unsigned char zero[16];
     const unsigned char *value = prog_cell_settle(flag)->value;
 
     if (flag->poison.number != PROG_NO_FAILURE.number || !flag->count)
         return 0;
     if (flag->type == DUITE_F64)
         return *(const double *)(const void *)value != 0;
+    if (flag->type == DUITE_CF64)
+        return ((const double *)(const void *)value)[0] != 0 ||
+               ((const double *)(const void *)value)[1] != 0;
     if (flag->type == DUITE_F32)
         return *(const float *)(const void *)value != 0;
     return memcmp(value, zero, prog_size(flag->type)) != 0;

@@ -203,10 +203,10 @@ typedef int duite_body(const duite_call *call);
 /* Tasks that fork. With call->rt, and on its own thread, a body may call the following. Objects:
  * duite_new, duite_new_sized, duite_free, duite_set, duite_set_sized, duite_get, duite_get_count.
  * Tasks: duite_fork, duite_fork_with (without a rank), duite_wait, duite_resize, duite_contribute,
- * duite_fail. Also calls that describe the runtime (duite_rank and the like). All others are
- * DUITE_E_STATE, as is any call from a thread of the program's own. In a body the calls are local:
- * children run on the rank of the task, unless a balancer delegates them, and no other rank knows
- * of them.
+ * duite_fail, duite_event_new, duite_complete. Also calls that describe the runtime (duite_rank and
+ * the like). All others are DUITE_E_STATE, as is any call from a thread of the program's own. In a
+ * body the calls are local: children run on the rank of the task, unless a balancer delegates them,
+ * and no other rank knows of them.
  *
  * Objects: a body names those it was given (param[i].object) and those it made. The table at
  * duite_mode lists the modes it may fork its children with. Other modes are DUITE_E_RIGHT, as are
@@ -269,6 +269,8 @@ typedef struct duite_kernel {
         *law[DUITE_MAX_ACCESS];    /* of the parameters with DUITE_CW or CWP; NULL: duite_sum */
     const duite_law *variadic_law; /* if variadic is DUITE_CW or CWP; NULL: duite_sum */
     int replicated;                /* 1: a task of the main program runs on every rank, see below */
+    int events; /* 1: its tasks may end later than their bodies, see duite_event_new. Rounds with
+                   such a task are forked when they are replayed */
 } duite_kernel;
 
 /* Replicated kernels: for small results that every rank needs, such as the scalars of an iteration.
@@ -278,6 +280,33 @@ typedef struct duite_kernel {
  * its inputs and arguments, not on call->rank, call->context or anything else that differs. Modes
  * are r, w and rw, without side effects (DUITE_E_KERNEL at start); forks name no rank
  * (DUITE_E_ARGUMENT). duite_counters count such a task once for each rank that runs it. */
+
+/* ---- Events ----
+ *
+ * A task of a kernel with `events` may wait for what happens outside of duite (a file, a device, a
+ * request of MPI, a thread of the program) without keeping a worker: its body makes an event,
+ * starts the work and returns. The task ends when its body is over and all its events are
+ * completed; only then others see its results. Until then its parameters' data stay where they are
+ * and may be read and written by their modes; `call`, args and the calls of a body end with the
+ * body. Such tasks run on the rank that duite_fork says. Checking mode calls their bodies once,
+ * with the parameters themselves. */
+
+/* Names something that is to happen: a value, freely copied, of this rank. */
+typedef struct duite_event {
+    uint32_t slot, generation;
+} duite_event;
+
+/* Makes an event of the body's task; a body may make several. In a body; local. Errors:
+ * DUITE_E_ARGUMENT (nowhere to put the event), DUITE_E_STATE (its kernel has no `events`),
+ * DUITE_E_MEMORY. */
+int duite_event_new(const duite_call *call, duite_event *event);
+
+/* The event has happened. code: 0, or that of a failure, with which the task fails, as if its body
+ * had returned it. Once for each event, from any thread of its rank, also before the body is over.
+ * An event that is never completed keeps duite_wait and duite_stop waiting; the report of a
+ * standstill names it. Local. Errors: DUITE_E_ARGUMENT (no runtime), DUITE_E_OBJECT (completed
+ * already, or never made). */
+int duite_complete(duite *rt, duite_event event, int code);
 
 /* ---- Start and stop ---- */
 

@@ -11,7 +11,7 @@ RUNTIME_PAGES = \
 	runtime/man/duite_balancer_names.3 runtime/man/duite_blocks.3 runtime/man/duite_body.3 runtime/man/duite_build.3 \
 	runtime/man/duite_call.3 runtime/man/duite_code.3 runtime/man/duite_code_text.3 runtime/man/duite_colocate.3 \
 	runtime/man/duite_contribute.3 runtime/man/duite_cores.3 runtime/man/duite_count.3 runtime/man/duite_count_all.3 runtime/man/duite_count_sized.3 \
-	runtime/man/duite_counters.3 runtime/man/duite_end.3 runtime/man/duite_fail.3 runtime/man/DUITE_FORK.3 \
+	runtime/man/duite_counters.3 runtime/man/duite_complete.3 runtime/man/duite_end.3 runtime/man/duite_event.3 runtime/man/duite_event_new.3 runtime/man/duite_fail.3 runtime/man/DUITE_FORK.3 \
 	runtime/man/duite_fork.3 runtime/man/duite_fork_at.3 runtime/man/duite_fork_with.3 runtime/man/duite_free.3 \
 	runtime/man/duite_get.3 runtime/man/duite_get_at.3 runtime/man/duite_get_count.3 runtime/man/duite_graph.3 \
 	runtime/man/duite_graph_args.3 runtime/man/duite_graph_bind.3 runtime/man/duite_graph_free.3 runtime/man/duite_graph_new.3 \

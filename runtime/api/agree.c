@@ -23,6 +23,8 @@ static uint64_t start_hash_kernels(const struct task_graph *graph)
         uint64_t replicated = k->replicated != 0;
         hash = XXH64(&args_size, sizeof args_size, hash);
         hash = XXH64(&replicated, sizeof replicated, hash);
+        uint64_t events = k->events != 0;
+        hash = XXH64(&events, sizeof events, hash);
         hash = data_law_hash_kernel(k, hash);
     }
     return hash;

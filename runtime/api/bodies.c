@@ -4,6 +4,7 @@
 #include "runtime/api/instance.h"
 
 #include "runtime/base/error.h"
+#include "runtime/task/event.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -236,4 +237,12 @@ int api_body_wait(struct duite_call_private *body)
     code = body_recall(body);
     const struct data_failure *failure = code ? NULL : task_first_failure(scope);
     return failure ? task_failure_error(body->graph, failure) : code;
+}
+
+/* From any thread. */
+int duite_complete(duite *rt, duite_event event, int code)
+{
+    if (!rt)
+        return base_error(DUITE_E_ARGUMENT, "duite_complete: no runtime");
+    return task_complete(&rt->graph, event, code);
 }

@@ -353,6 +353,8 @@ int check_call(struct check *check, const struct check_task *task, duite_call *c
 {
     enum { RUNS = 3 };
     const size_t n = call->n_params + 1;
+    if (task->kernel->events) /* others may still write when the body is over */
+        return task->kernel->body(call);
     struct check_region *region = base_alloc_zero(RUNS * n * sizeof *region);
     duite_param *param = base_alloc(RUNS * n * sizeof *param);
     if (!region || !param) {

@@ -64,8 +64,8 @@ static int fork_check_law(const duite_kernel *kernel, size_t i, const struct dat
         return DUITE_OK;
     return base_error(DUITE_E_LAW,
                       "kernel %s, parameter %zu: law %s is for %s, and object %u.%u has %s",
-                      kernel->name, i, law->name, data_law_types(law), name.slot,
-                      name.generation, data_type_name(object->type));
+                      kernel->name, i, law->name, data_law_types(law), name.slot, name.generation,
+                      data_type_name(object->type));
 }
 
 /* The object exists, is named once, may be used so and, under cw, can be accumulated into. */

@@ -9,6 +9,7 @@
  * for kernels with few accesses (task_fixed); and the general one, whose second pass is in
  * depend.c. The short ways leave to it what they do not know, before anything is changed. */
 #include "runtime/task/access.h"
+#include "runtime/task/event.h"
 #include "runtime/task/ready.h"
 
 #include <string.h>
@@ -231,11 +232,13 @@ static struct task *fork_body(const struct task_fork_call *call, const struct ta
     struct task_scope *scope = call->scope;
     const duite_kernel *kernel = call->kernel;
     const size_t round_at = task_round_at(kernel->args_size);
-    struct task *task =
-        task_new(scope, TASK_BODY, call->n,
-                 options->round ? round_at + sizeof options->round : kernel->args_size);
+    size_t rest = options->round ? round_at + sizeof options->round : kernel->args_size;
+    if (kernel->events)
+        rest = task_held_at(kernel->args_size) + sizeof(const struct data_failure *);
+    struct task *task = task_new(scope, TASK_BODY, call->n, rest);
     if (!task)
         return NULL;
+    task->state = kernel->events ? TASK_HELD : TASK_LOCAL;
     task->later = options->round != 0;
     if (task->later)
         memcpy((char *)task_rest(task, call->n) + round_at, &options->round, sizeof options->round);

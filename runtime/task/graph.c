@@ -16,7 +16,9 @@ struct task_failure {
 /* A replicated kernel leaves the same values on all ranks, and has no other effect. */
 static int kernel_check_replicated(const duite_kernel *kernel)
 {
-    const char *why = kernel->side_effects ? "has side effects" : NULL;
+    const char *why = kernel->side_effects ? "has side effects"
+                      : kernel->events     ? "has events, which would complete once for each rank"
+                                           : NULL;
     for (uint32_t i = 0; i <= DUITE_MAX_ACCESS && !why; i++) {
         duite_mode mode = i < DUITE_MAX_ACCESS ? kernel->access[i] : kernel->variadic;
         if (mode == DUITE_CW)
@@ -38,7 +40,8 @@ static int kernel_check(const duite_kernel *kernel, uint32_t index, struct task_
     *fixed = (struct task_fixed){.kernel = kernel,
                                  .index = index,
                                  .hash = task_fork_hash(task_fork_what(index, TASK_ANYWHERE)),
-                                 .few = kernel->variadic == DUITE_NONE && !kernel->replicated};
+                                 .few = kernel->variadic == DUITE_NONE && !kernel->replicated &&
+                                        !kernel->events};
     bool contributes = false;
     for (uint32_t i = 0; i < DUITE_MAX_ACCESS; i++) {
         duite_mode mode = kernel->access[i];
@@ -180,6 +183,7 @@ void task_graph_stop(struct task_graph *graph)
         base_free(node);
     }
     base_free(graph->history);
+    base_free(graph->events.event);
     for (uint32_t i = 0; i < graph->n_kernels; i++)
         base_free(graph->fixed[i].head);
     base_free(graph->fixed);

@@ -271,6 +271,8 @@ const struct data_failure *task_fail_task(const struct task *task, const struct 
 /* Its place: number and path. */
 void task_failure_place(struct data_failure *failure, const struct task *task,
                         const struct task_scope *inner);
+/* Poisons all that the task writes. */
+void task_poison_outputs(struct task *task, const struct data_failure *failure);
 /* The failure of a task for want of memory. */
 const struct data_failure *task_fail_memory(const struct task *task);
 struct data_packet *task_poison_packet(struct data_key key, const struct data_failure *failure);

@@ -2,6 +2,7 @@
  * in its inputs goes on to its outputs, and its body does not run. Publishing comes later:
  * finish.c. */
 #include "runtime/task/call.h"
+#include "runtime/task/event.h"
 
 #include "runtime/base/memory.h"
 #include "runtime/data/object.h"
@@ -140,8 +141,7 @@ const struct data_failure *task_body_failure(const struct duite_call_private *bo
     return task_fail_task(body->task, body->scope, &failure);
 }
 
-/* Poisons the task's outputs. */
-static void outputs_poison(struct task *task, const struct data_failure *failure)
+void task_poison_outputs(struct task *task, const struct data_failure *failure)
 {
     for (uint32_t i = 0; i < task->n; i++) {
         const struct task_access *access = &task->access[i];
@@ -191,8 +191,10 @@ __attribute__((always_inline)) static inline bool body_run(struct task_graph *gr
     } else if (!failure) {
         failure = elsewhere->take(task, param, elsewhere->result);
     }
-    if (failure)
-        outputs_poison(task, failure);
+    if (failure && task->state == TASK_HELD)
+        task_held_fail(task, failure);
+    else if (failure)
+        task_poison_outputs(task, failure);
     else if (other)
         outputs_resize(task, param);
     return runs;
@@ -205,7 +207,7 @@ static bool body_run_any(struct task_graph *graph, struct task_frame *frame, str
     const size_t bytes = (task->n ? task->n : 1) * sizeof(duite_param);
     duite_param *param = base_pool_take(bytes);
     if (!param) {
-        outputs_poison(task, task_fail_memory(task));
+        task_poison_outputs(task, task_fail_memory(task));
         return false;
     }
     bool ran = body_run(graph, frame, task, param, elsewhere);
@@ -250,9 +252,13 @@ bool task_run(struct task_graph *graph, struct worker *worker, struct task *task
               const duite_call *call)
 {
     if (task->state == TASK_VOID) {
-        outputs_poison(task, &fork_no_memory);
+        task_poison_outputs(task, &fork_no_memory);
         return false;
     }
+    if (task->state == TASK_ENDED)
+        return false;
+    if (task->state == TASK_HELD)
+        task_held_start(task);
     struct task_frame frame; /* of a body; not set otherwise */
     switch (task->type) {
     case TASK_BODY:

@@ -51,7 +51,9 @@ enum task_state {
     TASK_LOCAL = 0, /* nothing: it waits, runs and ends here, as its type says */
     TASK_VOID, /* memory ran out while it was forked: does not run, and poisons what it writes */
     TASK_DELEGATED, /* a BODY: goes to another rank in a message, until that rank answers */
-    TASK_LEAVES     /* PIECES, OFFLOADED: it ran, and its results are to be sent */
+    TASK_LEAVES,    /* PIECES, OFFLOADED: it ran, and its results are to be sent */
+    TASK_HELD,      /* a BODY whose kernel has `events`: ends when they are completed, too */
+    TASK_ENDED      /* ... which they are: it ran, and is to be ended */
 };
 
 struct task_scope;
@@ -78,7 +80,8 @@ _Static_assert(sizeof(struct task_access) == 16, "tasks that wait take little me
 /* One cache line, then the accesses, then, at a multiple of 16 bytes, the arguments or the union's
  * target. */
 struct task {
-    _Atomic uint32_t pending; /* accesses that wait, and 1 while it is being forked */
+    _Atomic uint32_t pending; /* accesses that wait, and 1 while it is being forked; then of a HELD
+                                 one its events, and 1 while the body runs */
     uint32_t n;
     struct queue_link link; /* for whoever holds the task: queues, lists */
     union {
@@ -200,6 +203,13 @@ typedef int task_check_body(struct queue_pool *pool, const duite_kernel *kernel,
 /* The task of another rank with this top scope is over, with all its descendants. */
 typedef void task_top_over(struct task_scope *top, struct worker *worker);
 
+/* Events of this rank by slot. */
+struct task_events {
+    struct task_event *event;
+    size_t capacity;
+    uint32_t n, vacant, pending;
+};
+
 struct task_graph {
     /* Read by all workers, with every task. */
     int rank, n_ranks;
@@ -238,6 +248,7 @@ struct task_graph {
     task_top_over *offloaded_over;
     pthread_mutex_t lock; /* of the rest, and of the failures of scopes */
     struct task_failure *failures;
+    struct task_events events;
     struct data_sum *unclosed; /* sums of ended tasks, kept for want of memory */
 };
 
@@ -394,7 +405,8 @@ const char *task_own_name(uint32_t number);
 /* True if the task calls a body of the program. */
 static inline bool task_has_body(const struct task *task)
 {
-    return task->state == TASK_LOCAL && TASK_IS(task, TASK_TYPES_WITH_BODY);
+    return (task->state == TASK_LOCAL || task->state == TASK_HELD) &&
+           TASK_IS(task, TASK_TYPES_WITH_BODY);
 }
 
 /* A packet of pieces came for an expected sum. NULL: it will not come. The context of comm is the

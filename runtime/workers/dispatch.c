@@ -3,6 +3,7 @@
  * folders below do not know each other's types. */
 #include "runtime/offload/offload.h"
 #include "runtime/plan/plan.h"
+#include "runtime/task/event.h"
 #include "runtime/workers/internal.h"
 
 bool work_run_task(struct task_graph *graph, struct worker *worker, struct task *task,
@@ -25,6 +26,8 @@ static void finish_changed(struct task_graph *graph, struct worker *worker, stru
         offload_sent(graph, worker, task);
     else if (task->type == TASK_OFFLOADED)
         offload_answered(graph, task);
+    else if (task->state == TASK_HELD || task->state == TASK_ENDED)
+        task_held_over(graph, worker, task);
     else
         task_finish(graph, worker, task);
 }

@@ -11,6 +11,7 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/offload/offload.h"
+#include "runtime/task/event.h"
 #include "runtime/workers/internal.h"
 
 #include <linux/membarrier.h>
@@ -266,6 +267,15 @@ static void report_channel(void *context, const struct comm_channel *channel)
                 words.text, channel->peer);
 }
 
+/* ---- Events ---- */
+
+static void report_event(void *context, const struct task *task, duite_event event)
+{
+    struct report *report = context;
+    report_line(report, "%s ends when the program completes event %u.%u (duite_complete)",
+                report_words(report, task).text, event.slot, event.generation);
+}
+
 /* ---- All of it ---- */
 
 /* Reports the call in which the main program waits, if it does. */
@@ -311,6 +321,7 @@ static void standstill_report(struct work_pool *pool, double seconds)
     const unsigned bodies = policies + report_bodies(&report, report_hold_workers(pool));
     const unsigned before = report.lines;
     const bool looked = !pool->setup.comm || comm_look(pool->setup.comm, &looker);
+    task_events_look(pool->setup.graph, report_event, &report);
     const uint64_t refused = pool->setup.comm ? comm_refused(pool->setup.comm) : 0;
     if (refused)
         report_line(&report, "%llu results of tasks on other ranks named no delegated task",

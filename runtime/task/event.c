@@ -1,0 +1,143 @@
+/* Events: a task of a kernel with `events` is HELD. It ends when its body is over and all events
+ * that the body made are completed. task->pending counts both; the last one ends the task. A thread
+ * of the program cannot end tasks, so it hands the task to the workers by the shared queue. */
+#include "runtime/task/event.h"
+
+#include "runtime/base/memory.h"
+#include "runtime/task/internal.h"
+
+/* The generation of a slot is odd while its event is not completed. */
+struct task_event {
+    struct task *task;
+    uint32_t generation, vacant; /* vacant: the next slot without an event, or 0 */
+};
+
+/* ---- The held task ---- */
+
+static _Atomic(const struct data_failure *) *held_failure(struct task *task)
+{
+    const size_t args_size = task->scope->graph->kernels[task->kernel]->args_size;
+    return (void *)((char *)task_rest(task, task->n) + task_held_at(args_size));
+}
+
+void task_held_start(struct task *task)
+{
+    atomic_store_explicit(held_failure(task), NULL, memory_order_relaxed);
+    atomic_store_explicit(&task->pending, 1, memory_order_relaxed);
+}
+
+void task_held_fail(struct task *task, const struct data_failure *failure)
+{
+    const struct data_failure *none = NULL;
+    atomic_compare_exchange_strong(held_failure(task), &none, failure);
+}
+
+/* True if this was the last of what holds it. */
+static bool held_release(struct task *task)
+{
+    return atomic_fetch_sub_explicit(&task->pending, 1, memory_order_acq_rel) == 1;
+}
+
+void task_held_over(struct task_graph *graph, struct worker *worker, struct task *task)
+{
+    if (task->state == TASK_HELD && !held_release(task))
+        return; /* its events end it, at any moment from now on */
+    const struct data_failure *failure = atomic_load(held_failure(task));
+    if (failure)
+        task_poison_outputs(task, failure);
+    task_finish(graph, worker, task);
+}
+
+/* ---- Events ---- */
+
+/* The table's lock is held. Slot 0 stays free, so that {0, 0} names nothing. NULL without memory.
+ */
+static struct task_event *event_take(struct task_events *events, uint32_t *slot)
+{
+    *slot = events->vacant;
+    if (!*slot) {
+        const size_t n = events->n ? events->n : 1;
+        if (!BASE_GROW(events->event, events->capacity, n + 1))
+            return NULL;
+        *slot = (uint32_t)n;
+        events->n = (uint32_t)n + 1;
+        events->event[n] = (struct task_event){0};
+    }
+    struct task_event *event = events->event + *slot;
+    events->vacant = event->vacant;
+    event->generation++;
+    events->pending++;
+    return event;
+}
+
+int duite_event_new(const duite_call *call, duite_event *event)
+{
+    struct task *task = call->own->task;
+    struct task_graph *graph = call->own->graph;
+    uint32_t slot;
+    if (!event)
+        return base_error(DUITE_E_ARGUMENT, "duite_event_new: nowhere to put the event");
+    *event = (duite_event){0, 0};
+    if (task->state != TASK_HELD)
+        return base_error(DUITE_E_STATE,
+                          "duite_event_new: kernel %s does not say that its tasks have events",
+                          graph->kernels[task->kernel]->name);
+    pthread_mutex_lock(&graph->lock);
+    struct task_event *own = event_take(&graph->events, &slot);
+    if (own) {
+        own->task = task;
+        *event = (duite_event){slot, own->generation};
+        atomic_fetch_add_explicit(&task->pending, 1, memory_order_relaxed);
+    }
+    pthread_mutex_unlock(&graph->lock);
+    return own ? DUITE_OK : base_no_memory("an event");
+}
+
+/* Takes the event out of the table. NULL: it is not there. */
+static struct task *event_remove(struct task_graph *graph, duite_event name)
+{
+    struct task_events *events = &graph->events;
+    struct task *task = NULL;
+    pthread_mutex_lock(&graph->lock);
+    struct task_event *event = name.slot < events->n ? events->event + name.slot : NULL;
+    if (event && event->generation == name.generation && name.generation % 2) {
+        task = event->task;
+        event->generation++;
+        event->vacant = events->vacant;
+        events->vacant = name.slot;
+        events->pending--;
+    }
+    pthread_mutex_unlock(&graph->lock);
+    return task;
+}
+
+int task_complete(struct task_graph *graph, duite_event event, int code)
+{
+    struct task *task = event_remove(graph, event);
+    if (!task)
+        return base_error(DUITE_E_OBJECT, "duite_complete: event %u.%u was %s", event.slot,
+                          event.generation, event.slot ? "completed already" : "never made");
+    if (code) {
+        struct data_failure failure = {.code = code, .text = "its event was completed with it"};
+        task_held_fail(task, task_fail_task(task, NULL, &failure));
+    }
+    if (!held_release(task))
+        return DUITE_OK;
+    task->state = TASK_ENDED;
+    queue_put(&graph->pool->shared, task);
+    queue_wake_one(graph->pool, DUITE_NO_QUEUE);
+    return DUITE_OK;
+}
+
+unsigned task_events_look(struct task_graph *graph, task_event_seen *seen, void *context)
+{
+    const struct task_events *events = &graph->events;
+    pthread_mutex_lock(&graph->lock); /* no task with an event ends meanwhile */
+    for (uint32_t slot = 1; slot < events->n; slot++)
+        if (events->event[slot].generation % 2)
+            seen(context, events->event[slot].task,
+                 (duite_event){slot, events->event[slot].generation});
+    const unsigned n = events->pending;
+    pthread_mutex_unlock(&graph->lock);
+    return n;
+}

@@ -1,0 +1,35 @@
+#ifndef DUITE_TASK_EVENT_H
+#define DUITE_TASK_EVENT_H
+
+#include "runtime/task/task.h"
+
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
+
+/* Tasks that end later than their bodies: event.c. */
+
+/* The offset in task_rest of a HELD task's failure, behind its round (task_round_at). */
+static inline size_t task_held_at(size_t args_size)
+{
+    return task_round_at(args_size) + sizeof(uint64_t);
+}
+
+/* The body of a HELD task is about to run, or its inputs are poisoned. */
+void task_held_start(struct task *task);
+
+/* The body or an event failed: the first failure counts when the task ends. Any thread. */
+void task_held_fail(struct task *task, const struct data_failure *failure);
+
+/* Ends a task whose body is over, unless an event is not completed (HELD), or all of whose events
+ * are completed, too (ENDED). The caller has the task no more. */
+void task_held_over(struct task_graph *graph, struct worker *worker, struct task *task);
+
+/* duite_complete. Any thread. Errors: DUITE_E_OBJECT. */
+int task_complete(struct task_graph *graph, duite_event event, int code);
+
+/* Shows all events that are not completed. Returns how many there are. Any thread. */
+typedef void task_event_seen(void *context, const struct task *task, duite_event event);
+unsigned task_events_look(struct task_graph *graph, task_event_seen *seen, void *context);
+
+#pragma GCC visibility pop
+
+#endif

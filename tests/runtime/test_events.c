@@ -1,0 +1,258 @@
+/* Events: tasks end when their bodies are over and their events are completed, in any order and by
+ * any thread; until then nobody sees their results. */
+#include "tests/negative/misuse.h"
+#include "tests/support/unit.h"
+
+#include <pthread.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { LATE = 3000 /* microseconds after the body */, AT_ONCE = 200 };
+
+static duite *rt;
+
+/* ---- A thread of the program that completes events ---- */
+
+struct late {
+    duite_event event[2];
+    int n, code, wait; /* wait: microseconds before it begins */
+    int64_t *value;    /* where it adds 1 for each event */
+};
+
+static void *complete_late(void *argument)
+{
+    struct late *late = argument;
+
+    usleep((useconds_t)late->wait);
+    for (int i = 0; i < late->n; i++) {
+        if (late->value)
+            ++*late->value;
+        ck_assert_int_eq(duite_complete(rt, late->event[i], i ? 0 : late->code), DUITE_OK);
+    }
+    free(late);
+    return NULL;
+}
+
+struct hold_args {
+    int events, code, wait; /* events: 0, 1 or 2 */
+    int own;                /* the body returns this code */
+    int at_once;            /* the body completes them itself */
+};
+
+/* Adds 1, and leaves another 1 for each event to another thread. */
+static int hold(const duite_call *call)
+{
+    const struct hold_args *args = call->args;
+    struct late *late = malloc(sizeof *late);
+    pthread_t thread;
+
+    *late = (struct late){.n = args->events,
+                          .code = args->code,
+                          .wait = args->wait,
+                          .value = duite_out(call, 0, int64_t)};
+    ++*late->value;
+    for (int i = 0; i < args->events; i++)
+        ck_assert_int_eq(duite_event_new(call, &late->event[i]), DUITE_OK);
+    if (args->at_once) {
+        complete_late(late);
+    } else {
+        ck_assert_int_eq(pthread_create(&thread, NULL, complete_late, late), 0);
+        pthread_detach(thread);
+    }
+    return args->own;
+}
+
+static int twice(const duite_call *call)
+{
+    *duite_out(call, 1, int64_t) = 2 * *duite_in(call, 0, int64_t);
+    return 0;
+}
+
+/* Its kernel has no events. */
+static int without(const duite_call *call)
+{
+    duite_event event = {1, 1};
+    const int code = duite_event_new(call, &event);
+
+    ck_assert_uint_eq(event.slot, 0);
+    ck_assert_ptr_nonnull(strstr(duite_message(), "without"));
+    return code == DUITE_E_STATE ? 0 : 1;
+}
+
+static const duite_kernel HOLD = {.name = "hold",
+                                  .body = hold,
+                                  .access = {DUITE_RW},
+                                  .args_size = sizeof(struct hold_args),
+                                  .events = 1};
+static const duite_kernel TWICE = {.name = "twice", .body = twice, .access = {DUITE_R, DUITE_W}};
+static const duite_kernel WITHOUT = {.name = "without", .body = without};
+
+/* Forks a child that is held, and waits for it. */
+static int parent(const duite_call *call)
+{
+    const struct hold_args args = {.events = 2, .wait = LATE};
+    int64_t value = 0;
+
+    DUITE_FORK(call->rt, &HOLD, &args, call->param[0].object);
+    if (duite_get(call->rt, call->param[0].object, &value))
+        return 1;
+    return value == 3 ? duite_wait(call->rt) : 2;
+}
+static const duite_kernel PARENT = {.name = "parent", .body = parent, .access = {DUITE_RWP}};
+
+static void start(unsigned threads, int check, size_t window)
+{
+    static const duite_kernel *const KERNELS[] = {&HOLD, &TWICE, &WITHOUT, &PARENT, NULL};
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+
+    misuse_mpi();
+    options.kernels = KERNELS;
+    options.threads = threads;
+    options.check = check;
+    options.window = window;
+    ck_assert_msg(!duite_start(&rt, &options), "%s", duite_message());
+}
+
+static duite_object number(void)
+{
+    duite_object object;
+
+    ck_assert_int_eq(duite_new(rt, DUITE_I64, 1, &object), DUITE_OK);
+    return object;
+}
+
+static int64_t value_of(duite_object object)
+{
+    int64_t value = -1;
+
+    ck_assert_msg(!duite_get(rt, object, &value), "%s", duite_message());
+    return value;
+}
+
+/* Readers see what the other thread wrote, for any number of events, workers and windows. */
+UNIT_TEST(results_wait)
+{
+    for (unsigned threads = 1; threads < 4; threads++)
+        for (int check = 0; check < 2; check++) {
+            start(threads, check, threads == 2);
+            for (int i = 0; i < 12; i++) {
+                const struct hold_args args = {
+                    .events = i % 3, .wait = i % 2 ? LATE : 0, .at_once = i % 4 == 3};
+                const duite_object a = number(), b = number();
+
+                DUITE_FORK(rt, &HOLD, &args, a);
+                DUITE_FORK(rt, &HOLD, &args, a);
+                DUITE_FORK(rt, &TWICE, NULL, a, b);
+                ck_assert_int_eq(value_of(b), 4 * (1 + args.events));
+                duite_free(rt, a);
+                duite_free(rt, b);
+            }
+            ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+        }
+}
+
+/* Held tasks keep no worker: many at once, on one thread. */
+UNIT_TEST(many_at_once)
+{
+    const struct hold_args args = {.events = 1, .wait = LATE};
+    duite_object object[AT_ONCE];
+
+    start(1, 0, 0);
+    for (int i = 0; i < AT_ONCE; i++) {
+        object[i] = number();
+        DUITE_FORK(rt, &HOLD, &args, object[i]);
+    }
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+    for (int i = 0; i < AT_ONCE; i++) {
+        ck_assert_int_eq(value_of(object[i]), 2);
+        duite_free(rt, object[i]);
+    }
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+}
+
+/* An event, or the body, fails the task: it poisons, once, and only after the other events. */
+UNIT_TEST(failures)
+{
+    static const struct hold_args CASES[] = {{.events = 1, .code = 7},
+                                             {.events = 2, .code = 7, .wait = LATE},
+                                             {.events = 2, .code = 7, .at_once = 1},
+                                             {.events = 0, .own = 7},
+                                             {.events = 1, .own = 7, .wait = LATE}};
+    int64_t value;
+
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        start(2, 0, 0);
+        const duite_object a = number(), b = number();
+        DUITE_FORK(rt, &HOLD, &CASES[i], a);
+        DUITE_FORK(rt, &TWICE, NULL, a, b);
+        ck_assert_int_eq(duite_get(rt, b, &value), 7);
+        ck_assert_ptr_nonnull(strstr(duite_message(), "kernel hold"));
+        ck_assert_int_eq(duite_wait(rt), 7);
+        ck_assert_int_eq(duite_set(rt, a, NULL), DUITE_OK); /* a w heals */
+        ck_assert_int_eq(value_of(a), 0);
+        duite_free(rt, a);
+        duite_free(rt, b);
+        ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+    }
+}
+
+UNIT_TEST(misuse)
+{
+    start(1, 0, 0);
+    ck_assert_int_eq(duite_fork(rt, &WITHOUT, NULL, 0, NULL), DUITE_OK);
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+    ck_assert_int_eq(duite_complete(rt, (duite_event){0, 0}, 0), DUITE_E_OBJECT);
+    ck_assert_ptr_nonnull(strstr(duite_message(), "never made"));
+    const struct hold_args args = {.events = 1, .at_once = 1};
+    const duite_object a = number();
+    DUITE_FORK(rt, &HOLD, &args, a);
+    ck_assert_int_eq(value_of(a), 2);
+    ck_assert_int_eq(duite_complete(rt, (duite_event){1, 1}, 0), DUITE_E_OBJECT);
+    ck_assert_ptr_nonnull(strstr(duite_message(), "completed already"));
+    ck_assert_int_eq(duite_complete(rt, (duite_event){9, 1}, 0), DUITE_E_OBJECT);
+    ck_assert_int_eq(duite_complete(NULL, (duite_event){1, 1}, 0), DUITE_E_ARGUMENT);
+    duite_free(rt, a);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+}
+
+/* A body waits for a child that is held, also on its only thread. */
+UNIT_TEST(children)
+{
+    for (unsigned threads = 1; threads < 3; threads++) {
+        start(threads, 0, 0);
+        const duite_object a = number();
+        DUITE_FORK(rt, &PARENT, NULL, a);
+        ck_assert_int_eq(value_of(a), 3);
+        duite_free(rt, a);
+        ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+    }
+}
+
+struct round {
+    duite_object a, b;
+};
+
+static int build(duite *runtime, void *context)
+{
+    const struct hold_args args = {.events = 1, .wait = 200};
+    const struct round *round = context;
+
+    DUITE_FORK(runtime, &HOLD, &args, round->a);
+    return DUITE_FORK(runtime, &TWICE, NULL, round->a, round->b);
+}
+
+UNIT_TEST(replays)
+{
+    start(2, 0, 0);
+    struct round round = {number(), number()};
+    duite_graph graph;
+    ck_assert_int_eq(duite_graph_new(rt, build, &round, &graph), DUITE_OK);
+    ck_assert_int_eq(duite_replay(rt, graph, 5), DUITE_OK);
+    ck_assert_int_eq(value_of(round.b), 20);
+    duite_graph_free(rt, graph);
+    duite_free(rt, round.a);
+    duite_free(rt, round.b);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+}

@@ -5,6 +5,7 @@
 #include "tests/support/ranks.h"
 
 #include <stdint.h>
+#include <stdio.h>
 
 static int cuts; /* whether receives are too short: in this case */
 
@@ -25,6 +26,12 @@ static int build(duite *rt, void *context)
 RANKS_CASE(cut)
 {
     misuse_mpi();
+#ifdef MPICH_VERSION
+    if (ranks > 1) {
+        puts("MPICH's MPI_Testsome asks MPI_COMM_WORLD what to do and ends the job");
+        return 77;
+    }
+#endif
     duite *rt = misuse_start(MPI_COMM_WORLD, 2);
     duite_object pair[] = {misuse_new(rt, 1), misuse_new(rt, 1)};
     duite_graph graph;

@@ -9,6 +9,7 @@
 #include "runtime/map/map.h"
 #include "runtime/offload/offload.h"
 #include "runtime/sched/sched.h"
+#include "runtime/task/event.h"
 #include "runtime/workers/topology.h"
 
 #include <pthread.h>
@@ -215,6 +216,7 @@ static void instance_end(duite *rt)
 {
     if (api_is_broken(rt))
         api_give_up(rt);
+    task_events_settle(&rt->graph);
     work_stop(rt->pool);
     base_marks_stop(rt->marks);
     plan_memo_stop(rt->memo);

@@ -158,7 +158,7 @@ static void record_use_all(struct plan_record *record, const struct task_fork_ca
     for (size_t i = 0; i < call->n; i++) {
         const duite_mode held = data_mode_of(call->kernel, i), mode = task_immediate(held);
         const duite_law *law = mode == DUITE_CW ? data_law_of(call->kernel, i) : NULL;
-        record->forked |= task_postponed(held) || call->kernel->events;
+        record->forked |= task_postponed(held);
         record_use(record, call->objects[i], mode, law);
     }
 }
@@ -179,6 +179,7 @@ int plan_record_fork(struct plan_record *record, const struct task_options *opti
     if (!fork)
         return DUITE_E_MEMORY;
     record_use_all(record, &call);
+    record->forked |= kernel->events != 0;
     if (owner != TASK_NOBODY)
         fork->owner = record->access[fork->first + owner].object;
     if (graph->n_ranks > 1)

@@ -6,6 +6,8 @@
 #include "runtime/base/memory.h"
 #include "runtime/task/internal.h"
 
+#include <sched.h>
+
 /* The generation of a slot is odd while its event is not completed. */
 struct task_event {
     struct task *task;
@@ -111,22 +113,35 @@ static struct task *event_remove(struct task_graph *graph, duite_event name)
     return task;
 }
 
-int task_complete(struct task_graph *graph, duite_event event, int code)
+/* The task may end at once, and the program may stop the runtime. */
+static void event_pass_on(struct task_graph *graph, struct task *task)
 {
-    struct task *task = event_remove(graph, event);
-    if (!task)
-        return base_error(DUITE_E_OBJECT, "duite_complete: event %u.%u was %s", event.slot,
-                          event.generation, event.slot ? "completed already" : "never made");
-    if (code) {
-        struct data_failure failure = {.code = code, .text = "its event was completed with it"};
-        task_held_fail(task, task_fail_task(task, NULL, &failure));
-    }
-    if (!held_release(task))
-        return DUITE_OK;
     task->state = TASK_ENDED;
     queue_put(&graph->pool->shared, task);
     queue_wake_one(graph->pool, DUITE_NO_QUEUE);
-    return DUITE_OK;
+}
+
+void task_events_settle(struct task_graph *graph)
+{
+    while (atomic_load_explicit(&graph->events.inside, memory_order_acquire))
+        sched_yield();
+}
+
+int task_complete(struct task_graph *graph, duite_event event, int code)
+{
+    atomic_fetch_add_explicit(&graph->events.inside, 1, memory_order_relaxed);
+    struct task *task = event_remove(graph, event);
+    if (task && code) {
+        struct data_failure failure = {.code = code, .text = "its event was completed with it"};
+        task_held_fail(task, task_fail_task(task, NULL, &failure));
+    }
+    if (task && held_release(task))
+        event_pass_on(graph, task);
+    atomic_fetch_sub_explicit(&graph->events.inside, 1, memory_order_release);
+    if (task)
+        return DUITE_OK;
+    return base_error(DUITE_E_OBJECT, "duite_complete: event %u.%u was %s", event.slot,
+                      event.generation, event.slot ? "completed already" : "never made");
 }
 
 unsigned task_events_look(struct task_graph *graph, task_event_seen *seen, void *context)

@@ -26,6 +26,9 @@ void task_held_over(struct task_graph *graph, struct worker *worker, struct task
 /* duite_complete. Any thread. Errors: DUITE_E_OBJECT. */
 int task_complete(struct task_graph *graph, duite_event event, int code);
 
+/* Waits until no thread is in task_complete any more. All tasks are over. */
+void task_events_settle(struct task_graph *graph);
+
 /* Shows all events that are not completed. Returns how many there are. Any thread. */
 typedef void task_event_seen(void *context, const struct task *task, duite_event event);
 unsigned task_events_look(struct task_graph *graph, task_event_seen *seen, void *context);

@@ -208,6 +208,7 @@ struct task_events {
     struct task_event *event;
     size_t capacity;
     uint32_t n, vacant, pending;
+    _Atomic uint32_t inside; /* threads in task_complete */
 };
 
 struct task_graph {

@@ -307,6 +307,7 @@ void prog_args_fill(const struct prog *prog, const struct prog_op *op,
     args->exceeds = op->exceeds;
     args->sometimes = op->sometimes != 0;
     args->ends = op->ends != 0;
+    args->holds = prog->kernel[op->kernel].events != 0;
     args->rank = op->rank;
     args->pause = op->pause;
     args->number = op->number;

@@ -3,8 +3,10 @@
 
 #include "tests/runtime/random_run.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 int prog_call_new(struct run_scope *scope, const struct prog_op *op)
 {
@@ -153,6 +155,44 @@ static uint64_t make_calls(const duite_call *call, uint64_t hash)
     return hash;
 }
 
+/* ---- Events ---- */
+
+struct held {
+    duite *rt;
+    duite_event event;
+    unsigned microseconds;
+};
+
+static void *complete(void *argument)
+{
+    struct held held = *(struct held *)argument;
+
+    free(argument);
+    usleep(held.microseconds);
+    duite_complete(held.rt, held.event, 0);
+    return NULL;
+}
+
+/* The task ends some time before or after its body; without memory or a thread it ends with it. */
+static void hold(const duite_call *call, uint64_t hash)
+{
+    struct held *held = malloc(sizeof *held);
+    pthread_t thread;
+
+    if (!held)
+        return;
+    *held = (struct held){.rt = call->rt, .microseconds = (unsigned)(hash % 200)};
+    if (duite_event_new(call, &held->event)) {
+        prog_body_wrong(call->context, __LINE__, 0);
+        free(held);
+    } else if (hash % 3 && !pthread_create(&thread, NULL, complete, held)) {
+        pthread_detach(thread);
+    } else {
+        held->microseconds = 0;
+        complete(held);
+    }
+}
+
 int prog_body(const duite_call *call)
 {
     const struct prog_args *args = call->args;
@@ -160,5 +200,7 @@ int prog_body(const duite_call *call)
 
     if (args->n_inner)
         hash = make_calls(call, hash);
+    if (((const struct prog_args *)call->args)->holds)
+        hold(call, hash);
     return prog_body_end(call, hash);
 }

@@ -76,6 +76,7 @@ void make_kernels(struct maker *m)
             kernel->variadic = draw_mode(m);
         kernel->variadic_law = draw_any_law(m, kernel->variadic);
         kernel->replicated = may_replicate(kernel) && make_one_in(m, 3);
+        kernel->events = !kernel->replicated && make_one_in(m, 5);
     }
 }
 

@@ -93,7 +93,7 @@ struct prog_args {
     uint64_t seed;
     size_t body, n_inner;
     int fails, rank;
-    uint8_t sometimes, ends;
+    uint8_t sometimes, ends, holds; /* holds: its kernel has events */
     unsigned pause, number, n, exceeds;
     uint32_t count[PROG_MAX_PARAMS], max[PROG_MAX_PARAMS]; /* most 0: the size is fixed */
     uint8_t type[PROG_MAX_PARAMS], mode[PROG_MAX_PARAMS], law[PROG_MAX_PARAMS];

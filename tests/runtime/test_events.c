@@ -5,6 +5,7 @@
 
 #include <pthread.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -228,6 +229,31 @@ UNIT_TEST(children)
         duite_free(rt, a);
         ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
     }
+}
+
+/* The report of a standstill names the task and its event. */
+UNIT_TEST(never_completed)
+{
+    const struct hold_args args = {.events = 1, .wait = 1000000};
+    const int standard_error = dup(STDERR_FILENO);
+    FILE *said = tmpfile();
+    char text[2000] = "";
+
+    ck_assert_ptr_nonnull(said);
+    setenv("DUITE_STUCK_SECONDS", "0.2", 1);
+    start(2, 0, 0);
+    const duite_object a = number();
+    DUITE_FORK(rt, &HOLD, &args, a);
+    dup2(fileno(said), STDERR_FILENO);
+    const int64_t value = value_of(a);
+    dup2(standard_error, STDERR_FILENO);
+    ck_assert_int_eq(value, 2);
+    rewind(said);
+    ck_assert_uint_gt(fread(text, 1, sizeof text - 1, said), 0);
+    ck_assert_msg(strstr(text, "(kernel hold) ends when the program completes event 1.1"), "%s",
+                  text);
+    duite_free(rt, a);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
 
 struct round {

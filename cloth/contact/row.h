@@ -43,8 +43,8 @@ struct contact_row {
     double firm;           /* how many times as stiff as others it is; 1 or less: as stiff */
     double energy, rested; /* where the step began: the work taken up so far, the load */
     double start, aim;     /* the gap there; the gap where the push is the load */
-    double hold, span;     /* stiffness across the normal; length of the step, s: of the step before
-                            * until this one begins */
+    double hold, part;     /* stiffness across the normal; length of the step, of that of steps that
+                            * are not halved: of the step before until this one begins */
     double pushed; /* by the solve before of the same step: 1 it was, -1 it was not; 0: there was
                     * none */
 };
@@ -126,7 +126,8 @@ PHYS_INLINE double contact_row_change(const struct contact_row *row, double stif
     const double change = contact_row_law(row, row->start) - row->rested;
     const double lacks = row->thickness - row->start;
     const double grown = ldexp(CONTACT_ROW_LIFTS * stiffness, (int)row->held - CONTACT_ROW_HOLDS);
-    const double most = lacks * fmin(grown, CONTACT_ROW_RISES * contact_row_slope(row, row->start));
+    const double most =
+        row->part * lacks * fmin(grown, CONTACT_ROW_RISES * contact_row_slope(row, row->start));
     return contact_row_is_pinched(row) || fabs(change) < most ? change : copysign(most, change);
 }
 
@@ -160,28 +161,45 @@ PHYS_INLINE double contact_row_held(const struct contact_row *row, double gap, d
     const double lacked = row->thickness - row->start, law = contact_row_law(row, row->start);
     const double lift =
         fabs(row->aim - row->start) + fabs(row->load - row->rested) / row->stiffness;
-    const double aimed = fmax(lift, CONTACT_ROW_LIFTS * lacked);
+    const double aimed = fmax(lift, row->part * CONTACT_ROW_LIFTS * lacked);
     if (!(row->hard > 0 && push > 0 && lacked > 0 && gap < row->thickness))
         return 0;
     if (contact_row_is_pinched(row) && !(gap < (1 - CONTACT_ROW_COUNTS) * row->thickness))
         return 0;
     if (row->held >= CONTACT_ROW_HOLDS)
         return contact_row_change(row, row->hold) == law - row->rested ? CONTACT_ROW_PINCHED
-                                                                       : row->held + 1;
+                                                                       : row->held + row->part;
     if (!(fmax(law, row->rested) > CONTACT_ROW_COUNTS * row->hard))
         return 0;
     const double gives = row->rested < law ? CONTACT_ROW_GIVES : CONTACT_ROW_CARRIES;
-    return gap - row->start < gives * aimed ? row->held + 1 : row->held / 2;
+    return gap - row->start < gives * aimed ? row->held + row->part : row->held / 2;
 }
 
 /* ---- A step ---- */
 
-/* The lift, m, that a contact of stiffness k is lent where its pair failed. An obstacle lends no
- * more than the bound of the law: it does not give way, and in short steps would throw what has no
- * room. */
+/* The lift, m, of one asked for that a contact of stiffness k is lent. It ends at a push of `most`,
+ * N. It is slower in shorter steps, which are stiffer and would throw what they lift. */
+PHYS_INLINE double contact_row_lends(const struct contact_row *row, double lift, double most,
+                                     double k)
+{
+    const double slow = row->part * row->part * lift;
+    return row->hard > 0 ? fmin(slow, fmax(most - row->rested, 0) / k) : lift;
+}
+
+/* The lift that a contact is lent whose pair failed. An obstacle lends no more than the bound of
+ * the law, as it does not give way. */
 PHYS_INLINE double contact_row_yields(const struct contact_row *row, double lift, double k)
 {
-    return row->solid > 0 && row->hard > 0 ? fmin(lift, contact_row_law(row, 0) / k) : lift;
+    return row->solid > 0 ? contact_row_lends(row, lift, contact_row_law(row, 0), k) : lift;
+}
+
+/* The lift that a contact is lent where its load rests. It is lifted no harder than compressed
+ * cloth pushes at its gap: two contacts without room, each of which lifts against the other, would
+ * push ever harder. */
+PHYS_INLINE double contact_row_raises(const struct contact_row *row, double lift, double k)
+{
+    const double most = fmax(contact_row_law(row, row->gap), CONTACT_ROW_COUNTS * row->hard);
+    return contact_row_lends(row, lift, most, k);
 }
 
 /* Begins a step of a contact that may open. */
@@ -193,7 +211,7 @@ PHYS_INLINE void contact_row_lift(struct contact_row *row, double stiffness)
     const double rise = lacks > 0 ? rises * lacks : lacks;
     const double most = (sqrt(2 * k * row->energy) - row->rested) / k;
     const double lifts = lacks > 0 && row->rested > 0 && most * k > -CONTACT_ROW_EMPTY * row->rested
-                             ? CONTACT_ROW_LIFTS * lacks
+                             ? contact_row_raises(row, CONTACT_ROW_LIFTS * lacks, k)
                              : most;
     const double allowed =
         firm > 1 && lacks > 0 ? contact_row_yields(row, rise, k) : (most > lifts ? most : lifts);
@@ -205,18 +223,18 @@ PHYS_INLINE void contact_row_lift(struct contact_row *row, double stiffness)
 }
 
 /* A step begins, or is solved again, with a row that has the gap of its begin. stiffness: of rows
- * that are not firm; h: s, its length. */
-PHYS_INLINE void contact_row_begin(struct contact_row *row, double stiffness, double h)
+ * that are not firm; part: its length, of that of steps that are not halved. */
+PHYS_INLINE void contact_row_begin(struct contact_row *row, double stiffness, double part)
 {
     const double softer = row->hold > 0 ? row->hold / stiffness : 1;
     row->start = row->gap;
+    row->slid *= row->part > 0 ? part / row->part : 1;
+    row->part = part;
     if (row->held >= CONTACT_ROW_HOLDS && row->gap < row->thickness)
         contact_row_compress(row, stiffness);
     else
         contact_row_lift(row, stiffness);
     row->hold = stiffness;
-    row->slid *= row->span > 0 ? h / row->span : 1;
-    row->span = h;
     row->slip *= softer < 1 ? softer : sqrt(softer);
 }
 
@@ -372,7 +390,7 @@ PHYS_INLINE void contact_row_end(const struct contact_row *row, const phys_vec *
                        ? contact_row_stored(row, gap, load, contact_row_is_pinched(next))
                        : contact_row_energy(row, point, load);
     next->hold = row->hold;
-    next->span = row->span;
+    next->part = row->part;
     next->pushed = 0;
     next->firm = fmax(next->firm, CONTACT_ROW_SOFTENS * row->firm);
 }

@@ -60,6 +60,15 @@ creeps() { # SCENE OPTION...: how far its held border moves in 5 s
 ok "it does not creep" creeps
 ok "it does not creep, h = 10 ms" creeps --set time.h=0.01
 
+# Nothing moves in it but a flap that waves, so steps are halved where it lands alone: no contact presses harder the shorter they are.
+pinch flap 0.0005 0.05
+rests() {
+    run flap.yaml --report report.json --set time.end=1.5 --set 'cloths[0].mesh={grid: {width: 0.08, height: 0.08, nx: 9, ny: 9}}' || return 1
+    grep -E '"(steps|steps_halved|shortest_step)"' report.json
+    test "$(value steps)" -lt 600
+}
+ok "it rests in steps that are seldom halved" rests
+
 # Eight sheets at 100 m/s, which pass each other in the first step: in it 15 pairs fail a vertex.
 layers() {
     for i in 0 1 2 3; do

@@ -334,7 +334,7 @@ static bool certified_is(const struct model *model)
 static void make_row(const struct flow *flow, const struct flow_step_args *step,
                      const struct flow_contact *contact, struct contact_row *row)
 {
-    contact_row_begin(row, flow_contact_stiffness(flow, step->h), step->h);
+    contact_row_begin(row, flow_contact_stiffness(flow, step->h), step->h / flow->model->h);
     flow_contact_ahead(flow, step->time - step->h, step->time, contact, row);
 }
 

@@ -23,8 +23,8 @@ struct touch_args {
     uint32_t block, room;
     uint32_t accept; /* not zero: the step is over, near pairs become contacts; else the present
                       * ones stay, pressed, with failing pairs */
-    double stiffness;
-    double from, to; /* s: of the step */
+    double stiffness, part; /* as contact_row_begin has them */
+    double from, to;        /* s: of the step */
 };
 
 /* The present contacts, the next ones, the energy of these; each meeting's list and, with another
@@ -137,7 +137,7 @@ static void find_solved_row(const struct touching *t, const struct flow_contact 
                             struct contact_row *row)
 {
     *row = contact->row;
-    contact_row_begin(row, t->args->stiffness, t->args->to - t->args->from);
+    contact_row_begin(row, t->args->stiffness, t->args->part);
     flow_contact_ahead(flow_of(t->call), t->args->from, t->args->to, contact, row);
 }
 
@@ -397,6 +397,7 @@ static int fork_blocks(struct flow_state *state, bool accept)
     const struct flow_step_args step = flow_attempt_args(state);
     struct touch_args args = {.accept = accept,
                               .stiffness = flow_contact_stiffness(state->flow, step.h),
+                              .part = step.h / state->flow->model->h,
                               .from = step.time - step.h,
                               .to = step.time};
     int code = duite_set(state->rt, state->run.contact_energy, NULL);

@@ -41,7 +41,7 @@ static void step(struct mass *mass)
     phys_vec force, value, dv;
     row->origin = mass->x;
     row->gap = phys_dot(&row->normal, &mass->x);
-    contact_row_begin(row, mass->k, mass->h);
+    contact_row_begin(row, mass->k, 1);
     const phys_vec point = mass->x + mass->h * mass->v;
     contact_row_linearise(row, &point, &force, &value);
     const phys_vec b = mass->h * (force + mass->kg * mass->down);
@@ -146,7 +146,7 @@ UNIT_TEST(derivative)
     row->origin = mass.x;
     row->gap = THICKNESS;
     row->load = 1e-4;
-    contact_row_begin(row, mass.k, mass.h);
+    contact_row_begin(row, mass.k, 1);
     contact_row_linearise(row, &point, &force, &value);
     ck_assert_double_gt(value[3], 0);
     for (int c = 0; c < 3; c++) {
@@ -174,7 +174,7 @@ static void begin_row(struct contact_row *row, double y, double gap, double h)
 {
     row->origin = (phys_vec){0, y, 0, 0};
     row->gap = gap;
-    contact_row_begin(row, 30, h);
+    contact_row_begin(row, 30, 1);
 }
 
 static double stiffness_of(const phys_vec *value)

@@ -92,8 +92,6 @@ int cg_stop(struct flow_state *run, bool begun, duite **rt, struct flow **flow, 
 
 static int end(struct cg_session *s, int code)
 {
-    if (*s->settings && model_promise(&s->plan.model).apart)
-        flow_contact_free_objects(&s->run);
     code = cg_stop(&s->run, *s->settings, &s->rt, &s->flow, code);
     free(s->solution);
     s->solution = NULL;

@@ -195,7 +195,6 @@ static int make_steps(struct flow *flow, duite *rt, struct flow_report *report)
         code = flow_steps(&run);
     if (!code)
         code = duite_wait(rt);
-    flow_contact_free_objects(&run);
     flow_objects_free(&run);
     duite_wait(rt);
     flow_memory_free(&run);

@@ -30,8 +30,6 @@ static struct {
 
 static int end(int code)
 {
-    if (session.begun)
-        flow_contact_free_objects(&session.run);
     code = cg_stop(&session.run, session.begun, &session.rt, &session.flow, code);
     model_free(&session.model);
     memset(&session, 0, sizeof session);

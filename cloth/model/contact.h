@@ -52,7 +52,7 @@ struct model_contact {
     uint32_t n_pairs; /* unless one of these is of them: the last counts */
     struct model_rub *pairs;
     struct contact_apart apart; /* sides that do not meet */
-    double stiffness;           /* springs: N/m, > 0; 0: as flow_repulsion_of finds */
+    double stiffness;           /* springs: N/m, > 0; 0: as the mode finds */
     double damping; /* springs: >= 0; part of the critical damping of a vertex of mean mass */
 };
 

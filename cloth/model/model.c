@@ -138,19 +138,10 @@ void model_free(struct model *model)
     *model = (struct model){0};
 }
 
-/* In the order of sentences that list them. */
-#define INTEGRATORS(X)                                                                             \
-    X(MODEL_IMPLICIT_EULER, "implicit_euler", .linear = true)                                      \
-    X(MODEL_EXPLICIT_EULER, "explicit_euler", .limit = phys_limit_euler)                           \
-    X(MODEL_SYMPLECTIC_EULER, "symplectic_euler", .limit = phys_limit_symplectic,                  \
-      .staggered = true)                                                                           \
-    X(MODEL_VERLET, "verlet", .limit = phys_limit_verlet, .drag_free = true)                       \
-    X(MODEL_RK4, "rk4", .limit = phys_limit_rk4)                                                   \
-    X(MODEL_BDF2, "bdf2", .falls_back = true)
-#define WORD_OF(number, word, ...) {word, number},
-#define ROW_OF(number, word, ...)  [number] = {.name = word, __VA_ARGS__},
-const struct model_word model_integrators[] = {INTEGRATORS(WORD_OF){0}};
-const struct model_scheme model_schemes[] = {INTEGRATORS(ROW_OF)};
+#define NAME_OF(number, word, ...) {#word, number},
+#define ROW_OF(number, word, ...)  [number] = {.name = #word, __VA_ARGS__},
+const struct model_word model_integrators[] = {MODEL_ALL_INTEGRATORS(NAME_OF){0}};
+const struct model_scheme model_schemes[] = {MODEL_ALL_INTEGRATORS(ROW_OF)};
 
 #define PRECONDITIONERS(X)                                                                         \
     X(MODEL_PLAIN, "none", SOLVE_IDENTITY, false)                                                  \
@@ -158,6 +149,7 @@ const struct model_scheme model_schemes[] = {INTEGRATORS(ROW_OF)};
     X(MODEL_IC0, "ic0", SOLVE_IC0, false)                                                          \
     X(MODEL_COARSE, "coarse", SOLVE_JACOBI, true)                                                  \
     X(MODEL_IC0_COARSE, "ic0_coarse", SOLVE_IC0, true)
+#define WORD_OF(number, word, ...)  {word, number},
 #define PARTS_OF(number, word, ...) [number] = {__VA_ARGS__},
 const struct model_word model_preconditioners[] = {PRECONDITIONERS(WORD_OF){0}};
 const struct model_conditioner model_conditioners[] = {PRECONDITIONERS(PARTS_OF)};

@@ -45,19 +45,22 @@ struct model_phase {
     char *name, *place;
 };
 
-/* docs/physics.md has their formulas. */
-enum model_integrator {
-    MODEL_EXPLICIT_EULER,   /* x by the velocity before the step */
-    MODEL_SYMPLECTIC_EULER, /* x by the velocity after it */
-    MODEL_VERLET,           /* velocity Verlet, drag solved for in the first half step */
-    MODEL_RK4,              /* the classical Runge-Kutta method */
-    MODEL_IMPLICIT_EULER,
-    MODEL_BDF2 /* begins with implicit Euler, also after contact or a change of h */
-};
-enum { MODEL_INTEGRATORS = MODEL_BDF2 + 1 };
+/* The integrators: number, name in scenes, and what the rest asks of it (struct model_scheme), in
+ * the order of sentences that list them. docs/physics.md has their formulas. Its part of a step is
+ * flow_integrator_name, in a file of cloth/flow/integrators. A new one is a row here, and that. */
+#define MODEL_ALL_INTEGRATORS(X)                                                                   \
+    X(MODEL_IMPLICIT_EULER, implicit_euler, .linear = true)                                        \
+    X(MODEL_EXPLICIT_EULER, explicit_euler, .limit = phys_limit_euler)                             \
+    X(MODEL_SYMPLECTIC_EULER, symplectic_euler, .limit = phys_limit_symplectic, .staggered = true) \
+    X(MODEL_VERLET, verlet, .limit = phys_limit_verlet, .drag_free = true)                         \
+    X(MODEL_RK4, rk4, .limit = phys_limit_rk4)                                                     \
+    X(MODEL_BDF2, bdf2, .falls_back = true)
+#define MODEL_INTEGRATOR_ID(number, name, ...) number,
+#define MODEL_INTEGRATOR_ONE(...)              +1
+enum model_integrator { MODEL_ALL_INTEGRATORS(MODEL_INTEGRATOR_ID) };
+enum { MODEL_INTEGRATORS = 0 MODEL_ALL_INTEGRATORS(MODEL_INTEGRATOR_ONE) };
 
-/* What the rest asks of an integrator: a row of model_schemes (model.c). Its part of a step is a
- * row of flow_integrators. */
+/* What the rest asks of an integrator. */
 struct model_scheme {
     const char *name; /* in scenes */
     /* The longest step, s, that lets no vibration of omega, rad/s, with damping, 1/s, grow

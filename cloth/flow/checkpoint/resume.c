@@ -66,12 +66,11 @@ int flow_resume(struct flow *flow, struct flow_checkpoint from, struct flow_resu
 
 /* ---- State of the main program ---- */
 
-FLOW_KERNEL_WITH(resume_main, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(main_program)),
-                 .fixed = 1)
+FLOW_KERNEL_WITH(resume_main, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(sent)), .fixed = 1)
 static int resume_main_body(const duite_call *call, const struct resume_main_fields *on)
 {
-    memcpy(on->main_program, flow_of(call)->from.bytes,
-           duite_count(call, FLOW_INDEX_OF(resume_main, main_program)));
+    memcpy(on->sent, flow_of(call)->from.bytes,
+           duite_count(call, FLOW_INDEX_OF(resume_main, sent)));
     return 0;
 }
 
@@ -105,7 +104,7 @@ static void take_main(struct flow_state *state, const unsigned char *from)
     if (model_seeks(state->flow->model))
         flow_noted(state, flow_contact_meet_again(state, saved.n_meetings, arrays.side));
     for (uint32_t b = 0; b < saved.n_kept; b++)
-        flow_contact_keep_again(state, b, arrays.kept[b]);
+        flow_contact_keep(state, b, FLOW_FIELD_contacts, arrays.kept[b]);
 }
 
 int flow_resume_main(struct flow_state *state)
@@ -217,8 +216,8 @@ static void load_all(struct flow_state *state)
         args.keeps = b < n_blocks && flow_contact_mode(state->flow->model)->carries;
         const size_t n = flow_saved_objects(state, b, rest);
         if (n)
-            flow_fork_given_at(state, 0, &flow_kernel_resume_load, &args,
-                               &(struct flow_given){.n = n, .rest = rest});
+            flow_fork_with_at(state, 0, &flow_kernel_resume_load, &args,
+                              &(struct flow_with){.n = n, .rest = rest});
         skip(state, n, &args);
         if (b < n_blocks)
             flow_fork_one(state, &flow_kernel_resume, &block);

@@ -5,6 +5,7 @@
 
 #include "cloth/base/clock.h"
 
+#include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/mode.h"
 
 #include <stdlib.h>
@@ -98,10 +99,10 @@ static void put_main(const struct flow_state *state, const struct flow_saved *sa
         arrays.side[i] = (struct flow_saved_side){{of->side[0], of->side[1]}, of->room};
     }
     for (uint32_t b = 0; b < saved->n_kept; b++)
-        arrays.kept[b] = state->contact.kept[b].n[state->contact.begin];
+        arrays.kept[b] = flow_kept_list(state, b, FLOW_FIELD_contacts)->n;
 }
 
-/* Bytes of a checkpoint without lists, whose length the main program does not know. */
+/* Bytes of a checkpoint, with lists as long as there is room for. */
 static size_t fields_bytes(const struct flow_state *state)
 {
     const uint32_t n_blocks = state->flow->tables.n_blocks;
@@ -139,8 +140,8 @@ int flow_save(struct flow_state *state, bool finished)
         begin_saving(state, finished);
     for (uint32_t b = 0; b <= n_blocks; b++) {
         const struct save_args args = {.block = b, .last = b == n_blocks};
-        const struct flow_given given = {.n = flow_saved_objects(state, b, rest), .rest = rest};
-        flow_fork_given_at(state, 0, &flow_kernel_save, &args, &given);
+        const struct flow_with with = {.n = flow_saved_objects(state, b, rest), .rest = rest};
+        flow_fork_with_at(state, 0, &flow_kernel_save, &args, &with);
     }
     return state->code;
 }

@@ -78,12 +78,9 @@ size_t flow_saved_objects(const struct flow_state *state, uint32_t block, duite_
     const bool of_run = block == state->flow->tables.n_blocks;
     const int from = of_run ? FLOW_FIELDS_OF_BLOCK : 0;
     const int to = of_run ? FLOW_FIELDS_OF_ALL : FLOW_FIELDS_OF_BLOCK;
-    const struct flow_contact_state *contact = &state->contact;
     duite_object *end = refs;
     for (int field = from; field < to; field++)
         if (is_saved(model, field) && flow_fields[field].exists(state, of_run ? 0 : block))
             *end++ = flow_field_object(state, (enum flow_field_id)field, of_run ? 0 : block);
-    if (!of_run && flow_contact_mode(model)->carries)
-        *end++ = contact->kept[block].list[contact->begin];
     return (size_t)(end - refs);
 }

@@ -27,6 +27,14 @@ static const double TOO_MANY = 0.01;
  * fewer solves beside the culling of pairs. */
 static const double FEW = 0.001;
 
+/* Thicknesses: rows that hardly open (row.h) are contacts, too. */
+static const double REACH = 1.3;
+
+static double reach_of_rows(const struct model *model)
+{
+    return REACH * model->contact.thickness;
+}
+
 double flow_contact_stiffness(const struct flow *flow, double h)
 {
     const double inertia = 4 * flow->vertex_mass / (h * h);
@@ -118,13 +126,12 @@ static int describe_failing(struct flow_state *state, size_t size, char *text)
 /* Describes the first contact without room in the accepted state; on rank 0 only. */
 static int describe_pinched(struct flow_state *state, size_t size, char *text)
 {
-    const struct flow_contact_state *now = &state->contact;
     int code = DUITE_OK;
     bool found = false;
     text[0] = 0;
     for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code && !found; b++) {
         struct flow_list *list;
-        code = get_list(state, now->kept[b].list[now->now], &list);
+        code = get_list(state, state->block[b].contacts, &list);
         const struct flow_contact *contact = (const struct flow_contact *)(list + 1);
         for (uint64_t i = 0; !code && !found && i < list->n; i++) {
             found = contact_row_is_pinched(&contact[i].row);
@@ -211,13 +218,13 @@ static int start_certified(struct flow_state *state)
     }
     if (!code)
         code = flow_contact_accept(state);
-    state->contact.begin = state->contact.now;
+    state->contact.kept_begin = false;
     return code;
 }
 
 static int begin_certified(struct flow_state *state)
 {
-    state->contact.now = state->contact.begin;
+    flow_contact_return(state);
     state->contact.failed = false;
     state->contact.cut = state->contact.cut_run = 0;
     state->contact.attempt++;
@@ -313,9 +320,11 @@ static void add_solves(const struct flow_state *state, double status[FLOW_STATUS
 
 static int note_settled(struct flow_state *state, const double status[FLOW_STATUS], bool accepted)
 {
-    if (!accepted)
+    if (!accepted) {
+        flow_contact_return(state);
         return DUITE_OK;
-    state->contact.begin = state->contact.now;
+    }
+    state->contact.kept_begin = false;
     state->contact.accepted = state->contact.attempt;
     state->report->contacts_now = state->contact.near;
     if (state->contact.cut_run > state->report->contact_cut_run)
@@ -354,6 +363,7 @@ const struct flow_contact_mode flow_contact_certified = {.is = certified_is,
                                                          .settle = settle_certified,
                                                          .status = add_solves,
                                                          .settled = note_settled,
+                                                         .reach = reach_of_rows,
                                                          .sweeps = true,
                                                          .carries = true,
                                                          .row = make_row,

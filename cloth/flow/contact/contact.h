@@ -58,17 +58,6 @@ size_t flow_contact_index(struct flow_list *list, uint32_t n_blocks);
 const uint32_t *flow_contact_of(const struct flow_list *list, uint32_t block, uint32_t n_blocks,
                                 size_t *n);
 
-/* Counts that a task of two sides adds at FLOW_COUNTS times its number: failing pairs; certified
- * pairs; items of its list, with or without room; items that the first side keeps; the second. */
-enum {
-    FLOW_COUNT_FAILS,
-    FLOW_COUNT_PASSES,
-    FLOW_COUNT_ALL,
-    FLOW_COUNT_FIRST,
-    FLOW_COUNT_SECOND,
-    FLOW_COUNTS
-};
-
 /* The coefficient of a cloth and another side, as flow->friction has them. */
 static inline double flow_friction_of(const struct flow *flow, uint32_t cloth, uint32_t other)
 {
@@ -123,11 +112,11 @@ struct flow_meet_args {
     double from, to; /* s: of the step */
 };
 
-/* Room for so many meetings on every rank; frees those there are. (memory.c) */
+/* Room for so many meetings on every rank. The second frees those that there are. (memory.c) */
 int flow_contact_room(struct flow_state *state, uint32_t n);
 void flow_contact_part(struct flow_state *state);
-/* Room for the further objects of a fork (struct flow_given): lists of all meetings with points, or
- * of all blocks. Local. */
+/* Room for the further objects of a fork (struct flow_with): lists of all meetings with points.
+ * Local. */
 static inline duite_object *flow_contact_rest(const struct flow_state *state)
 {
     return state->contact.refs + FLOW_MAX_PARAMETERS;
@@ -149,11 +138,21 @@ int flow_contact_meet_again(struct flow_state *state, uint32_t n,
  * many. Marks the blocks that may keep contacts with corners in it, of all. Local. (pairs.c) */
 uint32_t flow_contact_lists(const struct flow_state *state, uint32_t block, duite_object *to);
 void flow_contact_keepers(const struct flow_state *state, uint32_t block, unsigned char *keeps);
-/* Makes list `which` of a block's contacts, with room for so many. A failure is returned by the
- * next fork. (memory.c) */
-void flow_contact_keep(struct flow_state *state, uint32_t block, unsigned which, uint32_t room);
-/* The same for the contacts of a checkpoint, at most n, in the list of the step's begin. */
-void flow_contact_keep_again(struct flow_state *state, uint32_t block, uint32_t n);
+/* What is known of one of a block's lists of contacts, the field `contacts` or one of the two
+ * behind it. Local. */
+static inline struct flow_kept_list *flow_kept_list(const struct flow_state *state, uint32_t block,
+                                                    enum flow_field_id contacts)
+{
+    return state->contact.kept[block].list + (contacts - FLOW_FIELD_contacts);
+}
+/* Gives one of them room for n contacts: they are lost if it is made again. A failure is returned
+ * by the next fork. (memory.c) */
+void flow_contact_keep(struct flow_state *state, uint32_t block, enum flow_field_id contacts,
+                       uint32_t n);
+/* Swaps two of them in all blocks. Local. (memory.c) */
+void flow_contact_swap(struct flow_state *state, enum flow_field_id a, enum flow_field_id b);
+/* Back to the contacts where the step began. Local. (memory.c) */
+void flow_contact_return(struct flow_state *state);
 /* Sets the lists of all blocks that have no contacts yet. */
 int flow_contact_none(struct flow_state *state);
 /* Fork the tasks that make the contacts of all blocks: `again` those of the solve, pressed, and the
@@ -190,11 +189,7 @@ void flow_contact_speed(const struct flow_ties *ties, const struct flow_view *vi
 /* N/m: the k of cloth/contact/row.h in a step of h. */
 double flow_contact_stiffness(const struct flow *flow, double h);
 
-/* m: nearer features are contacts. Implicit steps also need features that may come near: rows that
- * hardly open (row.h), the band of springs (repulse.h). */
-static inline double flow_contact_reach(const struct model *model)
-{
-    return (model_is_implicit(model) ? 1.3 : 1) * model->contact.thickness;
-}
+/* m: nearer features are contacts, as the mode says. Local. (modes.c) */
+double flow_contact_reach(const struct model *model);
 
 #endif

@@ -85,9 +85,8 @@ static int cut_body(const duite_call *call, const struct cut_fields *on)
 static int fork_cut(struct flow_state *state, const struct cut_args *args)
 {
     duite_object *rest = flow_contact_rest(state);
-    const struct flow_given given = {.n = flow_contact_lists(state, args->block, rest),
-                                     .rest = rest};
-    return flow_fork_given(state, &flow_kernel_cut, args, &given);
+    const struct flow_with with = {.n = flow_contact_lists(state, args->block, rest), .rest = rest};
+    return flow_fork_with(state, &flow_kernel_cut, args, &with);
 }
 
 int flow_contact_cut(struct flow_state *state, struct flow_cut *cut)

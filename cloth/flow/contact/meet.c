@@ -26,7 +26,8 @@ struct meeting {
     const uint32_t *attached; /* by point of the first skin */
     const double *area[2];    /* by point of each skin; of a body NULL */
     bool leaves_out;          /* see flow_leaves_out */
-    bool sweeps;              /* as the mode does (mode.h) */
+    bool sweeps;              /* as the mode does (mode.h), */
+    double reach;             /* m: and reaches */
     struct contact_skin skin[2];
     struct contact_side side[2]; /* of a block that meets itself: both */
     struct flow_near *near;
@@ -222,7 +223,7 @@ static bool contact_meet_is_inside(const struct contact_nearest *nearest)
 static bool presses(const struct meeting *m, const struct contact_candidate *candidate,
                     const struct corners *corners, const struct contact_nearest *nearest)
 {
-    if (!(nearest->gap < flow_contact_reach(m->model)))
+    if (!(nearest->gap < m->reach))
         return false;
     if (m->body)
         return presses_body(m, corners, nearest);
@@ -282,7 +283,7 @@ static enum contact_passing passing_of(const struct meeting *m, const struct cor
     if (!m->sweeps)
         return CONTACT_PASSES;
     return contact_pass(corners->pair, corners->x, corners->y, m->model->contact.thickness,
-                        flow_contact_reach(m->model));
+                        m->reach);
 }
 
 static void look_at_pair(struct meeting *m, const struct contact_candidate *candidate,
@@ -355,6 +356,7 @@ static void begin_meeting(const duite_call *call, const struct flow_meet_args *a
                           .model = flow->model,
                           .args = args,
                           .sweeps = flow_contact_mode(flow->model)->sweeps,
+                          .reach = flow_contact_reach(flow->model),
                           .leaves_out =
                               flow_leaves_out(flow->model, args->side[1] >= flow->tables.n_blocks),
                           .attached = own.attached,
@@ -371,7 +373,7 @@ static size_t query_meeting(struct meeting *m, const struct contact_side *other,
                             struct flow_list *list)
 {
     const uint32_t *side = m->args->side;
-    contact_query(m->side, other, flow_contact_reach(m->model), visit_pairs, m);
+    contact_query(m->side, other, m->reach, visit_pairs, m);
     m->counts[FLOW_COUNT_ALL] = (double)m->n;
     m->counts[FLOW_COUNT_PASSES] = (double)m->passes;
     *list = (struct flow_list){.n = m->n < m->room ? m->n : m->room, .side = {side[0], side[1]}};
@@ -379,23 +381,25 @@ static size_t query_meeting(struct meeting *m, const struct contact_side *other,
 }
 
 FLOW_KERNEL(meet_self, FLOW_COLLIDE, struct flow_meet_args,
-            (GIVEN_W(near), GIVEN_SUM(counts), R(skin), R(skin_x), R(skin_boxes)))
+            (GIVEN_W(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes)))
 static int meet_self_body(const duite_call *call, const struct meet_self_fields *on)
 {
     struct meeting m;
-    begin_meeting(call, on->args, on->skin, on->skin_x, on->skin_boxes, on->counts, on->near, &m);
+    begin_meeting(call, on->args, on->skin, on->skin_x, on->skin_boxes, on->meeting_counts,
+                  on->near, &m);
     m.skin[1] = m.skin[0];
     m.side[1] = m.side[0];
     return duite_resize(call, FLOW_INDEX_OF(meet_self, near), query_meeting(&m, m.side, on->near));
 }
 
 FLOW_KERNEL(meet, FLOW_COLLIDE, struct flow_meet_args,
-            (GIVEN_W(near), GIVEN_SUM(counts), R(skin), R(skin_x), R(skin_boxes),
+            (GIVEN_W(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes),
              GIVEN_R(other_skin), GIVEN_R(other_x), GIVEN_R(other_boxes)))
 static int meet_body(const duite_call *call, const struct meet_fields *on)
 {
     struct meeting m;
-    begin_meeting(call, on->args, on->skin, on->skin_x, on->skin_boxes, on->counts, on->near, &m);
+    begin_meeting(call, on->args, on->skin, on->skin_x, on->skin_boxes, on->meeting_counts,
+                  on->near, &m);
     const struct flow_skin other = flow_skin_open(on->other_skin);
     m.skin[1] = other.skin;
     m.area[1] = other.area;
@@ -404,12 +408,13 @@ static int meet_body(const duite_call *call, const struct meet_fields *on)
 }
 
 FLOW_KERNEL(meet_figure, FLOW_COLLIDE, struct flow_meet_args,
-            (GIVEN_W(near), GIVEN_SUM(counts), R(skin), R(skin_x), R(skin_boxes), R(body_skins),
+            (GIVEN_W(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes), R(body_skins),
              R(body_points), R(body_boxes), R(body_fans)))
 static int meet_figure_body(const duite_call *call, const struct meet_figure_fields *on)
 {
     struct meeting m;
-    begin_meeting(call, on->args, on->skin, on->skin_x, on->skin_boxes, on->counts, on->near, &m);
+    begin_meeting(call, on->args, on->skin, on->skin_x, on->skin_boxes, on->meeting_counts,
+                  on->near, &m);
     const uint32_t number = on->args->side[1] - m.flow->tables.n_blocks;
     m.obstacle = m.model->obstacles + number;
     m.body = contact_bodies_at(&m.model->bodies, m.obstacle->body);

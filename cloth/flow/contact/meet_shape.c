@@ -24,7 +24,8 @@ struct meeting {
     struct contact_pose pose;
     struct contact_solid solid;
     double way;               /* m: that points of the shape go in the step at most */
-    bool sweeps;              /* as the mode does (mode.h) */
+    bool sweeps;              /* as the mode does (mode.h), */
+    double reach;             /* m: and reaches */
     uint32_t obstacle;        /* behind all cloths */
     const uint32_t *attached; /* by point of the skin */
     const double *area;       /* likewise */
@@ -153,7 +154,7 @@ static void list_triangle(struct meeting *m, uint32_t triangle, const phys_vec y
     struct contact_solid_point on;
     struct flow_near near;
     contact_solid_nearest(&m->solid, CONTACT_END, y, &on);
-    if (on.feature < CONTACT_ON_EDGE || !(on.gap < flow_contact_reach(m->model)))
+    if (on.feature < CONTACT_ON_EDGE || !(on.gap < m->reach))
         return;
     if (!m->sweeps && !(on.gap > 0))
         return; /* its corners know the way out */
@@ -171,8 +172,8 @@ static void look_at_triangle(struct meeting *m, uint32_t triangle)
     const uint32_t *point = m->skin.corner[triangle];
     const phys_vec x[3] = {m->x[point[0]], m->x[point[1]], m->x[point[2]]};
     const phys_vec y[3] = {m->y[point[0]], m->y[point[1]], m->y[point[2]]};
-    const enum contact_passing passing = contact_solid_pass(
-        &m->solid, x, y, m->model->contact.thickness, flow_contact_reach(m->model));
+    const enum contact_passing passing =
+        contact_solid_pass(&m->solid, x, y, m->model->contact.thickness, m->reach);
     m->passes += passing == CONTACT_PASSES;
     if (passing == CONTACT_PASSES)
         list_triangle(m, triangle, y);
@@ -198,7 +199,7 @@ static void list_vertex(struct meeting *m, uint32_t point, const phys_vec x[3], 
     struct contact_solid_point on;
     find_vertex(m, CONTACT_END, y, &on);
     const double ahead = gap_of_place_ahead(m, x, y, &on);
-    if (!(on.gap < flow_contact_reach(m->model)) && !(ahead < m->model->contact.thickness))
+    if (!(on.gap < m->reach) && !(ahead < m->model->contact.thickness))
         return;
     describe_place(m, 1, &point, y, &on, near);
     if (on.gap > m->model->contact.thickness)
@@ -234,7 +235,7 @@ static void list_place(struct meeting *m, uint32_t vertex, const struct contact_
     const uint32_t point = m->skin.vertex[vertex];
     const struct contact_solid_point on = {.weight = {1}, .normal = hit->normal, .gap = hit->gap};
     struct flow_near near;
-    if (!(hit->gap < flow_contact_reach(m->model)))
+    if (!(hit->gap < m->reach))
         return;
     memset(&near, 0, sizeof near);
     describe_place(m, 1, &point, m->y + point, &on, &near);
@@ -324,7 +325,7 @@ static void meet_shape_look_at(struct meeting *m)
 /* ---- The task ---- */
 
 FLOW_KERNEL(meet_shape, FLOW_COLLIDE, struct flow_meet_args,
-            (GIVEN_W(near), GIVEN_SUM(counts), R(skin), R(skin_x), R(skin_boxes)))
+            (GIVEN_W(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes)))
 static int meet_shape_body(const duite_call *call, const struct meet_shape_fields *on)
 {
     const struct flow_meet_args *args = on->args;
@@ -335,13 +336,14 @@ static int meet_shape_body(const duite_call *call, const struct meet_shape_field
     struct meeting m = {.flow = flow,
                         .model = flow->model,
                         .sweeps = flow_contact_mode(flow->model)->sweeps,
+                        .reach = flow_contact_reach(flow->model),
                         .args = args,
                         .obstacle = flow->n_cloths + (args->side[1] - flow->tables.n_blocks),
                         .shape = shape,
                         .h = args->to - args->from,
                         .near = (struct flow_near *)(list + 1),
                         .room = args->room,
-                        .counts = on->counts + (size_t)FLOW_COUNTS * args->number};
+                        .counts = on->meeting_counts + (size_t)FLOW_COUNTS * args->number};
     contact_pose_over(shape, flow->model->keys, &flow->model->bodies, args->from, args->to,
                       &m.pose);
     contact_solid_make(shape, &m.pose, &m.solid);

@@ -1,5 +1,4 @@
-/* Memory of contacts besides fields: the main program's, and objects whose number or size changes
- * during the run. */
+/* Memory of contacts besides fields: the main program's, and lists that change their size. */
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/mode.h"
 #include "cloth/flow/run/setup.h"
@@ -45,7 +44,7 @@ int flow_contact_room(struct flow_state *state, uint32_t n)
     struct flow_contact_state *contact = &state->contact;
     struct flow_meetings *meetings = &contact->meetings;
     struct cloth_error *trouble = &state->flow->trouble;
-    if (n <= meetings->room && contact->refs)
+    if (n <= meetings->room && meetings->all)
         return DUITE_OK;
     free(meetings->all);
     free(meetings->count);
@@ -53,71 +52,57 @@ int flow_contact_room(struct flow_state *state, uint32_t n)
     meetings->room = n + n / 2;
     meetings->all = cloth_alloc(meetings->room, sizeof *meetings->all, trouble);
     meetings->count = cloth_alloc(meetings->room, FLOW_COUNTS * sizeof *meetings->count, trouble);
-    contact->refs =
-        cloth_alloc(2 * (size_t)meetings->room + state->head.n_blocks + FLOW_MAX_PARAMETERS,
-                    sizeof *contact->refs, trouble);
+    contact->refs = cloth_alloc(2 * (size_t)meetings->room + FLOW_MAX_PARAMETERS,
+                                sizeof *contact->refs, trouble);
     return flow_memory_agree(state);
 }
 
 /* ---- Lists of contacts ---- */
 
-void flow_contact_keep(struct flow_state *state, uint32_t block, unsigned which, uint32_t room)
+void flow_contact_keep(struct flow_state *state, uint32_t block, enum flow_field_id contacts,
+                       uint32_t n)
 {
-    struct flow_kept_contacts *kept = state->contact.kept + block;
-    if (kept->list[which].generation && kept->room[which] >= room)
+    struct flow_kept_list *list = flow_kept_list(state, block, contacts);
+    list->n = n;
+    if (list->room >= n)
         return;
-    if (kept->list[which].generation)
-        duite_free(state->rt, kept->list[which]); /* a failure is returned by the next fork */
-    while (kept->room[which] < room)
-        kept->room[which] = kept->room[which] ? 2 * kept->room[which] : FLOW_TIE_CLASS;
-    duite_new_sized(state->rt, DUITE_BYTE, 0,
-                    flow_contact_index_room(kept->room[which], state->flow->tables.n_blocks),
-                    &kept->list[which]);
-    duite_colocate(state->rt, kept->list[which], state->block[block].x);
+    while (list->room < n)
+        list->room = list->room ? 2 * list->room : FLOW_TIE_CLASS;
+    flow_object_again(state, contacts, block);
 }
 
-void flow_contact_keep_again(struct flow_state *state, uint32_t block, uint32_t n)
+void flow_contact_swap(struct flow_state *state, enum flow_field_id a, enum flow_field_id b)
 {
-    flow_contact_keep(state, block, state->contact.begin, n ? n : 1);
-    state->contact.kept[block].n[state->contact.begin] = n;
+    flow_fields_swap(state, a, b);
+    for (uint32_t i = 0; i < state->flow->tables.n_blocks; i++) {
+        struct flow_kept_list *one = flow_kept_list(state, i, a);
+        struct flow_kept_list *two = flow_kept_list(state, i, b);
+        const struct flow_kept_list was = *one;
+        *one = *two;
+        *two = was;
+    }
+}
+
+void flow_contact_return(struct flow_state *state)
+{
+    if (state->contact.kept_begin)
+        flow_contact_swap(state, FLOW_FIELD_contacts, FLOW_FIELD_kept_contacts);
+    state->contact.kept_begin = false;
 }
 
 int flow_contact_none(struct flow_state *state)
 {
     const struct flow_list none = {0};
     int code = DUITE_OK;
-    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code; b++) {
-        flow_contact_keep(state, b, state->contact.now, 1);
-        code = duite_set_sized(state->rt, state->contact.kept[b].list[state->contact.now], &none,
-                               sizeof none);
-    }
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code; b++)
+        code = duite_set_sized(state->rt, state->block[b].contacts, &none, sizeof none);
     return code;
 }
 
-/* ---- Freeing ---- */
-
-/* A failure is returned by the next call of the runtime. */
 void flow_contact_part(struct flow_state *state)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
     for (uint32_t i = 0; i < meetings->n; i++)
-        duite_free(state->rt, meetings->all[i].near);
-    if (meetings->counts.generation)
-        duite_free(state->rt, meetings->counts);
-    meetings->counts = (duite_object){0};
+        flow_noted(state, duite_free(state->rt, meetings->all[i].near));
     meetings->n = 0;
-}
-
-int flow_contact_free_objects(struct flow_state *state)
-{
-    const struct flow_contact_state *contact = &state->contact;
-    int code = DUITE_OK;
-    flow_contact_part(state);
-    for (uint32_t b = 0; contact->kept && b < state->flow->tables.n_blocks; b++)
-        for (int k = 0; k < FLOW_CONTACT_LISTS; k++) {
-            const duite_object list = contact->kept[b].list[k];
-            const int failed = list.generation ? duite_free(state->rt, list) : DUITE_OK;
-            code = code ? code : failed;
-        }
-    return code;
 }

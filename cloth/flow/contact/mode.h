@@ -32,6 +32,9 @@ struct flow_contact_mode {
     /* Is told if the step was accepted. Collective. */
     int (*settled)(struct flow_state *state, const double status[FLOW_STATUS], bool accepted);
 
+    /* m: nearer features are contacts; NULL: the mode looks for none. */
+    double (*reach)(const struct model *model);
+
     /* What it needs. */
     bool sweeps;  /* pairs are certified on the whole way of a step, bodies by their skins, and ways
                    * are cut; else the places at its begin are looked at */
@@ -65,11 +68,10 @@ int flow_contact_settled(struct flow_state *state, const double status[FLOW_STAT
 /* Bounds the fastest vibration of contacts that are springs at a vertex of mean mass: its square is
  * at most this times k / m, its damping this times c / m. Two layers that press on each other, each
  * vertex on a triangle, reach 4. */
-enum { FLOW_REPULSION_MOST = 4 };
+enum { FLOW_SPRINGS_MOST = 4 };
 
-/* Memory, a part of flow_memory_take; objects that are no fields. (memory.c) */
+/* Memory, a part of flow_memory_take. (memory.c) */
 void flow_contact_take(struct flow_state *state);
 void flow_contact_free(struct flow_state *state);
-int flow_contact_free_objects(struct flow_state *state);
 
 #endif

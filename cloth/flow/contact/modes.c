@@ -1,6 +1,8 @@
 /* The table of contact modes, and the calls of a run's mode. */
 #include "cloth/flow/contact/mode.h"
 
+#include "cloth/flow/contact/contact.h"
+
 static bool is_none(const struct model *model)
 {
     (void)model;
@@ -25,6 +27,11 @@ const struct flow_contact_mode *flow_contact_mode(const struct model *model)
 static const struct flow_contact_mode *mode_of(const struct flow_state *state)
 {
     return flow_contact_mode(state->flow->model);
+}
+
+double flow_contact_reach(const struct model *model)
+{
+    return flow_contact_mode(model)->reach(model);
 }
 
 int flow_contact_start(struct flow_state *state)

@@ -158,13 +158,6 @@ static void pairs_make_list(struct flow_state *state, struct flow_meeting *meeti
     duite_colocate(state->rt, meeting->near, state->block[owner].x);
 }
 
-static int make_counts(struct flow_state *state)
-{
-    struct flow_meetings *meetings = &state->contact.meetings;
-    return duite_new(state->rt, DUITE_F64, FLOW_COUNTS * (size_t)(meetings->n ? meetings->n : 1),
-                     &meetings->counts);
-}
-
 static int make_meetings(struct flow_state *state)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
@@ -183,7 +176,8 @@ static int make_meetings(struct flow_state *state)
             *meeting = (struct flow_meeting){.side = {a, b}, .room = LEAST_ROOM};
             pairs_make_list(state, meeting);
         }
-    return make_counts(state);
+    flow_object_again(state, FLOW_FIELD_meeting_counts, 0);
+    return DUITE_OK;
 }
 
 int flow_contact_meet_again(struct flow_state *state, uint32_t n,
@@ -199,7 +193,8 @@ int flow_contact_meet_again(struct flow_state *state, uint32_t n,
             (struct flow_meeting){.side = {side[i].side[0], side[i].side[1]}, .room = side[i].room};
         pairs_make_list(state, meeting);
     }
-    return n ? make_counts(state) : DUITE_OK;
+    flow_object_again(state, FLOW_FIELD_meeting_counts, 0);
+    return DUITE_OK;
 }
 
 /* ---- The meetings of a block ---- */
@@ -257,8 +252,10 @@ static int fork_meeting(struct flow_state *state, uint32_t number)
                                         .from = step.time - step.h,
                                         .to = step.time};
     const struct flow_objects *other = state->block + (side[1] < n_blocks ? side[1] : 0);
-    const duite_object one[] = {meeting->near, state->contact.meetings.counts, other->skin,
-                                other->skin_x, other->skin_boxes};
+    const struct flow_with with = {.near = meeting->near,
+                                   .other_skin = other->skin,
+                                   .other_x = other->skin_x,
+                                   .other_boxes = other->skin_boxes};
     const struct flow_kernel *kernel = &flow_kernel_meet;
     if (side[0] == side[1])
         kernel = &flow_kernel_meet_self;
@@ -266,17 +263,17 @@ static int fork_meeting(struct flow_state *state, uint32_t number)
         kernel = &flow_kernel_meet_shape;
     else if (side[1] >= n_blocks)
         kernel = &flow_kernel_meet_figure;
-    return flow_fork_given(state, kernel, &args, &(struct flow_given){.one = one});
+    return flow_fork_with(state, kernel, &args, &with);
 }
 
 /* Forks all meetings and gets their counts. */
 static int fork_meetings(struct flow_state *state)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
-    int code = duite_set(state->rt, meetings->counts, NULL);
+    int code = duite_set(state->rt, state->run.meeting_counts, NULL);
     for (uint32_t i = 0; i < meetings->n && !code; i++)
         code = fork_meeting(state, i);
-    return code ? code : duite_get(state->rt, meetings->counts, meetings->count);
+    return code ? code : duite_get(state->rt, state->run.meeting_counts, meetings->count);
 }
 
 /* Makes full lists again with room for all their items. Returns true if any was full. */
@@ -359,7 +356,7 @@ int flow_contact_look(struct flow_state *state, bool shorter, struct flow_seen *
     if (!code)
         code = get_root_boxes(state);
     place_shapes(state);
-    if (!code && (!state->contact.meetings.counts.generation || !all_meet(state)))
+    if (!code && (!state->contact.meetings.all || !all_meet(state)))
         code = make_meetings(state);
     do {
         code = code ? code : fork_meetings(state);

@@ -7,10 +7,17 @@
 
 #include <math.h>
 
-/* k H^2 / m of explicit steps, by default: two layers reach 4 times that (FLOW_REPULSION_MOST),
+/* k H^2 / m of explicit steps, by default: two layers reach 4 times that (FLOW_SPRINGS_MOST),
  * well below the 4 where what they push bounces ever harder. */
 static const double EXPLICIT = 0.1;
+/* Thicknesses: in implicit steps the matrix has the band of springs (repulse.h), too. */
+static const double BAND = 1.3;
 static const double LIGHT = 0.25; /* of the mean mass: that of a grid's corners */
+
+static double reach_of_springs(const struct model *model)
+{
+    return (model_is_implicit(model) ? BAND : 1) * model->contact.thickness;
+}
 
 static double stiffness_of(const struct flow *flow)
 {
@@ -26,7 +33,7 @@ static double stiffness_of(const struct flow *flow)
 static struct contact_spring spring_of(const struct flow *flow, double h)
 {
     const double stiffness = stiffness_of(flow);
-    const double band = flow_contact_reach(flow->model) - flow->model->contact.thickness;
+    const double band = reach_of_springs(flow->model) - flow->model->contact.thickness;
     return (struct contact_spring){.stiffness = stiffness,
                                    .damping = 2 * flow->model->contact.damping *
                                               sqrt(stiffness * flow->vertex_mass),
@@ -56,7 +63,6 @@ static int begin_repulsion(struct flow_state *state)
     if (code)
         return code;
     note_pushed(state, &seen);
-    state->contact.begin = state->contact.now;
     code = flow_contact_accept(state);
     return code ? code : flow_contact_tie(state);
 }
@@ -105,6 +111,7 @@ const struct flow_contact_mode flow_contact_repulsion = {.is = is_repulsion,
                                                          .start = flow_contact_none,
                                                          .resume = flow_contact_none,
                                                          .begin = begin_repulsion,
+                                                         .reach = reach_of_springs,
                                                          .status = add_pushed,
                                                          .press = press_spring,
                                                          .spring = spring_of};

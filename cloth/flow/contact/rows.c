@@ -76,7 +76,7 @@ struct row_args {
 
 /* ---- The record of a block ---- */
 
-FLOW_KERNEL(tie_count, FLOW_COLLIDE, struct row_args, (W(tie_record), REST_R(keepers)))
+FLOW_KERNEL(tie_count, FLOW_COLLIDE, struct row_args, (W(tie_record), KEEPERS(contacts)))
 static int tie_count_body(const duite_call *call, const struct tie_count_fields *on)
 {
     const struct row_args *args = on->args;
@@ -86,7 +86,7 @@ static int tie_count_body(const duite_call *call, const struct tie_count_fields 
     struct flow_tie_link *link = (struct flow_tie_link *)(record + 1);
     struct found_contacts found;
     uint64_t *scratch = NULL;
-    int code = find_contacts(on->n_keepers, on->keepers, max_links, args->block, &found)
+    int code = find_contacts(on->n_contacts, on->contacts, max_links, args->block, &found)
                    ? 0
                    : rows_no_memory(call);
     const struct flow_tie_list list = ties_of(flow, &args->step, &found);
@@ -134,26 +134,10 @@ static void hear_records(struct flow_state *state)
     said->first[state->flow->tables.n_blocks] = n;
 }
 
-/* Forks a kernel with the lists of all blocks that may keep contacts with corners in one. */
-static int fork_with_keepers(struct flow_state *state, const struct flow_kernel *kernel,
-                             const struct row_args *args)
-{
-    duite_object *rest = flow_contact_rest(state), *end = rest;
-    const struct flow_contact_state *contact = &state->contact;
-    flow_contact_keepers(state, args->block, contact->mark);
-    for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
-        if (contact->mark[b])
-            *end++ = contact->kept[b].list[contact->now];
-    return flow_fork_given(state, kernel, args,
-                           &(struct flow_given){.n = (size_t)(end - rest), .rest = rest});
-}
-
 static int say_records(struct flow_state *state, struct row_args *args)
 {
     const struct flow_block_args all = {0};
-    int code = DUITE_OK;
-    for (args->block = 0; args->block < state->flow->tables.n_blocks && !code; args->block++)
-        code = fork_with_keepers(state, &flow_kernel_tie_count, args);
+    int code = flow_fork_each(state, &flow_kernel_tie_count, args);
     if (!code)
         code = flow_fork_one(state, &flow_kernel_tie_say, &all);
     if (!code)
@@ -188,7 +172,7 @@ static void write_rows(const struct flow *flow, const struct flow_step_args *ste
 
 FLOW_KERNEL(tie_contacts, FLOW_COLLIDE, struct row_args,
             (R(table), R(tie_links), W(tie_table), W(contact_rows), W(contact_obstacles),
-             REST_R(keepers)))
+             KEEPERS(contacts)))
 static int tie_contacts_body(const duite_call *call, const struct tie_contacts_fields *on)
 {
     const struct row_args *args = on->args;
@@ -196,9 +180,10 @@ static int tie_contacts_body(const duite_call *call, const struct tie_contacts_f
     const struct flow_table table = flow_table_in(call, on->table);
     const uint32_t(*links)[2] = (const uint32_t(*)[2])on->tie_links;
     struct found_contacts found;
-    int code = find_contacts(on->n_keepers, on->keepers, flow->tables.n_blocks, args->block, &found)
-                   ? 0
-                   : rows_no_memory(call);
+    int code =
+        find_contacts(on->n_contacts, on->contacts, flow->tables.n_blocks, args->block, &found)
+            ? 0
+            : rows_no_memory(call);
     const struct flow_tie_list list = ties_of(flow, &args->step, &found);
     const struct flow_ties_of of = {.block = args->block,
                                     .n_rows = table.n,
@@ -218,12 +203,6 @@ static int tie_contacts_body(const duite_call *call, const struct tie_contacts_f
     return code;
 }
 
-static int fork_table(struct flow_state *state, struct row_args *args)
-{
-    args->room = state->tied.now.room[args->block];
-    return fork_with_keepers(state, &flow_kernel_tie_contacts, args);
-}
-
 int flow_contact_tie(struct flow_state *state)
 {
     struct row_args args;
@@ -234,8 +213,10 @@ int flow_contact_tie(struct flow_state *state)
         code = flow_ties_adopt(state);
     if (!code)
         code = flow_ties_group(state);
-    for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++)
-        code = fork_table(state, &args);
+    for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++) {
+        args.room = state->tied.now.room[args.block];
+        code = flow_fork_one(state, &flow_kernel_tie_contacts, &args);
+    }
     return code;
 }
 

@@ -30,7 +30,7 @@ struct touch_args {
 /* The present contacts, the next ones, the energy of these; each meeting's list and, with another
  * block, its points. */
 FLOW_KERNEL(touch, FLOW_COLLIDE, struct touch_args,
-            (GIVEN_R(before), GIVEN_W(after), R(skin_x), SUM(contact_energy), SUM(status),
+            (R(contacts), W(contacts_next), R(skin_x), SUM(contact_energy), SUM(status),
              REST_R(meetings)))
 
 /* State of the body. */
@@ -328,8 +328,8 @@ static void take_meetings(struct touching *t)
 static int touch_body(const duite_call *call, const struct touch_fields *on)
 {
     const struct touch_args *args = on->args;
-    const struct flow_list *before = on->before;
-    struct flow_list *after = on->after;
+    const struct flow_list *before = on->contacts;
+    struct flow_list *after = on->contacts_next;
     const bool carries = flow_contact_mode(flow_of(call)->model)->carries;
     struct touching t = {.call = call,
                          .on = on,
@@ -351,7 +351,7 @@ static int touch_body(const duite_call *call, const struct touch_fields *on)
     on->status[FLOW_PINCHES] += t.pinched;
     free(t.used);
     *after = (struct flow_list){.n = t.n};
-    return duite_resize(call, FLOW_INDEX_OF(touch, after),
+    return duite_resize(call, FLOW_INDEX_OF(touch, contacts_next),
                         flow_contact_index(after, flow_of(call)->tables.n_blocks));
 }
 
@@ -373,27 +373,21 @@ static size_t list_meetings(const struct flow_state *state, uint32_t block, duit
     return (size_t)(end - to);
 }
 
-static int fork_touch(struct flow_state *state, struct touch_args *args, unsigned to)
+static int fork_touch(struct flow_state *state, struct touch_args *args)
 {
-    struct flow_contact_state *contact = &state->contact;
-    struct flow_kept_contacts *kept = contact->kept + args->block;
-    const uint32_t found = contact->found[args->block];
-    kept->n[to] = args->accept ? found : kept->n[contact->now] + found;
-    flow_contact_keep(state, args->block, to, kept->n[to]);
-    args->room = kept->room[to];
+    const uint32_t block = args->block, found = state->contact.found[block];
+    const uint32_t before = args->accept ? 0 : flow_kept_list(state, block, FLOW_FIELD_contacts)->n;
+    flow_contact_keep(state, block, FLOW_FIELD_contacts_next, before + found);
+    args->room = flow_kept_list(state, block, FLOW_FIELD_contacts_next)->room;
     duite_object *rest = flow_contact_rest(state);
-    const duite_object one[] = {kept->list[contact->now], kept->list[to]};
-    const struct flow_given given = {
-        .one = one, .n = list_meetings(state, args->block, rest), .rest = rest};
-    return flow_fork_given(state, &flow_kernel_touch, args, &given);
+    const struct flow_with with = {.n = list_meetings(state, block, rest), .rest = rest};
+    return flow_fork_with(state, &flow_kernel_touch, args, &with);
 }
 
-/* The list that is written is neither that of the step's begin nor the one that is read. */
+/* The contacts where the step began are kept. */
 static int fork_blocks(struct flow_state *state, bool accept)
 {
     struct flow_contact_state *contact = &state->contact;
-    const unsigned to = contact->begin != contact->now ? 3 - contact->begin - contact->now
-                                                       : (contact->now + 1) % FLOW_CONTACT_LISTS;
     const struct flow_step_args step = flow_attempt_args(state);
     struct touch_args args = {.accept = accept,
                               .stiffness = flow_contact_stiffness(state->flow, step.h),
@@ -402,8 +396,11 @@ static int fork_blocks(struct flow_state *state, bool accept)
                               .to = step.time};
     int code = duite_set(state->rt, state->run.contact_energy, NULL);
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
-        code = fork_touch(state, &args, to);
-    contact->now = to;
+        code = fork_touch(state, &args);
+    if (!contact->kept_begin)
+        flow_contact_swap(state, FLOW_FIELD_contacts, FLOW_FIELD_kept_contacts);
+    contact->kept_begin = true;
+    flow_contact_swap(state, FLOW_FIELD_contacts, FLOW_FIELD_contacts_next);
     return code;
 }
 

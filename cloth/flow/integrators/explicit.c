@@ -121,20 +121,20 @@ static int euler_next_body(const duite_call *call, const struct euler_next_field
 
 /* The state is copied first with pins, which write into it before the forces. Its objects stay with
  * recorded rounds of a correction, which name them. */
-bool flow_euler_keeps(const struct model *model)
+static bool euler_keeps(const struct model *model)
 {
     return model->halving && !model_is_driven(model) && !model->correction_rounds;
 }
 
-void flow_euler_restore(struct flow_state *state)
+static void euler_restore(struct flow_state *state)
 {
     flow_swap_kept(state);
     swap_halos(state);
 }
 
-int flow_euler_end(struct flow_state *state)
+static int euler_end(struct flow_state *state)
 {
-    const bool keeps = flow_euler_keeps(state->flow->model);
+    const bool keeps = euler_keeps(state->flow->model);
     struct flow_step_args args = args_at(state, 0);
     flow_fork_each(state, keeps ? &flow_kernel_euler_next : &flow_kernel_euler, &args);
     swap_halos(state);
@@ -143,12 +143,17 @@ int flow_euler_end(struct flow_state *state)
     return state->code;
 }
 
+const struct flow_integrator flow_integrator_explicit_euler = {
+    .end = euler_end, .keeps = euler_keeps, .restore = euler_restore};
+const struct flow_integrator flow_integrator_symplectic_euler = {
+    .end = euler_end, .keeps = euler_keeps, .restore = euler_restore};
+
 /* ---- Velocity Verlet ----
  *
  * f, without the drag, stays from step to step: the last forces of a step begin the next one,
  * unless contact, pins or a correction moved something in between, or the step was taken back. */
 
-int flow_verlet_begin(struct flow_state *state)
+static int verlet_begin(struct flow_state *state)
 {
     struct flow_step_args args = args_at(state, 0);
     if (state->settled_forces && !flow_ties_changed(state))
@@ -191,7 +196,7 @@ static int verlet_second_body(const duite_call *call, const struct verlet_second
     return flow_check(call, t, on->args, on->v, "velocity", on->status);
 }
 
-int flow_verlet_end(struct flow_state *state)
+static int verlet_end(struct flow_state *state)
 {
     struct flow_step_args args = args_at(state, 1);
     flow_fork_each(state, &flow_kernel_verlet_first, &args);
@@ -200,6 +205,9 @@ int flow_verlet_end(struct flow_state *state)
     state->settled_forces = model_leaves_ends(state->flow->model);
     return state->code;
 }
+
+const struct flow_integrator flow_integrator_verlet = {
+    .begin = verlet_begin, .end = verlet_end, .ends_forces = true};
 
 /* ---- The classic Runge-Kutta method: four stages, each a task a block ---- */
 
@@ -234,7 +242,7 @@ static int runge_body(const duite_call *call, const struct runge_fields *on)
     return code ? code : flow_check(call, t, step, on->v, "velocity", on->status);
 }
 
-int flow_runge_end(struct flow_state *state)
+static int runge_end(struct flow_state *state)
 {
     for (uint32_t stage = 0; stage < PHYS_RUNGE_STAGES; stage++) {
         struct runge_args args = {.step = args_at(state, phys_runge_rows[stage].at),
@@ -244,3 +252,5 @@ int flow_runge_end(struct flow_state *state)
     }
     return state->code;
 }
+
+const struct flow_integrator flow_integrator_rk4 = {.end = runge_end, .in_stages = true};

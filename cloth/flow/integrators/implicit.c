@@ -149,7 +149,7 @@ static int implicit_next_body(const duite_call *call, const struct implicit_next
 /* The state is copied first with pins or contact, which write into it before the solve, with
  * recorded rounds of a correction, which name its objects, and with Newton steps, which have
  * bases. */
-bool flow_implicit_euler_keeps(const struct model *model)
+static bool implicit_euler_keeps(const struct model *model)
 {
     return model_keeps(model) && !flow_step_is_driven(model) && !model->correction_rounds &&
            !searches(model);
@@ -157,7 +157,7 @@ bool flow_implicit_euler_keeps(const struct model *model)
 
 static int fork_move(struct flow_state *state)
 {
-    const bool keeps = flow_implicit_euler_keeps(state->flow->model);
+    const bool keeps = implicit_euler_keeps(state->flow->model);
     struct flow_step_args args = flow_attempt_args(state);
     flow_cg_iterate(state);
     state->guessed = state->attempt.length;
@@ -321,19 +321,22 @@ static int finish_step(struct flow_state *state, struct flow_step_args args)
 }
 
 /* The system of a step of implicit Euler, and its solve's begin. */
-int flow_implicit_euler_begin(struct flow_state *state)
+static int implicit_euler_begin(struct flow_state *state)
 {
     flow_assemble(state);
     return flow_cg_start(state);
 }
 
-int flow_implicit_euler_end(struct flow_state *state)
+static int implicit_euler_end(struct flow_state *state)
 {
     if (!searches(state->flow->model))
         return fork_move(state);
     fork_bases(state);
     return finish_step(state, flow_attempt_args(state));
 }
+
+const struct flow_integrator flow_integrator_implicit_euler = {
+    .begin = implicit_euler_begin, .end = implicit_euler_end, .keeps = implicit_euler_keeps};
 
 /* ---- BDF2 ---- */
 
@@ -379,7 +382,7 @@ static int bdf2_start(struct flow_state *state)
 {
     flow_keep_as(state, FLOW_AS(FLOW_FOR(kept_x, last_x), FLOW_FOR(kept_v, last_v)));
     fork_bases(state);
-    flow_implicit_euler_begin(state);
+    implicit_euler_begin(state);
     return finish_step(state, flow_attempt_args(state));
 }
 
@@ -389,7 +392,7 @@ bool flow_implicit_is_second(const struct flow_state *state)
            !flow_ties_changed(state);
 }
 
-int flow_bdf2_end(struct flow_state *state)
+static int bdf2_end(struct flow_state *state)
 {
     struct flow_step_args args = flow_attempt_args(state);
     double slope;
@@ -403,6 +406,8 @@ int flow_bdf2_end(struct flow_state *state)
     fork_system(state, args);
     return finish_step(state, args);
 }
+
+const struct flow_integrator flow_integrator_bdf2 = {.end = bdf2_end, .two_steps = true};
 
 void flow_implicit_status(const struct flow_state *state, double status[FLOW_STATUS])
 {

@@ -3,8 +3,8 @@
 
 #include "cloth/flow/state/state.h"
 
-/* An integrator: its part of a step. A new one is a row here, its rule in model_schemes
- * (cloth/model/model.c), and two functions in explicit.c or implicit.c. */
+/* An integrator: its part of a step, and its fields. explicit.c and implicit.c have one of each of
+ * the model's list (cloth/model/model.h). */
 struct flow_integrator {
     /* Forks the part of a step that leaves x and v as they are; NULL: no such part. */
     int (*begin)(struct flow_state *state);
@@ -20,22 +20,11 @@ struct flow_integrator {
     bool two_steps;   /* last_x, last_v: the state a step before */
 };
 
-/* By enum model_integrator. */
-extern const struct flow_integrator flow_integrators[MODEL_INTEGRATORS];
+#define FLOW_INTEGRATOR_EXTERN(number, name, ...)                                                  \
+    extern const struct flow_integrator flow_integrator_##name;
+MODEL_ALL_INTEGRATORS(FLOW_INTEGRATOR_EXTERN)
 
-/* Both ends of a step by implicit Euler or BDF2 (implicit.c), by either explicit Euler, velocity
- * Verlet, RK4 (explicit.c). They return what the runtime does. */
-int flow_implicit_euler_begin(struct flow_state *state);
-int flow_implicit_euler_end(struct flow_state *state);
-bool flow_implicit_euler_keeps(const struct model *model);
-int flow_bdf2_end(struct flow_state *state);
-int flow_euler_end(struct flow_state *state);
-bool flow_euler_keeps(const struct model *model);
-void flow_euler_restore(struct flow_state *state);
-int flow_verlet_begin(struct flow_state *state);
-int flow_verlet_end(struct flow_state *state);
-int flow_runge_end(struct flow_state *state);
-
+const struct flow_integrator *flow_integrator(const struct model *model);
 /* True if steps of a model keep the state before them (keeps). Local. */
 bool flow_integrator_keeps(const struct model *model);
 /* The rows that a task of a block moves, from x and v in place or beside the state; status notes

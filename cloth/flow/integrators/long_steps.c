@@ -50,7 +50,7 @@ static void warn_of_contacts(struct flow *flow)
 {
     const struct model *model = flow->model;
     const struct contact_spring spring = flow_contact_mode(model)->spring(flow, model->h);
-    const double rate = FLOW_REPULSION_MOST / flow->vertex_mass;
+    const double rate = FLOW_SPRINGS_MOST / flow->vertex_mass;
     const struct flow_limit limit = {.omega = sqrt(rate * spring.stiffness),
                                      .along = rate * spring.damping};
     const double max = flow_limit_of(&limit, model->integrator);

@@ -269,10 +269,10 @@ static int system_save_body(const duite_call *call, const struct system_save_fie
 int flow_system(struct flow_state *state)
 {
     const struct save_args save = {.h = flow_attempt_args(state).h};
-    struct flow_given given = {.rest = state->refs + FLOW_MAX_PARAMETERS};
+    struct flow_with with = {.rest = state->refs + FLOW_MAX_PARAMETERS};
     for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
         for (int k = 0; k < FIELDS; k++)
             if (state->flow->made[fields[k]])
-                given.rest[given.n++] = flow_field_object(state, fields[k], b);
-    return flow_fork_given_at(state, 0, &flow_kernel_system_save, &save, &given);
+                with.rest[with.n++] = flow_field_object(state, fields[k], b);
+    return flow_fork_with_at(state, 0, &flow_kernel_system_save, &save, &with);
 }

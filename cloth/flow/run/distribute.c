@@ -120,14 +120,14 @@ static void make_head(const struct flow *flow, struct flow_head *head)
     head->shared_bytes = lay_shared(head, NULL, &nowhere);
 }
 
-FLOW_KERNEL(broadcast_head, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(head)))
+FLOW_KERNEL(broadcast_head, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(sent)))
 static int broadcast_head_body(const duite_call *call, const struct broadcast_head_fields *on)
 {
-    make_head(flow_of(call), on->head);
+    make_head(flow_of(call), (struct flow_head *)(void *)on->sent);
     return 0;
 }
 
-FLOW_KERNEL(broadcast_shared, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(shared)))
+FLOW_KERNEL(broadcast_shared, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(sent)))
 static int broadcast_shared_body(const duite_call *call, const struct broadcast_shared_fields *on)
 {
     const struct flow *flow = flow_of(call);
@@ -136,8 +136,8 @@ static int broadcast_shared_body(const duite_call *call, const struct broadcast_
     const struct model *m = &head->model;
     struct shared_arrays to;
     make_head(flow, head);
-    memset(on->shared, 0, head->shared_bytes);
-    lay_shared(head, on->shared, &to);
+    memset(on->sent, 0, head->shared_bytes);
+    lay_shared(head, on->sent, &to);
 #define SHARED_PUT(type, name, n, from) put_bytes(to.name, from, (n) * sizeof *to.name);
     SHARED(SHARED_PUT)
     put_frictions(flow->model, to.friction);
@@ -154,7 +154,7 @@ int flow_broadcast(struct flow_state *state, const struct flow_kernel *kernel, s
     const struct flow_block_args all = {0};
     duite_object object;
     flow_noted(state, duite_new(state->rt, DUITE_BYTE, bytes, &object));
-    flow_fork_given_at(state, 0, kernel, &all, &(struct flow_given){.one = &object});
+    flow_fork_with_at(state, 0, kernel, &all, &(struct flow_with){.sent = object});
     if (!state->code)
         flow_noted(state, duite_get(state->rt, object, received));
     if (object.generation)

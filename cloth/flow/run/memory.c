@@ -105,8 +105,8 @@ int flow_memory_agree(struct flow_state *state)
     int32_t nothing;
     flow_noted(state, duite_new(state->rt, DUITE_I32, 1, &lacks));
     for (int rank = 0; rank < duite_ranks(state->rt); rank++)
-        flow_fork_given_at(state, rank, &flow_kernel_ready, &none,
-                           &(struct flow_given){.one = &lacks});
+        flow_fork_with_at(state, rank, &flow_kernel_ready, &none,
+                          &(struct flow_with){.lacks = lacks});
     if (!state->code)
         flow_noted(state, duite_get(state->rt, lacks, &nothing));
     return flow_noted(state, duite_free(state->rt, lacks));

@@ -57,13 +57,13 @@ bool flow_step_is_driven(const struct model *model)
 
 static int step_fork_begin(struct flow_state *state)
 {
-    const struct flow_integrator *is = flow_integrators + state->flow->model->integrator;
+    const struct flow_integrator *is = flow_integrator(state->flow->model);
     return is->begin ? is->begin(state) : DUITE_OK;
 }
 
 static int fork_end(struct flow_state *state)
 {
-    return flow_integrators[state->flow->model->integrator].end(state);
+    return flow_integrator(state->flow->model)->end(state);
 }
 
 /* The part of a step. Up to SOLVE: its begin, which leaves x and v as they are, unless velocities

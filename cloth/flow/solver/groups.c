@@ -89,12 +89,13 @@ static int fork_groups(struct flow_state *state, const struct flow_kernel *kerne
         for (uint32_t g = 0; g < flow->level[level].n_groups; g++) {
             const struct group_args args = {.level = level, .group = g};
             const struct flow_group *group = state->groups.all + flow->first_group[level] + g;
-            const duite_object made[] = {group->factor, group->coupling};
-            const duite_object solved[] = {group->motion, group->part, group->factor};
-            const struct flow_given given = {.one = makes ? made : solved,
-                                             .n = list_covered(state, &args, makes, rest),
-                                             .rest = rest};
-            flow_fork_given(state, kernel, &args, &given);
+            const struct flow_with with = {.group_factor = group->factor,
+                                           .group_coupling = group->coupling,
+                                           .group_motion = group->motion,
+                                           .group_part = group->part,
+                                           .n = list_covered(state, &args, makes, rest),
+                                           .rest = rest};
+            flow_fork_with(state, kernel, &args, &with);
         }
     return state->code;
 }

@@ -152,8 +152,9 @@ int flow_halo_pack(struct flow_state *state, uint32_t b, int to)
     const struct flow_packed *packed = &state->packed;
     for (uint32_t i = packed->first[b]; i < packed->first[b + 1]; i++) {
         const struct pack_args args = {.block = b, .halo = i};
-        const duite_object one[] = {state->block[b].halo_q[to], packed->halo[i].object[to]};
-        flow_fork_given(state, &flow_kernel_cg_pack, &args, &(struct flow_given){.one = one});
+        const struct flow_with with = {.whole_halo = state->block[b].halo_q[to],
+                                       .packed_halo = packed->halo[i].object[to]};
+        flow_fork_with(state, &flow_kernel_cg_pack, &args, &with);
     }
     return state->code;
 }

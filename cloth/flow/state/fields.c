@@ -2,6 +2,7 @@
 #include "cloth/flow/state/bodies.h"
 
 #include "cloth/flow/contact/body.h"
+#include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/image.h"
 #include "cloth/flow/contact/mode.h"
 #include "cloth/flow/contact/skin.h"
@@ -39,9 +40,12 @@ static size_t matrix_numbers(const struct flow_table *t, bool is_filtered, uint3
            filter;
 }
 
-static const struct flow_integrator *integrator_of(const struct model *model)
+/* Of one of a block's three lists of contacts. */
+static size_t list_bytes(const struct flow_state *state, uint32_t block,
+                         enum flow_field_id contacts)
 {
-    return flow_integrators + model->integrator;
+    const uint32_t room = flow_kept_list(state, block, contacts)->room;
+    return flow_contact_index_room(room, state->flow->tables.n_blocks);
 }
 
 /* A word is a function of the state and a block, whose shape is t. */
@@ -76,6 +80,10 @@ ROWS(tie_bytes,     tie_table_bytes(t->n, tie_room(state, block)))
 ROWS(ghosts_tied,   ghosts(state, block) + tie_rows(state, block))
 ROWS(record_bytes,  sizeof(struct flow_tie_record) + flow->tables.n_blocks * sizeof(struct flow_tie_link))
 ROWS(records_bytes, flow->tables.n_blocks * record_bytes(state, block))
+ROWS(contacts_bytes,      list_bytes(state, block, FLOW_FIELD_contacts))
+ROWS(kept_contacts_bytes, list_bytes(state, block, FLOW_FIELD_kept_contacts))
+ROWS(contacts_next_bytes, list_bytes(state, block, FLOW_FIELD_contacts_next))
+ROWS(meetings,      state->contact.meetings.n)
 ROWS(sides,         (size_t)flow->tables.n_blocks + model->n_obstacles)
 ROWS(obstacles,     model->n_obstacles)
 ROWS(body_skins,    bodies_end(model).skin)
@@ -112,9 +120,9 @@ EXISTS(shows_force,  flow_shows_contact(state))
 EXISTS(meets_bodies, flow_bodies_are_met(model))
 EXISTS(mapped,       block < flow_map_strips(flow))
 EXISTS(corrected,    model->correction_rounds > 0)
-EXISTS(in_stages,    integrator_of(model)->in_stages)
-EXISTS(staged,       integrator_of(model)->in_stages || integrator_of(model)->ends_forces)
-EXISTS(two_steps,    integrator_of(model)->two_steps)
+EXISTS(in_stages,    flow_integrator(model)->in_stages)
+EXISTS(staged,       flow_integrator(model)->in_stages || flow_integrator(model)->ends_forces)
+EXISTS(two_steps,    flow_integrator(model)->two_steps)
 EXISTS(based,        two_steps(state, block) || (implicit_run(state, block) && model->newton_steps > 1))
 EXISTS(filtered,     implicit_run(state, block) && model_is_filtered(model))
 EXISTS(conditioned,  flow_is_preconditioned(flow))
@@ -130,15 +138,17 @@ EXISTS(tied_pieces,  in_pieces(state, block) && may_be_tied(state, block))
 
 /* The use between two steps. derived_once: the filter, and so the basis, changes in each step with
  * sliders that move. state_of_ends: a step may begin with the forces that ended the one before.
- * state_of_guess: a linear step may begin its solve with dv of the step before. state_of_frames: a
- * frame may show the end of the step before. */
+ * state_of_guess: a linear step may begin its solve with dv of the step before. state_of_carried:
+ * contacts may hand over to those of the next step. state_of_frames: a frame may show the end of the
+ * step before. */
 LIFE(state_field,       FLOW_STATE_FIELD)
 LIFE(derived,           FLOW_DERIVED)
 LIFE(work,              FLOW_WORK)
 LIFE(derived_once,      model_is_filtered(model) ? FLOW_WORK : FLOW_DERIVED)
 LIFE(derived_of_bodies, flow_bodies_move(model) ? FLOW_WORK : FLOW_DERIVED)
-LIFE(state_of_ends,     integrator_of(model)->ends_forces && model_leaves_ends(model) ? FLOW_STATE_FIELD : FLOW_WORK)
+LIFE(state_of_ends,     flow_integrator(model)->ends_forces && model_leaves_ends(model) ? FLOW_STATE_FIELD : FLOW_WORK)
 LIFE(state_of_guess,    model_is_linear(model) && model->guess != MODEL_GUESS_ZERO ? FLOW_STATE_FIELD : FLOW_WORK)
+LIFE(state_of_carried,  flow_contact_mode(model)->carries ? FLOW_STATE_FIELD : FLOW_WORK)
 LIFE(state_of_frames,   model->contact.force ? FLOW_STATE_FIELD : FLOW_WORK)
 /* clang-format on */
 
@@ -146,6 +156,7 @@ LIFE(state_of_frames,   model->contact.force ? FLOW_STATE_FIELD : FLOW_WORK)
 
 #define TYPE_OF(type)                                                                              \
     _Generic((type *)0, unsigned char *                                                            \
+             : DUITE_BYTE, struct flow_list *                                                      \
              : DUITE_BYTE, uint32_t *                                                              \
              : DUITE_I32, int64_t *                                                                \
              : DUITE_I64, uint64_t *                                                               \

@@ -117,7 +117,12 @@ enum {
     X(probe_force,  ONE,     phys_vec,      4, rows,          probed,       work)                  \
     X(probe_values, ONE,     double,        FLOW_PROBE_VALUES, watched,       probed,       work)  \
     /* what travels to rank 0 on its own, empty in between */                                      \
-    X(gathered,     SIZED,   unsigned char, FLOW_VERTEX_BYTES, rows,          always,       work)
+    X(gathered,     SIZED,   unsigned char, FLOW_VERTEX_BYTES, rows,          always,       work)  \
+    /* its contacts (contact/contact.h), behind all that a checkpoint has besides; where the step   \
+     * began, if others were made since; as they are made */                                       \
+    X(contacts,     SIZED,   struct flow_list, 1, contacts_bytes,      meets, state_of_carried)    \
+    X(kept_contacts, SIZED,  struct flow_list, 1, kept_contacts_bytes, meets, work)                \
+    X(contacts_next, SIZED,  struct flow_list, 1, contacts_next_bytes, meets, work)
 
 /* Fields of the whole run; they live where the first block lives. */
 #define FLOW_RUN_FIELDS(X)                                                                         \
@@ -132,6 +137,7 @@ enum {
     X(slope,        ONE,     double,        1, one,           implicit_run, work)                  \
     X(roots,        ONE,     double,        FLOW_ROOT, sides,     meets,        work)              \
     X(tie_said,     SIZED,   unsigned char, 1, records_bytes, meets,        work)                  \
+    X(meeting_counts, ONE,   double,        FLOW_COUNTS, meetings, meets, work)                    \
     X(cut_counts,   ONE,     double,        FLOW_CUT_COUNTS, one, sweeps,       work)              \
     X(cut_longest,  ONE,     double,        1, one,           sweeps,       work)                  \
     X(obstacle_force, ONE,   phys_vec,      4, obstacles,     feels,        work)                  \
@@ -166,25 +172,18 @@ enum {
 
 /* Objects that are no fields: their number follows from the run, or they live for a moment. */
 #define FLOW_OBJECTS(X)                                                                            \
-    /* set-up: of rank 0 for all; what a rank lacks; a checkpoint's main program, its objects */   \
-    X(head, struct flow_head)                                                                      \
-    X(shared, char)                                                                                \
+    /* set-up: of rank 0 for all; what a rank lacks; a checkpoint's objects */                     \
+    X(sent, unsigned char)                                                                         \
     X(lacks, int32_t)                                                                              \
-    X(main_program, unsigned char)                                                                 \
     X(saved_objects, unsigned char)                                                                \
     /* the fields of all blocks that make the system of a step (observe/system.c) */               \
     X(system_objects, unsigned char)                                                               \
-    /* contact (contact.h): a meeting's list, the counts of all; of its second side; the contacts  \
-     * of a block before and after, those of blocks */                                             \
+    /* contact (contact.h): a meeting's list; of its second side; the lists of a block's */        \
     X(near, struct flow_list)                                                                      \
-    X(counts, double)                                                                              \
     X(other_skin, unsigned char)                                                                   \
     X(other_x, phys_vec)                                                                           \
     X(other_boxes, unsigned char)                                                                  \
-    X(before, struct flow_list)                                                                    \
-    X(after, struct flow_list)                                                                     \
     X(meetings, struct flow_list)                                                                  \
-    X(keepers, struct flow_list)                                                                   \
     /* the solver: rows of s that another rank reads (halo.c); a group, what it covers (groups.c)  \
      */                                                                                            \
     X(whole_halo, double)                                                                          \
@@ -195,9 +194,8 @@ enum {
     X(group_part, double)                                                                          \
     X(covered, double)
 
-/* FLOW_FIELD_name, and FLOW_FIELD_name_next behind it. Objects that are no fields have the number
- * of none. */
-#define FLOW_OBJECT_ID(name, type)     FLOW_FIELD_##name = FLOW_FIELDS_OF_ALL,
+/* FLOW_FIELD_name, and FLOW_FIELD_name_next behind it; the objects that are no fields last. */
+#define FLOW_OBJECT_ID(name, type)     FLOW_FIELD_##name,
 #define FLOW_FIELD_ID(name, many, ...) FLOW_FIELD_ID_##many(name)
 #define FLOW_FIELD_ID_ONE(name)        FLOW_FIELD_##name,
 #define FLOW_FIELD_ID_SIZED(name)      FLOW_FIELD_##name,
@@ -207,9 +205,13 @@ enum flow_field_id {
     FLOW_BLOCK_FIELDS(FLOW_FIELD_ID) FLOW_FIELDS_OF_BLOCK,
     FLOW_FIELD_BEFORE_RUN = FLOW_FIELDS_OF_BLOCK - 1,
     FLOW_RUN_FIELDS(FLOW_FIELD_ID) FLOW_FIELDS_OF_ALL,
-    FLOW_OBJECTS(FLOW_OBJECT_ID)
+    FLOW_FIELD_BEFORE_OBJECTS = FLOW_FIELDS_OF_ALL - 1,
+    FLOW_OBJECTS(FLOW_OBJECT_ID) FLOW_FIELDS_AND_OBJECTS
 };
-enum { FLOW_FIELDS_OF_RUN = FLOW_FIELDS_OF_ALL - FLOW_FIELDS_OF_BLOCK };
+enum {
+    FLOW_FIELDS_OF_RUN = FLOW_FIELDS_OF_ALL - FLOW_FIELDS_OF_BLOCK,
+    FLOW_NO_FIELDS = FLOW_FIELDS_AND_OBJECTS - FLOW_FIELDS_OF_ALL
+};
 
 #define FLOW_FIELD_MEMBER(name, many, ...) FLOW_FIELD_MEMBER_##many(name)
 #define FLOW_FIELD_MEMBER_ONE(name)        duite_object name;
@@ -277,8 +279,10 @@ size_t flow_field_place(const struct flow_state *state, enum flow_field_id field
 /* Swaps the objects of two fields in all blocks. Both exist, alike. */
 void flow_fields_swap(struct flow_state *state, enum flow_field_id a, enum flow_field_id b);
 
-/* All objects that exist. A failure is returned by the next get. */
+/* All objects that exist. The second makes one again, of the size that the table says now. A
+ * failure is returned by the next get. */
 void flow_objects_make(struct flow_state *state);
+void flow_object_again(struct flow_state *state, enum flow_field_id field, uint32_t block);
 struct flow_tie_room;
 /* Gives a block room for ties: makes those of its objects again that get another size. */
 void flow_objects_fit(struct flow_state *state, uint32_t block, const struct flow_tie_room *room);

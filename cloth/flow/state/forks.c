@@ -1,5 +1,6 @@
 /* Forks of kernels that declare their fields (kernel.h): the objects follow from the declaration.
- * All of a run's forks but those of contact's own lists are here, so its first failure is, too. */
+ * All forks of a run are here, so its first failure is, too. */
+#include "cloth/flow/contact/contact.h"
 #include "cloth/flow/state/bodies.h"
 
 /* The field that the fork gives for a declared one. */
@@ -38,15 +39,13 @@ static void forks_find_places(const struct flow_state *state, const struct flow_
         const enum flow_field_id field = given_for(as, p->field);
         if (p->whose == FLOW_REST_OF_FORK)
             continue;
-        if (p->whose == FLOW_OF_FORK) {
-            places->of[places->n++].whose = p->whose;
-            continue;
-        }
-        if (!is_there(state, p->whose, field))
+        const bool given = p->whose == FLOW_OF_FORK;
+        if (!given && !is_there(state, p->whose, field))
             continue;
         places->of[places->n].whose = p->whose;
         places->of[places->n].field = field;
-        places->of[places->n++].at = flow_field_place(state, field);
+        places->of[places->n++].at =
+            given ? field - FLOW_FIELDS_OF_ALL : flow_field_place(state, field);
     }
 }
 
@@ -69,16 +68,22 @@ static duite_object *forks_add_others(const struct flow_state *state, uint32_t b
     else if (whose == FLOW_OF_TIED)
         for (uint32_t i = tied->first[block]; i < tied->first[block + 1]; i++)
             *refs++ = object_at(state, at, tied->other[i]);
-    else
+    else if (whose == FLOW_OF_KEEPERS) {
+        flow_contact_keepers(state, block, state->contact.mark);
+        for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
+            if (state->contact.mark[b])
+                *refs++ = object_at(state, at, b);
+    } else
         for (uint32_t b = 0; b < state->flow->made[field]; b++)
             if (flow_fields[field].exists(state, b))
                 *refs++ = object_at(state, at, b);
     return refs;
 }
 
-/* Puts the objects of a fork into `refs`, but those of REST. Returns how many. one: of GIVEN. */
+/* Puts the objects of a fork into `refs`, but those of REST. Returns how many. with: NULL, or those
+ * of GIVEN. */
 static size_t list_objects(const struct flow_state *state, const struct places *places,
-                           uint32_t block, const duite_object *one, duite_object *refs)
+                           uint32_t block, const struct flow_with *with, duite_object *refs)
 {
     duite_object *end = refs;
     for (size_t i = 0; i < places->n; i++) {
@@ -87,7 +92,7 @@ static size_t list_objects(const struct flow_state *state, const struct places *
         if (whose == FLOW_OWN || whose == FLOW_OWN_IF_MADE || whose == FLOW_IF_MADE)
             *end++ = object_at(state, at, block);
         else if (whose == FLOW_OF_FORK)
-            *end++ = *one++;
+            *end++ = with->of[at];
         else
             end = forks_add_others(state, block, whose, places->of[i].field, at, end);
     }
@@ -202,26 +207,26 @@ int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *k
     return fork_task(state, &rank, flow_task_of(state, kernel), args, n, state->refs);
 }
 
-static int fork_given(struct flow_state *state, const int *rank, const struct flow_kernel *kernel,
-                      const void *args, const struct flow_given *given)
+static int fork_with(struct flow_state *state, const int *rank, const struct flow_kernel *kernel,
+                     const void *args, const struct flow_with *with)
 {
     const uint32_t *block = args;
     duite_object room[FLOW_MAX_PARAMETERS];
     struct places places;
     forks_find_places(state, kernel, NULL, &places);
-    duite_object *first = given->rest ? given->rest - places.n : room;
-    const size_t n = list_objects(state, &places, block ? *block : 0, given->one, first);
-    return fork_task(state, rank, &kernel->task, args, n + given->n, first);
+    duite_object *first = with->rest ? with->rest - places.n : room;
+    const size_t n = list_objects(state, &places, *block, with, first);
+    return fork_task(state, rank, &kernel->task, args, n + with->n, first);
 }
 
-int flow_fork_given(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
-                    const struct flow_given *given)
+int flow_fork_with(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
+                   const struct flow_with *with)
 {
-    return fork_given(state, NULL, kernel, args, given);
+    return fork_with(state, NULL, kernel, args, with);
 }
 
-int flow_fork_given_at(struct flow_state *state, int rank, const struct flow_kernel *kernel,
-                       const void *args, const struct flow_given *given)
+int flow_fork_with_at(struct flow_state *state, int rank, const struct flow_kernel *kernel,
+                      const void *args, const struct flow_with *with)
 {
-    return fork_given(state, &rank, kernel, args, given);
+    return fork_with(state, &rank, kernel, args, with);
 }

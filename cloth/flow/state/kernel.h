@@ -31,13 +31,15 @@
  *                NULL
  *     TIED       reads this field of each block that ties (ties.h) join this one with, ascending,
  *                if it exists in the run; a member tied_field. IF_MADE(tie_table) comes before it
- *     GIVEN_R GIVEN_W GIVEN_SUM    an object of FLOW_OBJECTS, which the fork gives
+ *     KEEPERS    reads this field of each block that may keep contacts with corners in this one,
+ *                ascending; the last parameter, and a member n_field says how many
+ *     GIVEN_R GIVEN_W GIVEN_SUM    an object of FLOW_OBJECTS, which the fork gives by its name
  *     REST_R REST_W                reads, or overwrites, all further ones that the fork gives; the
  *                                  last parameter, and a member n_object says how many
  *
  * W_IF, RW_IF and SUM_ELSE, then NEIGHBOURS, IF_MADE and TIED come behind the others, in this
- * order; ALL comes last. A body gets NEIGHBOURS, ALL, TIED and REST as parameters: flow_rows_of,
- * flow_numbers_of.
+ * order; ALL comes last. A body gets NEIGHBOURS, ALL, TIED, KEEPERS and REST as parameters:
+ * flow_rows_of, flow_numbers_of.
  *
  * FLOW_INDEX_OF(velocity, v) is the index of a parameter, for calls of the runtime that want one.
  *
@@ -83,6 +85,7 @@ enum flow_whose {
     FLOW_IF_MADE,
     FLOW_OF_TIED,
     FLOW_OF_ALL,
+    FLOW_OF_KEEPERS,
     FLOW_OF_FORK,
     FLOW_REST_OF_FORK
 };
@@ -150,6 +153,7 @@ struct flow_kernel {
 #define FLOW_WORD_NEIGHBOURS(field) MANY, const, , , FLOW_OF_NEIGHBOURS, field
 #define FLOW_WORD_ALL(field)        MANY, const, , , FLOW_OF_ALL, field
 #define FLOW_WORD_TIED(field)       TIED, const, , , FLOW_OF_TIED, field
+#define FLOW_WORD_KEEPERS(field)    REST, const, DUITE_R, , FLOW_OF_KEEPERS, field
 #define FLOW_WORD_GIVEN_R(object)   GIVEN, const, DUITE_R, NULL, FLOW_OF_FORK, object
 #define FLOW_WORD_GIVEN_W(object)   GIVEN, , DUITE_W, NULL, FLOW_OF_FORK, object
 #define FLOW_WORD_GIVEN_SUM(object) GIVEN, , DUITE_CW, &duite_sum, FLOW_OF_FORK, object
@@ -275,10 +279,8 @@ struct flow_kernel {
 #define FLOW_FIELD_TYPE_BY_STEP(name, type)                                                        \
     typedef type flow_type_of_##name, flow_type_of_##name##_next;
 #define FLOW_FIELD_TYPE_BY_PASS(name, type) FLOW_FIELD_TYPE_BY_STEP(name, type)
-FLOW_FIELDS(FLOW_FIELD_TYPE)
-
-struct flow_head;
 struct flow_list;
+FLOW_FIELDS(FLOW_FIELD_TYPE)
 #define FLOW_OBJECT_TYPE(name, type) typedef type flow_type_of_##name;
 FLOW_OBJECTS(FLOW_OBJECT_TYPE)
 
@@ -316,17 +318,23 @@ int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *k
 /* The runtime's kernel of a run. */
 const duite_kernel *flow_task_of(const struct flow_state *state, const struct flow_kernel *kernel);
 
-/* The objects that a fork gives: those of GIVEN words, in order; n of REST. As many objects as a
+/* The objects that a fork gives: those of GIVEN words by name, n of REST. As many objects as a
  * kernel has parameters may be written before `rest`. */
-struct flow_given {
-    const duite_object *one;
+#define FLOW_OBJECT_MEMBER(name, type) duite_object name;
+struct flow_with {
+    union {
+        duite_object of[FLOW_NO_FIELDS];
+        struct {
+            FLOW_OBJECTS(FLOW_OBJECT_MEMBER)
+        };
+    };
     size_t n;
     duite_object *rest; /* NULL: none */
 };
-int flow_fork_given(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
-                    const struct flow_given *given);
-int flow_fork_given_at(struct flow_state *state, int rank, const struct flow_kernel *kernel,
-                       const void *args, const struct flow_given *given);
+int flow_fork_with(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
+                   const struct flow_with *with);
+int flow_fork_with_at(struct flow_state *state, int rank, const struct flow_kernel *kernel,
+                      const void *args, const struct flow_with *with);
 
 /* Puts the objects that a fork of the kernel on a block gives into state->refs. Returns how many:
  * for forks that give others in place of some. The second forks with n objects there. */

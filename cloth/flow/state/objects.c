@@ -1,6 +1,7 @@
 /* Loops over the table of fields (fields.h) make, free, find and swap their objects. A block's
  * objects live where its positions live. Mappings see the graph of the blocks: a block weighs its
  * vertices, and two blocks exchange the ghosts of each. */
+#include "cloth/flow/contact/contact.h"
 #include "cloth/flow/state/bodies.h"
 
 #include <stddef.h>
@@ -19,6 +20,15 @@ static void make_field(struct flow_state *state, enum flow_field_id field, uint3
         duite_new(state->rt, flow_fields[field].type, numbers, object);
     if (field != FLOW_FIELD_x)
         duite_colocate(state->rt, *object, state->block[block].x);
+}
+
+void flow_object_again(struct flow_state *state, enum flow_field_id field, uint32_t block)
+{
+    duite_object *object = field < FLOW_FIELDS_OF_BLOCK
+                               ? state->block[block].of + field
+                               : state->run.of + (field - FLOW_FIELDS_OF_BLOCK);
+    duite_free(state->rt, *object);
+    make_field(state, field, block, object);
 }
 
 static void hint_block(struct flow_state *state, uint32_t b)
@@ -65,17 +75,13 @@ static size_t numbers_made(const struct flow_state *state, enum flow_field_id fi
 
 void flow_objects_fit(struct flow_state *state, uint32_t block, const struct flow_tie_room *room)
 {
-    duite_object *of = state->block[block].of;
     size_t before[FLOW_FIELDS_OF_BLOCK];
     for (int field = 0; field < FLOW_FIELDS_OF_BLOCK; field++)
         before[field] = numbers_made(state, (enum flow_field_id)field, block);
     state->tied.now.room[block] = *room;
-    for (int field = 0; field < FLOW_FIELDS_OF_BLOCK; field++) {
-        if (before[field] == numbers_made(state, (enum flow_field_id)field, block))
-            continue;
-        duite_free(state->rt, of[field]);
-        make_field(state, (enum flow_field_id)field, block, of + field);
-    }
+    for (int field = 0; field < FLOW_FIELDS_OF_BLOCK; field++)
+        if (before[field] != numbers_made(state, (enum flow_field_id)field, block))
+            flow_object_again(state, (enum flow_field_id)field, block);
 }
 
 /* Frees the objects that were made; the others are zero. */
@@ -93,6 +99,7 @@ int flow_objects_free(struct flow_state *state)
         flow_noted(state, duite_graph_free(state->rt, state->solve));
     if (state->correct.generation)
         flow_noted(state, duite_graph_free(state->rt, state->correct));
+    flow_contact_part(state);
     for (uint32_t i = 0; i < state->packed.n; i++)
         free_objects(state, 2, state->packed.halo[i].object);
     for (uint32_t g = 0; g < state->groups.n; g++) {

@@ -64,7 +64,7 @@ int flow_restore(struct flow_state *state)
 {
     struct flow_block_args args;
     const struct model *model = state->flow->model;
-    const struct flow_integrator *is = flow_integrators + model->integrator;
+    const struct flow_integrator *is = flow_integrator(model);
     if (!is->restore || !flow_integrator_keeps(model))
         return flow_fork_each(state, &flow_kernel_restore, &args);
     is->restore(state);

@@ -75,6 +75,16 @@ enum {
     FLOW_TORQUE = FLOW_ENERGIES,
     FLOW_SUMS = FLOW_TORQUE + 3
 };
+/* Counts that a task of two sides adds, of their meeting: failing pairs; certified pairs; items of
+ * its list, with or without room; items that the first side keeps; the second. */
+enum {
+    FLOW_COUNT_FAILS,
+    FLOW_COUNT_PASSES,
+    FLOW_COUNT_ALL,
+    FLOW_COUNT_FIRST,
+    FLOW_COUNT_SECOND,
+    FLOW_COUNTS
+};
 /* Numbers of a box: low and high corner. */
 enum { FLOW_ROOT = 6 };
 /* Counts of cuts: rows; rows that lose more than half; the change of their momentum, three numbers,
@@ -162,15 +172,15 @@ struct flow_meeting {
 struct flow_meetings {
     uint32_t n, room;
     struct flow_meeting *all;
-    duite_object counts; /* the counts of their tasks, and */
-    double *count;       /* their values at the last look */
+    double *count; /* the field meeting_counts at the last look */
 };
 
-/* The contacts of a block: lists of struct flow_contact, for so many. They take turns. */
-enum { FLOW_CONTACT_LISTS = 3 };
+/* The lists of a block's contacts, of the fields `contacts` and the two behind it: each has room
+ * for so many, and at most n of them are there. */
 struct flow_kept_contacts {
-    duite_object list[FLOW_CONTACT_LISTS];
-    uint32_t room[FLOW_CONTACT_LISTS], n[FLOW_CONTACT_LISTS]; /* n: at most so many are there */
+    struct flow_kept_list {
+        uint32_t room, n;
+    } list[3];
 };
 
 /* The step that bodies have points and boxes of (cloth/flow/contact/body.h). */
@@ -190,7 +200,7 @@ struct flow_maps_now {
 struct flow_contact_state {
     struct flow_meetings meetings;
     struct flow_kept_contacts *kept; /* a block */
-    unsigned begin, now; /* which lists are those where the step began, and of the next solve */
+    bool kept_begin; /* kept_contacts are those where the step began; else `contacts` are */
     struct contact_solid *solid; /* an obstacle that is no body: where it is over the step */
     struct flow_bodies_now bodies;
     double *root;    /* a block, then an obstacle that is a body: the box around its skin over the
@@ -198,7 +208,7 @@ struct flow_contact_state {
     uint32_t *found; /* a block: contacts that the last look found */
     unsigned char *mark; /* a block: room */
     unsigned char *said; /* the records of all blocks' ties */
-    duite_object *refs;  /* room for the objects of any task */
+    duite_object *refs;  /* room for the lists of meetings of any task */
     uint64_t near;       /* how many contacts there are at the end of the step */
     uint64_t cut;        /* how often a way was cut in the step */
     uint64_t pushed;     /* contacts of the step that springs push apart */

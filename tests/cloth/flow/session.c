@@ -32,8 +32,7 @@ void session_start(struct session *s)
 void session_end(struct session *s)
 {
     ck_assert_int_eq(duite_wait(s->rt), 0);
-    ck_assert_int_eq(flow_contact_free_objects(&s->state), 0);
-    flow_objects_free(&s->state);
+    ck_assert_int_eq(flow_objects_free(&s->state), 0);
     flow_memory_free(&s->state);
     ck_assert_int_eq(duite_stop(&s->rt), 0);
     flow_free(s->flow);

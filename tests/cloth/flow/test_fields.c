@@ -227,8 +227,9 @@ UNIT_LOOP(parameters_stand_in_order, 0, FLOW_KERNELS_OF_ALL)
     for (; p->whose != FLOW_NOBODY && p[1].whose != FLOW_NOBODY; p++) {
         ck_assert_msg(place_of(p) <= place_of(p + 1), "%s: parameter %d", all[_i]->task.name,
                       (int)(p - all[_i]->parameter) + 1);
-        ck_assert_msg(p->whose != FLOW_OF_ALL && p->whose != FLOW_REST_OF_FORK, "%s: parameter %d",
-                      all[_i]->task.name, (int)(p - all[_i]->parameter));
+        ck_assert_msg(p->whose != FLOW_OF_ALL && p->whose != FLOW_OF_KEEPERS &&
+                          p->whose != FLOW_REST_OF_FORK,
+                      "%s: parameter %d", all[_i]->task.name, (int)(p - all[_i]->parameter));
     }
 }
 

@@ -47,26 +47,27 @@ ok "the manual page has all options" documented
 
 # ---- Wrong command lines
 
-wrong() { # SENTENCE ARGUMENT...: status 2, the sentence once, nothing on standard output; on one rank and, but for the quick subset, on two
+wrong_run=run
+wrong() { # SENTENCE ARGUMENT...: status 2, the sentence once, nothing on standard output
     wrong_what=$1
     shift
-    for wrong_run in run "ranks 2 $DUITE_CLOTH"; do
-        status=0
-        # shellcheck disable=SC2086 # two words and more
-        prints $wrong_run "$@" || status=$?
-        echo "exit status $status"
-        cat complained
-        test $status = 2 && test ! -s printed && test "$(grep -c -F -e "$wrong_what" complained)" = 1 || return 1
-        ! quick || break
-    done
+    status=0
+    # shellcheck disable=SC2086 # two words and more
+    prints $wrong_run "$@" || status=$?
+    echo "exit status $status"
+    cat complained
+    test $status = 2 && test ! -s printed && test "$(grep -c -F -e "$wrong_what" complained)" = 1
 }
-ok "no scene" wrong "duite-cloth: a scene file is expected; see duite-cloth --help"
+wrong_on_two() { # the same on one rank and, but for the quick subset, on two: once for each place that finds faults
+    wrong "$@" && { quick || (wrong_run="ranks 2 $DUITE_CLOTH" && wrong "$@"); }
+}
+ok "no scene" wrong_on_two "duite-cloth: a scene file is expected; see duite-cloth --help"
 ok "two scenes" wrong "duite-cloth: other.yaml: a second scene file; one is expected" scene.yaml other.yaml
 ok "an unknown option" wrong "unrecognized option '--frames'" scene.yaml --frames 3
 ok "an option without its value" wrong "option '--end' requires an argument" scene.yaml --end
 ok "a report of no name" wrong "duite-cloth: --report: an empty name" scene.yaml --report ''
 ok "a folder of no name" wrong "duite-cloth: --output: an empty name" scene.yaml --output ''
-ok "no threads" wrong "duite-cloth: --threads 0: a whole number from 1 to 4096 is expected" scene.yaml --threads 0
+ok "no threads" wrong_on_two "duite-cloth: --threads 0: a whole number from 1 to 4096 is expected" scene.yaml --threads 0
 ok "a format of keys that is none" wrong "duite-cloth: --keys=html: markdown is expected, or no format" --keys=html
 ok "half a number" wrong "duite-cloth: --threads 2x: a whole number from 1 to 4096 is expected" scene.yaml --threads 2x
 ok "a negative seed" wrong "duite-cloth: --seed -1: a whole number from 0 to 18446744073709551615 is expected" scene.yaml \
@@ -77,7 +78,7 @@ ok "a mapping of no name" wrong "duite-cloth: --mapping flat: there is no mappin
     --mapping flat
 ok "a balancer of no name" wrong "duite-cloth: --balance fair: there is no balancer of this name; known are none, " \
     scene.yaml --balance fair
-ok "a time that is none" wrong "duite-cloth: --end soon: time.end is soon; a finite number > 0 (s) is expected" scene.yaml \
+ok "a time that is none" wrong_on_two "duite-cloth: --end soon: time.end is soon; a finite number > 0 (s) is expected" scene.yaml \
     --end soon
 
 # ---- Runs
@@ -152,11 +153,12 @@ options_first() {
          --trace option.trace) && is scheduler lifo && is mapping block && is balance none && is threads 2 && test -s option.trace
 }
 ok "options go first" options_first
-wrong_variable() { # SENTENCE SETTING: as wrong, and without a folder of frames
-    (export "${2?}" && wrong "$1" scene.yaml --output untouched) && test ! -e untouched
+wrong_variable() { # SENTENCE SETTING [wrong_on_two]: as wrong, and without a folder of frames
+    (export "${2?}" && "${3-wrong}" "$1" scene.yaml --output untouched) && test ! -e untouched
 }
 ok "DUITE_SCHEDULER of no name" wrong_variable \
-    "duite-cloth: DUITE_SCHEDULER=lazy in the environment: there is no scheduler of this name; known are steal, " DUITE_SCHEDULER=lazy
+    "duite-cloth: DUITE_SCHEDULER=lazy in the environment: there is no scheduler of this name; known are steal, " DUITE_SCHEDULER=lazy \
+    wrong_on_two
 ok "DUITE_MAPPING of no name" wrong_variable \
     "duite-cloth: DUITE_MAPPING=flat in the environment: there is no mapping of this name; known are metis, " DUITE_MAPPING=flat
 ok "DUITE_BALANCE of no name" wrong_variable \

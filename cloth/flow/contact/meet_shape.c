@@ -283,8 +283,7 @@ static bool are_apart(const struct meeting *m, uint32_t n, const uint32_t *point
             }
     }
     return contact_solid_apart(&m->solid, (const double[3]){low[0], low[1], low[2]},
-                               (const double[3]){high[0], high[1], high[2]},
-                               flow_contact_reach(m->model) + m->way);
+                               (const double[3]){high[0], high[1], high[2]}, m->reach + m->way);
 }
 
 /* Looks at all triangles, or vertices, that may be in reach. n_corners: points of each. */

@@ -293,19 +293,16 @@ FLOW_KERNEL_IF(cg_pass, part, FLOW_CG, struct flow_block_args,
                (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(ghosts),
                 RW(halo_q_next), RW_IF(part), RW_IF(z), RW_IF(s), SUM_ELSE(sums),
                 NEIGHBOURS(halo_q), IF_MADE(factor), IF_MADE(basis), IF_MADE(basis_ghosts),
-                IF_MADE(motion), IF_MADE(lift), IF_MADE(tie_table), TIED(tie_q), TIED(tie_basis)),
+                IF_MADE(motion), IF_MADE(lift), IF_MADE(tie_table), TIED(tie_q), TIED(tie_basis),
+                REST_R(group_motion)),
                .side_effects = 0)
 
-/* The preconditioner as the pass sees it. Motions of groups are the last parameters. */
+/* The preconditioner as the pass sees it. */
 static struct flow_preconditioner conditioning(const duite_call *call,
                                                const struct cg_pass_fields *on,
                                                const struct flow_table *table)
 {
-    const struct flow *flow = flow_of(call);
-    const duite_param *seen = on->tied_tie_basis;
-    if (flow->made[FLOW_FIELD_tie_basis])
-        seen += flow_ties_others(on->tie_table);
-    return (struct flow_preconditioner){.flow = flow,
+    return (struct flow_preconditioner){.flow = flow_of(call),
                                         .table = table,
                                         .block = on->args->block,
                                         .factor = on->factor,
@@ -313,8 +310,8 @@ static struct flow_preconditioner conditioning(const duite_call *call,
                                         .basis_ghosts = on->basis_ghosts,
                                         .motion = on->motion,
                                         .lift = on->lift,
-                                        .seen = seen,
-                                        .n_seen = (size_t)(call->param + call->n_params - seen)};
+                                        .seen = on->group_motion,
+                                        .n_seen = on->n_group_motion};
 }
 
 static int cg_pass_body(const duite_call *call, const struct cg_pass_fields *on)

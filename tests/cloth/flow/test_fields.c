@@ -267,10 +267,6 @@ UNIT_LOOP(what_the_main_program_knows_lasts, 0, KINDS)
     struct flow_checkpoint saved = {0};
     const struct flow_output output = {.save = take_checkpoint, .context = &saved};
     kind_setup(_i, &s);
-    if (flow_contact_mode(&s.setup.model)->carries) { /* its lists would have to be made first */
-        setup_free(&s.setup);
-        return;
-    }
     session_start(&s);
     s.state.output = s.flow->output = &output;
     s.state.contact.attempt = 11;

@@ -7,8 +7,8 @@
 #include <stdint.h>
 
 /* A thread that brings frames to the disk, so that no worker of a run waits for it. Workers write
- * the frames, or copy them; the thread syncs and counts them, and makes those of HDF5. On rank 0
- * alone; local functions. */
+ * the frames, or copy them; the thread syncs and counts them, and makes those of HDF5. Checkpoints
+ * have their turn, too. On rank 0 alone; local functions. */
 struct output_settler;
 
 /* Before the runtime binds its threads to cores. Errors: CLOTH_E_MEMORY; CLOTH_E_LIBRARY, no
@@ -34,7 +34,7 @@ struct output_member {
     struct output_settler *settler; /* NULL: there is no thread */
     uint32_t place;                 /* among the members */
 };
-enum { OUTPUT_MEMBERS = 3 };
+enum { OUTPUT_MEMBERS = 4 };
 
 /* Adds it, whose first n frames are settled. settler may be NULL. */
 void output_member_add(struct output_member *member, struct output_settler *settler, uint32_t n);

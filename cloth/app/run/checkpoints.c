@@ -1,16 +1,17 @@
-/* Checkpoints: what they have beside the state of the flow, and the thread that writes them.
+/* Checkpoints: what they have beside the state of the flow, and their turn among the frames that go
+ * to the disk.
  *
  * The second part of one is struct saved, a struct phase_done of each phase, then numbers: the
- * start of the phase, 6 a vertex; the drape test's frame, 3 a vertex of its cloth. The thread
- * sleeps until there is something to write. `busy`, under the lock, says that the thread has the
- * parts. */
+ * start of the phase, 6 a vertex; the drape test's frame, 3 a vertex of its cloth. While `busy` the
+ * settler's thread has the parts. */
 #include "cloth/app/run/checkpoints.h"
 
 #include "cloth/app/run/outputs.h"
 #include "cloth/base/clock.h"
 #include "cloth/output/output.h"
+#include "cloth/output/settle.h"
 
-#include <pthread.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -141,18 +142,14 @@ int restart_outputs(const struct restart *restart, struct outputs *to, struct cl
 struct keeper {
     const struct outputs *of; /* its files and settings outlive the keeper */
     struct output_checkpoints *checkpoints;
-    double next; /* s: when the next one is due */
+    struct output_member member; /* of the settler, behind all frames */
+    uint32_t given;              /* to it */
     struct output_part part[OUTPUT_CHECKPOINT_PARTS];
-    pthread_t thread;
-    pthread_mutex_t lock;
-    pthread_cond_t changed;
-    bool asked;  /* one is due, and was not taken yet */
-    bool busy;   /* one is to be written */
-    bool ending; /* the thread is to end */
+    double next;       /* s: when the next one is due; it stays while `asked` or `busy` */
+    atomic_bool asked; /* one is due, and was not taken yet */
+    atomic_bool busy;  /* one is to be written */
     bool warned;
 };
-
-/* ---- Its thread ---- */
 
 static void keeper_warn(struct keeper *keeper, const char *why)
 {
@@ -165,55 +162,29 @@ static void keeper_warn(struct keeper *keeper, const char *why)
     keeper->warned = true;
 }
 
-/* Frames and rows of probes before it are on the disk first. */
-static void write_one(struct keeper *keeper)
+static void keeper_drop_parts(struct keeper *keeper)
 {
-    struct cloth_error error = {0};
-    if (!keeper->part[1].bytes || !keeper->part[2].bytes)
-        cloth_fail(&error, CLOTH_E_MEMORY, "no memory for a checkpoint");
-    else if (!output_settler_wait(keeper->of->settler, &error) &&
-             !output_probes_sync(keeper->of->options->output, &error))
-        output_checkpoints_write(keeper->checkpoints, keeper->part, &error);
-    if (error.code)
-        keeper_warn(keeper, error.text);
     for (int i = 1; i < OUTPUT_CHECKPOINT_PARTS; i++) {
         free((void *)keeper->part[i].bytes);
         keeper->part[i] = (struct output_part){0};
     }
 }
 
-static void *keeper_run(void *context)
+/* Frames before it are on the disk; rows of probes follow here. */
+static int keeper_settle(void *context, uint32_t n, struct cloth_error *error)
 {
     struct keeper *keeper = context;
-    pthread_mutex_lock(&keeper->lock);
-    while (keeper->busy || !keeper->ending) {
-        if (!keeper->busy) {
-            pthread_cond_wait(&keeper->changed, &keeper->lock);
-            continue;
-        }
-        pthread_mutex_unlock(&keeper->lock);
-        write_one(keeper);
-        pthread_mutex_lock(&keeper->lock);
-        keeper->busy = false;
-        pthread_cond_broadcast(&keeper->changed);
-    }
-    pthread_mutex_unlock(&keeper->lock);
-    return NULL;
-}
-
-/* ---- For the run ---- */
-
-static int keeper_start(struct keeper *keeper, struct cloth_error *error)
-{
-    pthread_mutex_init(&keeper->lock, NULL);
-    pthread_cond_init(&keeper->changed, NULL);
-    const int failed = pthread_create(&keeper->thread, NULL, keeper_run, keeper);
-    if (!failed)
-        return CLOTH_OK;
-    pthread_mutex_destroy(&keeper->lock);
-    pthread_cond_destroy(&keeper->changed);
-    return cloth_fail(error, CLOTH_E_LIBRARY, "no thread to write checkpoints: %s",
-                      strerror(failed));
+    struct cloth_error why = {0};
+    (void)n, (void)error;
+    if (!keeper->part[1].bytes || !keeper->part[2].bytes)
+        cloth_fail(&why, CLOTH_E_MEMORY, "no memory for a checkpoint");
+    else if (!output_probes_sync(keeper->of->options->output, &why))
+        output_checkpoints_write(keeper->checkpoints, keeper->part, &why);
+    if (why.code)
+        keeper_warn(keeper, why.text);
+    keeper_drop_parts(keeper);
+    atomic_store(&keeper->busy, false);
+    return CLOTH_OK;
 }
 
 int keeper_open(struct keeper **keeper, const struct outputs *of, struct cloth_error *error)
@@ -224,23 +195,22 @@ int keeper_open(struct keeper **keeper, const struct outputs *of, struct cloth_e
     made->of = of;
     made->next = cloth_seconds() + of->options->checkpoint;
     made->part[0] = (struct output_part){of->settings, strlen(of->settings)};
-    int code = output_checkpoints_open(&made->checkpoints, of->options->output, error);
-    code = code ? code : keeper_start(made, error);
-    if (!code) {
-        *keeper = made;
-        return CLOTH_OK;
+    made->member = (struct output_member){.settle = keeper_settle, .context = made};
+    if (output_checkpoints_open(&made->checkpoints, of->options->output, error)) {
+        free(made);
+        return error->code;
     }
-    output_checkpoints_close(&made->checkpoints);
-    free(made);
-    return code;
+    output_member_add(&made->member, of->settler, 0);
+    *keeper = made;
+    return CLOTH_OK;
 }
 
 int keeper_due(struct keeper *keeper)
 {
-    pthread_mutex_lock(&keeper->lock);
-    const bool due = !keeper->asked && !keeper->busy && cloth_seconds() >= keeper->next;
-    keeper->asked = keeper->asked || due;
-    pthread_mutex_unlock(&keeper->lock);
+    const bool due = !atomic_load(&keeper->asked) && !atomic_load(&keeper->busy) &&
+                     cloth_seconds() >= keeper->next;
+    if (due)
+        atomic_store(&keeper->asked, true);
     return due;
 }
 
@@ -250,13 +220,7 @@ void keeper_close(struct keeper **keeper)
     *keeper = NULL;
     if (!gone)
         return;
-    pthread_mutex_lock(&gone->lock);
-    gone->ending = true;
-    pthread_cond_broadcast(&gone->changed);
-    pthread_mutex_unlock(&gone->lock);
-    pthread_join(gone->thread, NULL);
-    pthread_mutex_destroy(&gone->lock);
-    pthread_cond_destroy(&gone->changed);
+    keeper_drop_parts(gone);
     output_checkpoints_close(&gone->checkpoints);
     free(gone);
 }
@@ -292,14 +256,12 @@ void restart_save(void *context, struct flow_checkpoint state)
     const struct outputs *of = context;
     struct keeper *keeper = of->keeper;
     const struct output_part program = pack(of);
-    pthread_mutex_lock(&keeper->lock);
-    while (keeper->busy)
-        pthread_cond_wait(&keeper->changed, &keeper->lock);
+    output_member_wait(&keeper->member, keeper->given);
+    keeper_drop_parts(keeper); /* of one that a failing disk left */
     keeper->part[1] = program;
     keeper->part[2] = (struct output_part){state.bytes, state.n};
-    keeper->busy = true;
-    keeper->asked = false;
     keeper->next = cloth_seconds() + of->options->checkpoint;
-    pthread_cond_broadcast(&keeper->changed);
-    pthread_mutex_unlock(&keeper->lock);
+    atomic_store(&keeper->busy, true);
+    atomic_store(&keeper->asked, false);
+    output_member_wrote(&keeper->member, ++keeper->given, NULL);
 }

@@ -6,20 +6,19 @@
 
 struct outputs;
 
-/* Writes checkpoints while the run goes on: a thread of its own, on rank 0 alone. One is written at
- * a time. One that fails is said once, and the run goes on. */
+/* Writes checkpoints while the run goes on, on rank 0 alone: by the thread that brings frames to
+ * the disk, in turn. One that fails is said once, and the run goes on. */
 struct keeper;
 
-/* Its settings, files and seconds between two are those of the outputs, which outlive it. Before
- * the runtime binds its threads to cores. *keeper: NULL before. Errors: of output_checkpoints_open;
- * CLOTH_E_MEMORY; CLOTH_E_LIBRARY, no thread. */
+/* Its settings, files and seconds between two are those of the outputs, which outlive it; their
+ * frames are open. *keeper: NULL before. Errors: of output_checkpoints_open; CLOTH_E_MEMORY. */
 int keeper_open(struct keeper **keeper, const struct outputs *of, struct cloth_error *error);
 
 /* Nonzero once when a checkpoint is due; then 0 until restart_save and the next time. From any
  * thread. */
 int keeper_due(struct keeper *keeper);
 
-/* Waits until the taken parts are on the disk; *keeper becomes NULL. */
+/* When the settler is closed, and so the taken parts are on the disk; *keeper becomes NULL. */
 void keeper_close(struct keeper **keeper);
 
 /* Parts of a checkpoint beside the state of the flow: settings, which tell if the scene is the

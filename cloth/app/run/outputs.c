@@ -207,8 +207,8 @@ int outputs_go_on(struct outputs *to, const struct phases *phases,
 
 void outputs_close(struct outputs *of, struct cloth_error *error)
 {
-    keeper_close(&of->keeper);
     output_settler_close(&of->settler, error);
+    keeper_close(&of->keeper);
     output_probes_close(&of->probes, error);
     output_forces_close(&of->forces, error);
     output_colours_close(&of->colours, error);

@@ -166,11 +166,11 @@ static void plan_memory(struct measure *measure, const struct bench_options *opt
     measure_ratio(measure, of[0], of[1], "memory_cross_vs_still");
 }
 
-const struct bench_case contact_memory = {
-    "memory",
-    "the most memory of three steps in which two sheets go through each other at 200 m/s, if "
-    "nothing stopped them, against the same sheets at rest",
-    plan_memory, contact_scene_runs, 1};
+const struct bench_case contact_memory = {"memory",
+                                          "the most memory of three steps in which a sheet flies "
+                                          "at another with 200 m/s, against that of "
+                                          "the same sheets at rest",
+                                          plan_memory, contact_scene_runs, 1};
 
 /* ---- The contact part of a step, and what contacts cost a solve ---- */
 

@@ -18,70 +18,38 @@
 
 /* ---- Scenes ---- */
 
-/* A mesh that a scene reads and turned.awk makes. */
+/* A mesh that turned.awk makes for a scene: its shape, the scene's key that names its file, and its
+ * divisions. */
 struct turned {
-    const char *shape, *key; /* the scene's key that names its file; NULL: the scene reads none */
-    int n, quick_n;          /* divisions */
+    const char *shape, *key;
+    int n, quick_n;
 };
+static const struct turned TUBE = {"tube", "cloths[0].mesh.file", 360, 24};
+static const struct turned CONE = {"cone", "obstacles[0].body.obj", 40, 12};
+static const struct turned BOWL = {"bowl", "obstacles[0].body.obj", 64, 64};
 
 /* s: where the part ends that is run; with --quick its grids are of so many vertices. */
 static const struct part {
     const char *name;
     double end, quick_end;
     int cloths, nx, ny;
-    struct turned mesh;
-    const char *folder, *file; /* NULL: cloth/scenes, and the name */
-    const char *set;           /* NULL: nothing but these is changed */
-} PARTS[] = {{"sheet", 0.48, 0.01, 1, 20, 20, {0}, NULL, NULL, NULL},
-             {"sphere", 0.6, 0.16, 1, 20, 20, {0}, NULL, NULL, NULL},
-             {"stack", 0.2, 0.1, 5, 12, 12, {0}, NULL, NULL, NULL},
-             {"twist", 1.5, 0.1, 1, 21, 7, {0}, NULL, NULL, NULL},
-             {"peers_drape", 1, 0.1, 5, 16, 16, {0}, BENCH_PEERS, "drape", NULL},
-             {"peers_curtain", 1, 0.01, 15, 8, 8, {0}, BENCH_PEERS, "curtain", NULL},
-             {"peers_twist",
-              0.2,
-              0.04,
-              0,
-              0,
-              0,
-              {"tube", "cloths[0].mesh.file", 360, 24},
-              BENCH_PEERS,
-              "twist",
-              NULL},
-             {"peers_needle",
-              0.5,
-              0.01,
-              5,
-              16,
-              16,
-              {"cone", "obstacles[0].body.obj", 40, 12},
-              BENCH_PEERS,
-              "needle",
-              NULL},
-             {"peers_stack", 0.2, 0.01, 10, 12, 12, {0}, BENCH_PEERS, "stack", NULL},
-             {"peers_ribbon",
-              0.5,
-              0.01,
-              25,
-              2,
-              20,
-              {"bowl", "obstacles[0].body.obj", 64, 64},
-              BENCH_PEERS,
-              "ribbon",
-              NULL},
-             {"peers_layers", 0.1, 0.02, 50, 6, 6, {0}, BENCH_PEERS, "layers", NULL},
-             {"ring", 0.45, 0.02, 1, 12, 12, {0}, BENCH_PEERS, "ring", NULL},
-             {"cross", 0.015, 0.005, 2, 8, 8, {0}, BENCH_PEERS, "cross", NULL},
-             {"cross_still",
-              0.015,
-              0.005,
-              2,
-              8,
-              8,
-              {0},
-              BENCH_PEERS,
-              "cross",
-              "cloths[0].velocity=[0, 0, 0]"}};
+    const char *file; /* in contact/peers; NULL: the scene of this name in cloth/scenes */
+    const struct turned *mesh;
+    const char *set;
+} PARTS[] = {{"sheet", 0.48, 0.01, 1, 20, 20, NULL, NULL, ""},
+             {"sphere", 0.6, 0.16, 1, 20, 20, NULL, NULL, ""},
+             {"stack", 0.2, 0.1, 5, 12, 12, NULL, NULL, ""},
+             {"twist", 1.5, 0.1, 1, 21, 7, NULL, NULL, ""},
+             {"peers_drape", 1, 0.1, 5, 16, 16, "drape", NULL, ""},
+             {"peers_curtain", 1, 0.01, 15, 8, 8, "curtain", NULL, ""},
+             {"peers_twist", 0.4, 0.04, 0, 0, 0, "twist", &TUBE, ""},
+             {"peers_needle", 0.5, 0.01, 5, 16, 16, "needle", &CONE, ""},
+             {"peers_stack", 0.2, 0.01, 10, 12, 12, "stack", NULL, ""},
+             {"peers_ribbon", 0.5, 0.01, 25, 2, 20, "ribbon", &BOWL, ""},
+             {"peers_layers", 0.1, 0.02, 50, 6, 6, "layers", NULL, ""},
+             {"ring", 0.45, 0.02, 1, 12, 12, "ring", NULL, ""},
+             {"cross", 0.015, 0.005, 2, 8, 8, "cross", NULL, ""},
+             {"cross_still", 0.015, 0.005, 2, 8, 8, "cross", NULL, "cloths[0].velocity=[0, 0, 0]"}};
 enum { N_PARTS = sizeof PARTS / sizeof *PARTS };
 
 static void make_small(struct sets *sets, const struct part *part)
@@ -97,7 +65,7 @@ static void make_small(struct sets *sets, const struct part *part)
 static int make_turned(struct sets *sets, const struct turned *mesh, bool quick, const char *folder)
 {
     char command[3 * TEMPORARY_PATH];
-    if (!mesh->shape)
+    if (!mesh)
         return 0;
     snprintf(command, sizeof command, "awk -v shape=%s -v n=%d -f '%s/turned.awk' > '%s/%s.obj'",
              mesh->shape, quick ? mesh->quick_n : mesh->n, BENCH_PEERS, folder, mesh->shape);
@@ -109,7 +77,7 @@ static int read_part(struct model *model, const struct part *part, struct sets *
 {
     struct cloth_error error = {0};
     char path[TEMPORARY_PATH];
-    snprintf(path, sizeof path, "%s/%s.yaml", part->folder ? part->folder : BENCH_SCENES,
+    snprintf(path, sizeof path, "%s/%s.yaml", part->file ? BENCH_PEERS : BENCH_SCENES,
              part->file ? part->file : part->name);
     return scene_read(model, path, sets->n, sets->set, &error) ? serve_fail("%s", error.text) : 0;
 }
@@ -128,10 +96,10 @@ int contact_scene_read(struct model *model, const char *name, const char *self, 
     add_set(&sets, "time.end=%.17g", quick ? part->quick_end : part->end);
     if (*self)
         add_set(&sets, "contact={mode: certified, self: %s}", self);
-    add_set(&sets, "%s", part->set ? part->set : "");
+    add_set(&sets, "%s", part->set);
     if (temporary_make(NULL, "duite-mesh", folder))
         return 1;
-    int code = make_turned(&sets, &part->mesh, quick, folder);
+    int code = make_turned(&sets, part->mesh, quick, folder);
     if (!code)
         code = read_part(model, part, &sets);
     temporary_remove(folder);

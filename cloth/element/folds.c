@@ -15,17 +15,12 @@ struct element_fold {
     const struct model_fold *of; /* where the scene says it */
 };
 
-static int compare_folds(const void *a, const void *b)
-{
-    return cloth_compare_numbers(a, b, 3);
-}
-
 static const struct element_fold *folds_find(const struct element_cloths *cloths, uint32_t cloth,
                                              uint32_t a, uint32_t b)
 {
     const struct element_fold wanted = {.cloth = cloth, .a = a < b ? a : b, .b = a < b ? b : a};
     return cloths->n_folds
-               ? bsearch(&wanted, cloths->fold, cloths->n_folds, sizeof wanted, compare_folds)
+               ? bsearch(&wanted, cloths->fold, cloths->n_folds, sizeof wanted, cloth_by_three)
                : NULL;
 }
 
@@ -119,7 +114,7 @@ static int folds_check_once(const struct element_cloths *cloths, struct cloth_er
 {
     for (uint32_t i = 1; i < cloths->n_folds; i++) {
         const struct element_fold *fold = cloths->fold + i;
-        if (!compare_folds(fold - 1, fold))
+        if (!cloth_by_three(fold - 1, fold))
             return model_fail(fold->of->place, error,
                               "the edge between vertices %u and %u of cloth '%.60s' is folded "
                               "twice; once is expected",
@@ -145,7 +140,7 @@ int element_folds_make(struct element_cloths *cloths, struct cloth_error *error)
         return CLOTH_E_MEMORY;
     for (uint32_t c = 0; c < model->n_cloths; c++)
         add_folds(cloths, c);
-    qsort(cloths->fold, cloths->n_folds, sizeof *cloths->fold, compare_folds);
+    qsort(cloths->fold, cloths->n_folds, sizeof *cloths->fold, cloth_by_three);
     code = folds_check_once(cloths, error);
     for (uint32_t c = 0; c < model->n_cloths && !code; c++)
         if (model->cloths[c].n_folds)

@@ -71,33 +71,16 @@ struct element_kind {
 
     /* ---- On the lists of blocks, in a step ---- */
 
-    /* Adds the forces (N) to f, the block's rows, in the air as it blows then. */
-    void (*force)(const struct phys_elements *list, const struct phys_air *air,
-                  const struct phys_sight *sight, phys_vec *f);
-    /* All below are of kinds with pairs. The pairs of elements from .. to - 1; at, of each of
-     * these: with bit 0 set where N' is wanted in place of N; NULL: nowhere. */
-    void (*matrix)(const struct phys_elements *list, size_t from, size_t to,
-                   const struct phys_step *step, const struct phys_sight *sight, const uint32_t *at,
-                   struct phys_pair *pair);
-    /* Optional: the same, and the right side of that step: b += push f - h^2 K v, with push h (s),
-     * or 0 where the forces are in b. */
-    void (*system)(const struct phys_elements *list, size_t from, size_t to,
-                   const struct phys_step *step, double push, const struct phys_sight *sight,
-                   const uint32_t *at, phys_vec *b, struct phys_pair *pair);
-    /* For kinds without system: y -= scale K v. */
-    void (*stiffness)(const struct phys_elements *list, int full, double scale,
-                      const struct phys_sight *sight, phys_vec *y);
-    /* Energy (J) of the elements that count here: those whose corner 0 is one of the block's rows.
-     */
-    double (*energy)(const struct phys_elements *list, const struct phys_sight *sight);
-    /* Optional: adds the torques (N m) that the forces of elements that count here leave. */
-    void (*torque)(const struct phys_elements *list, const struct phys_sight *sight,
-                   double torque[3]);
-    /* Optional: as matrix, but of elements at their stiffest, where that is not at the start: for
-     * the longest step. */
-    void (*stiffest)(const struct phys_elements *list, size_t from, size_t to,
-                     const struct phys_step *step, const struct phys_sight *sight,
-                     const uint32_t *at, struct phys_pair *pair);
+    phys_force *force;
+    /* All below are of kinds with pairs; system and torque are optional, and kinds with a system
+     * have no stiffness. */
+    phys_matrix *matrix;
+    phys_system *system;
+    phys_stiffness *stiffness;
+    phys_energy *energy;
+    phys_torque *torque;
+    phys_matrix *stiffest; /* optional: of elements at their stiffest, where that is not at the
+                            * start: for the longest step */
 };
 
 /* All kinds, in the order in which their forces are added and their entries assembled. */

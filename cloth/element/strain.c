@@ -2,7 +2,6 @@
  * of springs: then its strain is known, its stress is not. */
 #include "cloth/element/strain.h"
 
-#include "cloth/base/memory.h"
 #include "cloth/element/cloths.h"
 
 #include <math.h>
@@ -11,22 +10,17 @@
 
 int element_strains_room(struct element_strains *strains, struct cloth_error *error)
 {
-    const size_t vector = sizeof(phys_vec), n = strains->n_triangles;
-    const size_t membranes = ((size_t)strains->n_materials + 1) * sizeof *strains->membrane;
-    strains->corner = cloth_alloc(n, sizeof *strains->corner, error);
-    strains->gradient = aligned_alloc(vector, (n + 1) * vector);
-    strains->area = cloth_alloc(n, sizeof *strains->area, error);
-    strains->edge = cloth_alloc(strains->n_edges, sizeof *strains->edge, error);
-    strains->length = cloth_alloc(strains->n_edges, sizeof *strains->length, error);
-    strains->membrane = aligned_alloc(vector, membranes);
-    strains->has_stress = cloth_alloc(strains->n_materials, sizeof *strains->has_stress, error);
-    strains->x = aligned_alloc(vector, ((size_t)strains->n_vertices + 1) * vector);
-    if (strains->membrane)
-        memset(strains->membrane, 0, membranes);
-    if (strains->corner && strains->gradient && strains->area && strains->edge && strains->length &&
-        strains->membrane && strains->has_stress && strains->x)
-        return CLOTH_OK;
-    return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for the strains of %zu triangles", n);
+    struct cloth_pool *memory = &strains->memory;
+    const size_t n = strains->n_triangles, n_edges = strains->n_edges, m = strains->n_materials;
+    strains->corner = cloth_take(memory, n, sizeof *strains->corner, error);
+    strains->gradient = cloth_take(memory, n, sizeof *strains->gradient, error);
+    strains->area = cloth_take(memory, n, sizeof *strains->area, error);
+    strains->edge = cloth_take(memory, n_edges, sizeof *strains->edge, error);
+    strains->length = cloth_take(memory, n_edges, sizeof *strains->length, error);
+    strains->membrane = cloth_take(memory, m, sizeof *strains->membrane, error);
+    strains->has_stress = cloth_take(memory, m, sizeof *strains->has_stress, error);
+    strains->x = cloth_take(memory, strains->n_vertices, sizeof *strains->x, error);
+    return memory->lacks ? CLOTH_E_MEMORY : CLOTH_OK;
 }
 
 static void add_triangle(struct element_strains *strains, const struct element_cloths *cloths,
@@ -100,14 +94,7 @@ int element_strains_make(struct element_strains *strains, const struct model *mo
 
 void element_strains_free(struct element_strains *strains)
 {
-    free(strains->corner);
-    free(strains->gradient);
-    free(strains->area);
-    free(strains->edge);
-    free(strains->length);
-    free(strains->membrane);
-    free(strains->has_stress);
-    free(strains->x);
+    cloth_pool_free(&strains->memory);
     *strains = (struct element_strains){0};
 }
 
@@ -117,8 +104,9 @@ static void strain_find_edges(const struct element_strains *strains, double *str
     for (uint32_t e = 0; e < strains->n_edges; e++) {
         const struct phys_springs one = {
             .n = 1, .end = (const uint32_t(*)[2])strains->edge + e, .length = strains->length + e};
-        const bool known = strains->length[e] > 0;
-        strain[e] = known ? phys_springs_stretch(&one, &counts, strains->x, strains->x) - 1 : NAN;
+        double range[2] = {0};
+        phys_springs_range(&one, &counts, strains->x, strains->x, range);
+        strain[e] = strains->length[e] > 0 ? range[1] - 1 : NAN;
     }
 }
 

@@ -1,6 +1,7 @@
 #ifndef CLOTH_ELEMENT_STRAIN_H
 #define CLOTH_ELEMENT_STRAIN_H
 
+#include "cloth/base/memory.h"
 #include "cloth/model/model.h"
 #include "cloth/physics/triangle.h"
 
@@ -18,6 +19,7 @@ struct element_strains {
     struct phys_membrane *membrane; /* of each material; of springs all 0 */
     bool *has_stress;               /* of each material: it is one of triangles */
     phys_vec *x;                    /* n_vertices: room */
+    struct cloth_pool memory;
 };
 
 /* Room for what is counted, for shapes that come from elsewhere; membranes are all 0. In any case

@@ -20,13 +20,6 @@ PHYS_INLINE double length_of(const phys_vec *a)
     return sqrt(phys_dot(a, a));
 }
 
-/* Twice the area times the normal. */
-PHYS_INLINE void cross(const phys_vec *a, const phys_vec *b, phys_vec *c)
-{
-    *c = (phys_vec){(*a)[1] * (*b)[2] - (*a)[2] * (*b)[1], (*a)[2] * (*b)[0] - (*a)[0] * (*b)[2],
-                    (*a)[0] * (*b)[1] - (*a)[1] * (*b)[0], 0};
-}
-
 /* The part of the force on a triangle that each of so many corners takes. */
 static void push(const struct phys_air *air, const struct corner c[3], int corners, phys_vec *part)
 {
@@ -34,7 +27,7 @@ static void push(const struct phys_air *air, const struct corner c[3], int corne
     const phys_vec u = wind - (c[0].v + c[1].v + c[2].v) / 3;
     const phys_vec a = c[1].x - c[0].x, b = c[2].x - c[0].x;
     phys_vec normal;
-    cross(&a, &b, &normal);
+    phys_cross(&a, &b, &normal);
     const double twice = length_of(&normal);
     *part = (phys_vec){0};
     if (!(twice > 0))

@@ -18,10 +18,8 @@ struct phys_air {
     double normal, tangent; /* coefficients, >= 0 */
 };
 
-/* Adds the forces (N) on the block's own corners to f. A face has the corners of a triangle, and
- * the fourth corner of its cell, which shares the force, or PHYS_NO_CORNER. There is no force on a
- * triangle without area. */
-void phys_air_force(const struct phys_elements *faces, const struct phys_air *air,
-                    const struct phys_sight *sight, phys_vec *f);
+/* A face has the corners of a triangle, and the fourth corner of its cell, which shares the force,
+ * or PHYS_NO_CORNER. There is no force on a triangle without area. */
+phys_force phys_air_force;
 
 #endif

@@ -45,22 +45,9 @@ double phys_bend_rigidity(double warp, double weft, const double direction[2]);
 /* As of triangles (triangle.h); pairs of each element: (0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2,
  * 3). */
 enum { PHYS_BEND_PAIRS = 6 };
-void phys_hinges_force(const struct phys_elements *hinges, const struct phys_air *air,
-                       const struct phys_sight *sight, phys_vec *f);
-void phys_hinges_stiffness(const struct phys_elements *hinges, int full, double scale,
-                           const struct phys_sight *sight, phys_vec *y);
-void phys_hinges_matrix(const struct phys_elements *hinges, size_t from, size_t to,
-                        const struct phys_step *step, const struct phys_sight *sight,
-                        const uint32_t *at, struct phys_pair *pair);
-double phys_hinges_energy(const struct phys_elements *hinges, const struct phys_sight *sight);
-
-void phys_quadratic_force(const struct phys_elements *quadratic, const struct phys_air *air,
-                          const struct phys_sight *sight, phys_vec *f);
-void phys_quadratic_stiffness(const struct phys_elements *quadratic, int full, double scale,
-                              const struct phys_sight *sight, phys_vec *y);
-void phys_quadratic_matrix(const struct phys_elements *quadratic, size_t from, size_t to,
-                           const struct phys_step *step, const struct phys_sight *sight,
-                           const uint32_t *at, struct phys_pair *pair);
-double phys_quadratic_energy(const struct phys_elements *quadratic, const struct phys_sight *sight);
+phys_force phys_hinges_force, phys_quadratic_force;
+phys_stiffness phys_hinges_stiffness, phys_quadratic_stiffness;
+phys_matrix phys_hinges_matrix, phys_quadratic_matrix;
+phys_energy phys_hinges_energy, phys_quadratic_energy;
 
 #endif

@@ -4,18 +4,13 @@
 #include <complex.h>
 #include <math.h>
 
-static double physics_limit_least(double a, double b)
-{
-    return a < b ? a : b;
-}
-
 double phys_limit_euler(double omega, double a)
 {
     const double square = omega * omega, over = a * a - 4 * square;
     const double swings = a / square; /* determinant 1 - h a + h^2 omega^2 <= 1 */
     if (over <= 0)
         return swings;
-    return physics_limit_least(swings, 4 / (a + sqrt(over))); /* 1 + trace + determinant >= 0 */
+    return fmin(swings, 4 / (a + sqrt(over))); /* 1 + trace + determinant >= 0 */
 }
 
 double phys_limit_symplectic(double omega, double a)

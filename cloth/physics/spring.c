@@ -278,11 +278,3 @@ PHYS_KERNEL(phys_springs_range,
         range[1] = lanes[1][i] > range[1] ? lanes[1][i] : range[1];
     }
 }
-
-double phys_springs_stretch(const struct phys_springs *springs, const unsigned char *chosen,
-                            const phys_vec *x, const phys_vec *x_other)
-{
-    double range[2] = {0};
-    phys_springs_range(springs, chosen, x, x_other, range);
-    return range[1];
-}

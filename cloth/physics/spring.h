@@ -47,11 +47,7 @@ void phys_springs_system(const struct phys_springs *springs, double h, double pu
                          const phys_vec *x, const phys_vec *v, const phys_vec *x_other,
                          const phys_vec *v_other, phys_vec *b, phys_vec *value);
 
-/* The largest l / L of those springs whose `chosen` byte (n) is not zero; 0 if there are none. */
-double phys_springs_stretch(const struct phys_springs *springs, const unsigned char *chosen,
-                            const phys_vec *x, const phys_vec *x_other);
-
-/* Widens range[0] .. range[1] to the l / L of those springs. */
+/* Widens range[0] .. range[1] to the l / L of those springs whose `chosen` byte (n) is not zero. */
 void phys_springs_range(const struct phys_springs *springs, const unsigned char *chosen,
                         const phys_vec *x, const phys_vec *x_other, double range[2]);
 

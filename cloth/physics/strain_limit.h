@@ -18,20 +18,13 @@
 enum { PHYS_LIMIT_STIFFNESS, PHYS_LIMIT_LENGTH };
 
 /* Like the functions of triangles (triangle.h), with one pair each. */
-void phys_strain_limits_force(const struct phys_elements *limits, const struct phys_air *air,
-                              const struct phys_sight *sight, phys_vec *f);
-void phys_strain_limits_stiffness(const struct phys_elements *limits, int full, double scale,
-                                  const struct phys_sight *sight, phys_vec *y);
-void phys_strain_limits_matrix(const struct phys_elements *limits, size_t from, size_t to,
-                               const struct phys_step *step, const struct phys_sight *sight,
-                               const uint32_t *at, struct phys_pair *pair);
-double phys_strain_limits_energy(const struct phys_elements *limits,
-                                 const struct phys_sight *sight);
+phys_force phys_strain_limits_force;
+phys_stiffness phys_strain_limits_stiffness;
+phys_matrix phys_strain_limits_matrix;
+phys_energy phys_strain_limits_energy;
 
 /* The same matrix as if each edge, where it is now, had just reached its limit: K = k u u' at
  * least. */
-void phys_strain_limits_stiffest(const struct phys_elements *limits, size_t from, size_t to,
-                                 const struct phys_step *step, const struct phys_sight *sight,
-                                 const uint32_t *at, struct phys_pair *pair);
+phys_matrix phys_strain_limits_stiffest;
 
 #endif

@@ -51,35 +51,17 @@ void phys_triangle_local(const double x[9], const double uv[6], double local[6])
  * if it has no area. */
 int phys_triangle_rest(const double uv[6], double gradient[4], double *area);
 
-/* Adds the forces (N) to f, n rows. */
-void phys_triangles_force(const struct phys_elements *triangles, const struct phys_air *air,
-                          const struct phys_sight *sight, phys_vec *f);
-
-/* Makes the pairs (0, 1), (0, 2), (1, 2) of the triangles from .. to - 1, 3 (to - from) pairs. at:
- * of each pair, with bit 0 set where N' is wanted in place of N; NULL: nowhere. */
-void phys_triangles_matrix(const struct phys_elements *triangles, size_t from, size_t to,
-                           const struct phys_step *step, const struct phys_sight *sight,
-                           const uint32_t *at, struct phys_pair *pair);
-
-/* The same, and the right side of that step: b += push f - h^2 K v (n rows), with push h (s), or 0
- * where the forces are in b. */
-void phys_triangles_system(const struct phys_elements *triangles, size_t from, size_t to,
-                           const struct phys_step *step, double push,
-                           const struct phys_sight *sight, const uint32_t *at, phys_vec *b,
-                           struct phys_pair *pair);
-
-/* Energy (J) of the triangles that count here: those whose corner 0 is one of the n rows. */
-double phys_triangles_energy(const struct phys_elements *triangles, const struct phys_sight *sight);
+/* Pairs of a triangle: (0, 1), (0, 2), (1, 2). The torque is what uncorrected triangles leave. */
+phys_force phys_triangles_force;
+phys_matrix phys_triangles_matrix;
+phys_system phys_triangles_system;
+phys_energy phys_triangles_energy;
+phys_torque phys_triangles_torque;
 
 /* Finds the largest principal strain of each of the n triangles, the larger eigenvalue of S - I.
  * stress, unless NULL: the elastic stress C : (S - I) along warp, along weft, and of shear (N/m).
  */
 void phys_triangles_strain(const struct phys_elements *triangles, const struct phys_sight *sight,
                            double *largest, double (*stress)[3]);
-
-/* Adds the torques (N m) that the forces of uncorrected triangles leave, of those that count here.
- */
-void phys_triangles_torque(const struct phys_elements *triangles, const struct phys_sight *sight,
-                           double torque[3]);
 
 #endif

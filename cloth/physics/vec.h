@@ -113,4 +113,12 @@ PHYS_INLINE double phys_dot(const phys_vec *a, const phys_vec *b)
     return phys_lanes(&product);
 }
 
+/* y = a x b, which may be a or b. */
+PHYS_INLINE void phys_cross(const phys_vec *a, const phys_vec *b, phys_vec *y)
+{
+    const phys_vec u = *a, v = *b;
+    *y = (phys_vec){u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0],
+                    0};
+}
+
 #endif

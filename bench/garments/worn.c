@@ -175,7 +175,7 @@ static int cut(const char *folder, const char *worn)
     int code = mesh_read_obj(&mesh, path, &error);
     snprintf(path, sizeof path, "%s/dressed/cloth.pc2", folder);
     if (!code)
-        code = mesh_read_pc2_frame(path, mesh.n_vertices, MESH_LAST_FRAME, &n_frames, &x, &error);
+        code = mesh_read_pc2(path, mesh.n_vertices, MESH_LAST_FRAME, &n_frames, &x, &error);
     if (code || !x)
         code = fail(code ? error.text : "it has no frame");
     snprintf(path, sizeof path, "%s/new.obj", folder);

@@ -266,7 +266,7 @@ static int compare_body(const struct garment *garment, const char *path, struct 
 {
     struct mesh mesh = {0};
     struct girth_worst worst = {0};
-    const struct girth_mesh own = {garment->n_triangles, (const double(*)[3])garment->position,
+    const struct slice_mesh own = {garment->n_triangles, (const double(*)[3])garment->position,
                                    (const uint32_t(*)[3])garment->triangle};
     struct girth_seam *seam = calloc(garment->n_seams + (size_t)1, sizeof *seam);
     int code = seam ? mesh_read_surface(&mesh, path, error)
@@ -276,7 +276,7 @@ static int compare_body(const struct garment *garment, const char *path, struct 
     for (uint32_t s = 0; s < garment->n_seams && !code; s++)
         seam[s] = (struct girth_seam){garment->seam[s].n_pairs,
                                       (const uint32_t(*)[2])garment->seam[s].pair};
-    const struct girth_mesh body = {mesh.n_triangles, (const double(*)[3])mesh.position,
+    const struct slice_mesh body = {mesh.n_triangles, (const double(*)[3])mesh.position,
                                     (const uint32_t(*)[3])mesh.triangle};
     if (!code)
         code = girth_compare(&worst, &own, garment->n_seams, seam, &body, error);

@@ -132,7 +132,7 @@ static int mannequin_cli_run(const struct options *options, struct cloth_error *
     struct mesh mesh = {0};
     struct mannequin_rig rig = {0};
     double girth[MANNEQUIN_GIRTHS];
-    int code = mannequin_make_rigged(&mesh, &rig, &options->mannequin, girth, error);
+    int code = mannequin_make(&mesh, &rig, &options->mannequin, girth, error);
     code = code ? code : output_mannequin_obj(options->output, &mesh, error);
     if (!code && options->walk > 0)
         code = write_walk(options, &rig, &mesh, error);

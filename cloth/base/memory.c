@@ -49,3 +49,44 @@ int cloth_list_put(struct cloth_list *list, const void *item, size_t size,
         memcpy(to, item, size);
     return to ? CLOTH_OK : CLOTH_E_MEMORY;
 }
+
+void cloth_list_sort(struct cloth_list *list, size_t size,
+                     int (*compare)(const void *a, const void *b))
+{
+    if (list->n) /* else there may be no items */
+        qsort(list->items, list->n, size, compare);
+}
+
+void cloth_list_sort_once(struct cloth_list *list, size_t size,
+                          int (*compare)(const void *a, const void *b))
+{
+    char *item = list->items;
+    size_t n = 0;
+    cloth_list_sort(list, size, compare);
+    for (size_t i = 0; i < list->n; i++)
+        if (!n || compare(item + (n - 1) * size, item + i * size))
+            memmove(item + n++ * size, item + i * size, size);
+    list->n = n;
+}
+
+void *cloth_take(struct cloth_pool *pool, size_t n, size_t size, struct cloth_error *error)
+{
+    enum { LINE = 64 }; /* bytes */
+    const size_t more = n < SIZE_MAX / 2 ? LINE / size + 1 : 0;
+    char *block = cloth_alloc(n + more, size, error);
+    if (block && cloth_list_put(&pool->blocks, &block, sizeof block, error)) {
+        free(block);
+        block = NULL;
+    }
+    pool->lacks = pool->lacks || !block;
+    return block ? block + (LINE - (uintptr_t)block % LINE) : NULL;
+}
+
+void cloth_pool_free(struct cloth_pool *pool)
+{
+    void **block = pool->blocks.items;
+    for (size_t i = 0; i < pool->blocks.n; i++)
+        free(block[i]);
+    free(block);
+    *pool = (struct cloth_pool){0};
+}

@@ -3,6 +3,7 @@
 
 #include "cloth/base/error.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* Memory whose failure is an error with a message. Everything is freed with free(). Local. */
@@ -25,5 +26,21 @@ void *cloth_list_add(struct cloth_list *list, size_t size, size_t count, struct 
 /* Adds a copy of one item. Error: CLOTH_E_MEMORY. */
 int cloth_list_put(struct cloth_list *list, const void *item, size_t size,
                    struct cloth_error *error);
+
+/* Sorts the items. The second then keeps one of those that are equal. */
+void cloth_list_sort(struct cloth_list *list, size_t size,
+                     int (*compare)(const void *a, const void *b));
+void cloth_list_sort_once(struct cloth_list *list, size_t size,
+                          int (*compare)(const void *a, const void *b));
+
+/* Arrays that are freed together. Zeroed at first. */
+struct cloth_pool {
+    struct cloth_list blocks; /* void *: those that free() wants */
+    bool lacks;               /* one that was asked for */
+};
+
+/* The same as cloth_alloc, on cache lines of its own: it belongs to the pool. */
+void *cloth_take(struct cloth_pool *pool, size_t n, size_t size, struct cloth_error *error);
+void cloth_pool_free(struct cloth_pool *pool);
 
 #endif

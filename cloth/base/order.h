@@ -26,6 +26,29 @@ static inline int cloth_compare_numbers(const void *a, const void *b, size_t n)
     return order;
 }
 
+/* The same of items that begin with two, three or four numbers. */
+static inline int cloth_by_two(const void *a, const void *b)
+{
+    return cloth_compare_numbers(a, b, 2);
+}
+
+static inline int cloth_by_three(const void *a, const void *b)
+{
+    return cloth_compare_numbers(a, b, 3);
+}
+
+static inline int cloth_by_four(const void *a, const void *b)
+{
+    return cloth_compare_numbers(a, b, 4);
+}
+
+/* The same of items that begin with a number of 64 bits. */
+static inline int cloth_by_u64(const void *a, const void *b)
+{
+    const uint64_t one = *(const uint64_t *)a, other = *(const uint64_t *)b;
+    return (one > other) - (one < other);
+}
+
 /* The place of the first of n ascending numbers that is not below `least`; n: there is none. They
  * lie `stride` numbers from each other. */
 static inline uint32_t cloth_first_from(const void *numbers, size_t stride, uint32_t n,

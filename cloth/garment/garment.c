@@ -113,13 +113,16 @@ static int make_room(struct garment *garment, const struct meshing *meshing,
     if (n > MOST)
         return cloth_fail(error, CLOTH_E_INPUT, "%ju vertices are too many: up to %u", (uintmax_t)n,
                           MOST);
-    garment->position = cloth_alloc(n, sizeof *garment->position, error);
-    garment->uv = cloth_alloc(n, sizeof *garment->uv, error);
-    garment->triangle = cloth_alloc(n_triangles, sizeof *garment->triangle, error);
-    garment->excused = cloth_alloc(n_triangles, 1, error);
-    garment->piece = cloth_alloc(pattern->n_panels, sizeof *garment->piece, error);
-    if (!garment->position || !garment->uv || !garment->triangle || !garment->excused ||
-        !garment->piece)
+    struct cloth_pool *memory = &garment->memory;
+    garment->position = cloth_take(memory, n, sizeof *garment->position, error);
+    garment->uv = cloth_take(memory, n, sizeof *garment->uv, error);
+    garment->triangle = cloth_take(memory, n_triangles, sizeof *garment->triangle, error);
+    garment->excused = cloth_take(memory, n_triangles, 1, error);
+    garment->piece = cloth_take(memory, pattern->n_panels, sizeof *garment->piece, error);
+    for (uint32_t p = 0; p < pattern->n_panels && garment->piece; p++)
+        garment->piece[p].start = cloth_take(memory, (size_t)pattern->panel[p].n_edges + 1,
+                                             sizeof *garment->piece->start, error);
+    if (memory->lacks)
         return CLOTH_E_MEMORY;
     garment->n_vertices = (uint32_t)n;
     garment->n_triangles = (uint32_t)n_triangles;
@@ -161,8 +164,9 @@ static void put_piece(struct garment *garment, struct meshing *meshing, uint32_t
             garment->triangle[first_triangle + t][i] = first + of->plane.triangle[t].vertex[i];
         garment->excused[first_triangle + t] = flat_excused(&of->plane, of->sharp, t);
     }
-    garment->piece[p] = (struct garment_piece){first, n, first_triangle, n_triangles, of->start};
-    of->start = NULL; /* the garment's now */
+    uint32_t *start = garment->piece[p].start;
+    memcpy(start, of->start, ((size_t)panel->n_edges + 1) * sizeof *start);
+    garment->piece[p] = (struct garment_piece){first, n, first_triangle, n_triangles, start};
 }
 
 static int put_pieces(struct garment *garment, struct meshing *meshing, struct cloth_error *error)
@@ -201,16 +205,7 @@ int garment_make(struct garment *garment, const struct garment_pattern *pattern,
 
 void garment_free(struct garment *garment)
 {
-    for (uint32_t p = 0; garment->piece && p < garment->n_pieces; p++)
-        free(garment->piece[p].start);
-    for (uint32_t s = 0; garment->seam && s < garment->n_seams; s++)
-        free(garment->seam[s].pair);
-    free(garment->position);
-    free(garment->uv);
-    free(garment->triangle);
-    free(garment->piece);
-    free(garment->seam);
-    free(garment->excused);
+    cloth_pool_free(&garment->memory);
     *garment = (struct garment){0};
 }
 

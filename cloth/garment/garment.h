@@ -1,6 +1,7 @@
 #ifndef CLOTH_GARMENT_GARMENT_H
 #define CLOTH_GARMENT_GARMENT_H
 
+#include "cloth/base/memory.h"
 #include "cloth/garment/pattern.h"
 
 /* The mesh of all panels of a pattern, not sewn yet: no vertex belongs to two panels. Every bit is
@@ -34,6 +35,7 @@ struct garment {
     unsigned char *excused;      /* a triangle: it is at a corner of a panel below 30 degrees, which
                                   * no mesh can better */
     double edge;                 /* m: of inner triangles */
+    struct cloth_pool memory;
 };
 
 /* One of the two is given, the other is 0. */

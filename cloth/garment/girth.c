@@ -2,8 +2,8 @@
  * ends at a hem, or at a seam whose other side is not cut near the same place. */
 #include "cloth/garment/girth.h"
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 #include "cloth/base/sets.h"
-#include "cloth/mesh/slice.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@ static const double MOST = 0.8, LEAST = 0.2; /* of a part's outline: surrounded,
 enum { WINDOW = 2, LEVELS = 1000 };
 
 struct girths {
-    const struct girth_mesh *garment, *body;
+    const struct slice_mesh *garment, *body;
     const struct girth_seam *seam;
     struct cloth_list edge; /* struct seam_edge: of all seams, sorted */
     double first;           /* m: the height of level 0, WINDOW below the garment */
@@ -33,12 +33,6 @@ struct seam_edge {
     bool backward;          /* the lower vertex is that of pair k + 1 */
 };
 
-static int compare_edges(const void *a, const void *b)
-{
-    const struct seam_edge *one = a, *two = b;
-    return (one->edge > two->edge) - (one->edge < two->edge);
-}
-
 static void list_seams(struct girths *of, uint32_t n_seams)
 {
     for (uint32_t s = 0; s < n_seams; s++)
@@ -49,8 +43,7 @@ static void list_seams(struct girths *of, uint32_t n_seams)
                 const struct seam_edge edge = {low << 32 | high, s, side, k, b < a};
                 cloth_list_put(&of->edge, &edge, sizeof edge, &of->error);
             }
-    if (of->edge.n)
-        qsort(of->edge.items, of->edge.n, sizeof(struct seam_edge), compare_edges);
+    cloth_list_sort(&of->edge, sizeof(struct seam_edge), cloth_by_u64);
 }
 
 /* An open end of a cut on a seam. */
@@ -68,7 +61,7 @@ static void list_loose(struct girths *of, struct cloth_list *list, const struct 
             const struct seam_edge key = {.edge = end->edge};
             const struct seam_edge *edge =
                 end->open && of->edge.n
-                    ? bsearch(&key, of->edge.items, of->edge.n, sizeof key, compare_edges)
+                    ? bsearch(&key, of->edge.items, of->edge.n, sizeof key, cloth_by_u64)
                     : NULL;
             if (!edge)
                 continue;
@@ -181,17 +174,16 @@ static double body_girth(struct girths *of, const struct slice *body, const stru
 /* ---- Levels ---- */
 
 /* Cuts a mesh at a height, m. */
-static void slice_at(struct girths *of, struct slice *slice, const struct girth_mesh *mesh,
+static void slice_at(struct girths *of, struct slice *slice, const struct slice_mesh *mesh,
                      double y)
 {
     static const double up[3] = {0, 1, 0};
-    const struct slice_mesh cut = {mesh->n_triangles, mesh->triangle, mesh->x};
-    slice_make(slice, &cut, up, y, &of->error);
+    slice_make(slice, mesh, up, y, &of->error);
 }
 
 static void cut_body(struct girths *of)
 {
-    const struct girth_mesh *garment = of->garment;
+    const struct slice_mesh *garment = of->garment;
     double low = INFINITY, high = -INFINITY;
     for (uint32_t t = 0; t < garment->n_triangles; t++)
         for (int i = 0; i < 3; i++) {
@@ -237,8 +229,8 @@ static void compare_level(struct girths *of, uint32_t level)
     slice_free(&slice);
 }
 
-int girth_compare(struct girth_worst *worst, const struct girth_mesh *garment, uint32_t n_seams,
-                  const struct girth_seam *seam, const struct girth_mesh *body,
+int girth_compare(struct girth_worst *worst, const struct slice_mesh *garment, uint32_t n_seams,
+                  const struct girth_seam *seam, const struct slice_mesh *body,
                   struct cloth_error *error)
 {
     struct girths of = {.garment = garment, .body = body, .seam = seam, .worst = worst};

@@ -1,18 +1,12 @@
 #ifndef CLOTH_GARMENT_GIRTH_H
 #define CLOTH_GARMENT_GIRTH_H
 
-#include "cloth/base/error.h"
+#include "cloth/mesh/slice.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 /* Checks that a garment is wide enough for a body, before it is sewn. */
-
-struct girth_mesh {
-    uint32_t n_triangles;
-    const double (*x)[3]; /* m, y is up */
-    const uint32_t (*triangle)[3];
-};
 
 /* Pairs of vertices along a seam, in their order. */
 struct girth_seam {
@@ -25,14 +19,14 @@ struct girth_worst {
     double y, garment, body; /* m: the height, and both girths there */
 };
 
-/* Compares the girths of a garment, whose panels stand around a body, with the body's, and finds
- * the height where their ratio is least. Panels are cut by horizontal planes; cuts that meet at
- * seams are joined, and those that close are girths. The body's girth is the length around the
+/* Compares the girths of a garment, whose panels stand around a body, with the body's, y up, and
+ * finds the height where their ratio is least. Panels are cut by horizontal planes; cuts that meet
+ * at seams are joined, and those that close are girths. The body's girth is the length around the
  * convex hull of its parts inside the garment's loop. The least within 4 cm of the height counts,
  * since panels are not yet where they will be worn. Heights where a part of the body is only partly
  * surrounded are left out. Error: CLOTH_E_MEMORY. Local. */
-int girth_compare(struct girth_worst *worst, const struct girth_mesh *garment, uint32_t n_seams,
-                  const struct girth_seam *seam, const struct girth_mesh *body,
+int girth_compare(struct girth_worst *worst, const struct slice_mesh *garment, uint32_t n_seams,
+                  const struct girth_seam *seam, const struct slice_mesh *body,
                   struct cloth_error *error);
 
 /* True if the garment is too small by more than 2 %, which cloth gives. */

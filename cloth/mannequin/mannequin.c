@@ -67,8 +67,8 @@ static double nearest_loop(const struct slice *slice, const double (*sums)[4],
 static double find_girth(const struct surface *surface, uint32_t measured)
 {
     double point[3], normal[3], (*sum)[4] = NULL, girth = 0;
-    const struct slice_mesh mesh = {surface->m, (const uint32_t(*)[3])surface->triangle,
-                                    (const double(*)[3])surface->x};
+    const struct slice_mesh mesh = {surface->m, (const double(*)[3])surface->x,
+                                    (const uint32_t(*)[3])surface->triangle};
     struct slice slice;
     figure_section(surface->figure, measured, point, normal);
     if (!slice_make(&slice, &mesh, normal, cloth_dot(point, normal), surface->error))
@@ -194,9 +194,8 @@ static void check_girths(const struct making *making, uint32_t worst, double sca
                    mannequin_measures[worst].name, asked * scale, is * scale);
 }
 
-int mannequin_make_rigged(struct mesh *mesh, struct mannequin_rig *rig,
-                          const struct mannequin *mannequin, double girth[MANNEQUIN_GIRTHS],
-                          struct cloth_error *error)
+int mannequin_make(struct mesh *mesh, struct mannequin_rig *rig, const struct mannequin *mannequin,
+                   double girth[MANNEQUIN_GIRTHS], struct cloth_error *error)
 {
     struct cloth_error own = {0};
     struct making making = {.asked = *mannequin,
@@ -226,10 +225,4 @@ int mannequin_make_rigged(struct mesh *mesh, struct mannequin_rig *rig,
     if (rig)
         mannequin_rig_free(rig);
     return cloth_fail(error, own.code, "%s", own.text);
-}
-
-int mannequin_make(struct mesh *mesh, const struct mannequin *mannequin,
-                   double girth[MANNEQUIN_GIRTHS], struct cloth_error *error)
-{
-    return mannequin_make_rigged(mesh, NULL, mannequin, girth, error);
 }

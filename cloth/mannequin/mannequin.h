@@ -54,9 +54,11 @@ struct mannequin {
 
 /* Makes the mesh: one closed manifold surface of the genus 0, triangles counterclockwise as seen
  * from outside. It has the height exactly, and each girth within 0.5 %. girth, unless NULL: those
- * of the mesh, m. Errors: CLOTH_E_INPUT for values out of range, and for girths that do not go
- * together; they name the measure. CLOTH_E_MEMORY. After an error the mesh is empty. */
-int mannequin_make(struct mesh *mesh, const struct mannequin *mannequin,
+ * of the mesh, m. rig, unless NULL: of the mesh, to be freed. Errors: CLOTH_E_INPUT for values out
+ * of range, and for girths that do not go together; they name the measure. CLOTH_E_MEMORY. After an
+ * error the mesh is empty. */
+struct mannequin_rig;
+int mannequin_make(struct mesh *mesh, struct mannequin_rig *rig, const struct mannequin *mannequin,
                    double girth[MANNEQUIN_GIRTHS], struct cloth_error *error);
 
 /* Replaces 0 by defaults; checks ranges and ratios of measures. Errors: CLOTH_E_INPUT, with the

@@ -64,10 +64,6 @@ struct mannequin_rig {
     double (*weight)[MANNEQUIN_BONES]; /* of each vertex: its sum is 1 */
 };
 
-/* mannequin_make, and the rig of its mesh, to be freed. */
-int mannequin_make_rigged(struct mesh *mesh, struct mannequin_rig *rig,
-                          const struct mannequin *mannequin, double girth[MANNEQUIN_GIRTHS],
-                          struct cloth_error *error);
 void mannequin_rig_free(struct mannequin_rig *rig);
 
 /* Fills x, m, with the places of the vertices of the rig's mesh. */

@@ -18,6 +18,7 @@ struct cutter {
     struct mesh_order order;
     uint32_t *part;  /* of each node */
     uint32_t *nodes; /* part after part: those of part p are nodes[start[p] ..] */
+    struct cloth_pool memory;
 };
 
 /* Many blocks are a multiple of four, so that two or four workers have as many each: the others
@@ -41,9 +42,9 @@ static int number_nodes(struct cutter *cutter, uint32_t n_vertices, const unsign
     blocks->start = cloth_alloc((size_t)blocks->n_blocks + 2, sizeof(uint32_t), cutter->error);
     blocks->vertex = cloth_alloc(n, sizeof(uint32_t), cutter->error);
     blocks->place = cloth_alloc(n_vertices, sizeof(uint32_t), cutter->error);
-    cutter->part = cloth_alloc(n, sizeof(uint32_t), cutter->error);
-    cutter->nodes = cloth_alloc(n, sizeof(uint32_t), cutter->error);
-    if (!blocks->start || !blocks->vertex || !blocks->place || !cutter->part || !cutter->nodes)
+    cutter->part = cloth_take(&cutter->memory, n, sizeof(uint32_t), cutter->error);
+    cutter->nodes = cloth_take(&cutter->memory, n, sizeof(uint32_t), cutter->error);
+    if (!blocks->start || !blocks->vertex || !blocks->place || cutter->memory.lacks)
         return CLOTH_E_MEMORY;
     for (uint32_t v = 0, node = 0; v < n_vertices; v++) {
         blocks->place[v] = used[v] ? node : MESH_NO_PLACE;
@@ -84,23 +85,21 @@ static void order_parts(struct cutter *cutter)
 static int fill_empty(struct cutter *cutter)
 {
     struct mesh_blocks *blocks = cutter->blocks;
-    uint32_t *size = cloth_alloc(blocks->n_blocks, sizeof *size, cutter->error);
-    uint32_t *pieces = cloth_alloc(blocks->n_blocks, sizeof *pieces, cutter->error);
-    int code = size && pieces ? CLOTH_OK : CLOTH_E_MEMORY;
-    if (!code) {
-        order_parts(cutter);
-        for (uint32_t b = 0; b < blocks->n_blocks; b++)
-            size[b] = blocks->start[b + 1] - blocks->start[b];
-        mesh_pieces(blocks->n_blocks, size, pieces);
-        for (uint32_t b = 0, before = 0; b < blocks->n_blocks; before += pieces[b++])
-            for (uint32_t i = 0; i < size[b]; i++)
-                cutter->part[cutter->nodes[blocks->start[b] + i]] =
-                    before + (uint32_t)((uint64_t)i * pieces[b] / size[b]);
-        blocks_group(cutter);
-    }
-    free(size);
-    free(pieces);
-    return code;
+    const uint32_t n = blocks->n_blocks;
+    uint32_t *size = cloth_take(&cutter->memory, n, sizeof *size, cutter->error);
+    uint32_t *pieces = cloth_take(&cutter->memory, n, sizeof *pieces, cutter->error);
+    if (cutter->memory.lacks)
+        return CLOTH_E_MEMORY;
+    order_parts(cutter);
+    for (uint32_t b = 0; b < n; b++)
+        size[b] = blocks->start[b + 1] - blocks->start[b];
+    mesh_pieces(n, size, pieces);
+    for (uint32_t b = 0, before = 0; b < n; before += pieces[b++])
+        for (uint32_t i = 0; i < size[b]; i++)
+            cutter->part[cutter->nodes[blocks->start[b] + i]] =
+                before + (uint32_t)((uint64_t)i * pieces[b] / size[b]);
+    blocks_group(cutter);
+    return CLOTH_OK;
 }
 
 static void set_places(struct cutter *cutter)
@@ -120,7 +119,7 @@ static int set_hash(struct cutter *cutter)
 {
     struct mesh_blocks *blocks = cutter->blocks;
     const size_t n_starts = (size_t)blocks->n_blocks + 1, n = 1 + n_starts + blocks->n_places;
-    uint32_t *number = cloth_alloc(n, sizeof *number, cutter->error);
+    uint32_t *number = cloth_take(&cutter->memory, n, sizeof *number, cutter->error);
     if (!number)
         return CLOTH_E_MEMORY;
     number[0] = blocks->n_blocks;
@@ -129,7 +128,6 @@ static int set_hash(struct cutter *cutter)
     for (size_t i = 0; i < n; i++)
         number[i] = htole32(number[i]);
     blocks->hash = XXH64(number, n * sizeof *number, 0);
-    free(number);
     return CLOTH_OK;
 }
 
@@ -155,10 +153,9 @@ int mesh_blocks_cut(struct mesh_blocks *blocks, uint32_t n_vertices, const unsig
     }
     if (code)
         mesh_blocks_free(blocks);
-    mesh_order_free(&cutter.order);
+    cloth_pool_free(&cutter.order.memory);
     mesh_graph_free(&cutter.graph);
-    free(cutter.part);
-    free(cutter.nodes);
+    cloth_pool_free(&cutter.memory);
     return code;
 }
 

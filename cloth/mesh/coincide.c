@@ -81,10 +81,11 @@ int mesh_coincide(const struct mesh *mesh, double distance, uint32_t *same,
     struct cells cells = {.position = mesh->position, .distance = distance, .mask = 1};
     while (cells.mask < mesh->n_vertices)
         cells.mask = 2 * cells.mask + 1;
-    unsigned char *used = cloth_alloc(mesh->n_vertices, 1, error);
-    cells.head = cloth_alloc((size_t)cells.mask + 1, sizeof *cells.head, error);
-    cells.next = cloth_alloc(mesh->n_vertices, sizeof *cells.next, error);
-    const bool made = used && cells.head && cells.next;
+    struct cloth_pool memory = {0};
+    unsigned char *used = cloth_take(&memory, mesh->n_vertices, 1, error);
+    cells.head = cloth_take(&memory, (size_t)cells.mask + 1, sizeof *cells.head, error);
+    cells.next = cloth_take(&memory, mesh->n_vertices, sizeof *cells.next, error);
+    const bool made = !memory.lacks;
     if (made)
         mesh_used(mesh, used);
     for (uint32_t v = 0; made && v < mesh->n_vertices; v++) {
@@ -93,8 +94,6 @@ int mesh_coincide(const struct mesh *mesh, double distance, uint32_t *same,
         if (seen && same[v] == v)
             coincide_put(&cells, v);
     }
-    free(used);
-    free(cells.head);
-    free(cells.next);
+    cloth_pool_free(&memory);
     return made ? CLOTH_OK : CLOTH_E_MEMORY;
 }

@@ -157,16 +157,10 @@ int mesh_edges_find(struct mesh_edges *edges, const struct mesh *mesh, struct cl
     return code;
 }
 
-static int compare_ends(const void *va, const void *vb)
-{
-    const struct mesh_edge *a = va, *b = vb;
-    return a->a != b->a ? cloth_compare_u32(a->a, b->a) : cloth_compare_u32(a->b, b->b);
-}
-
 const struct mesh_edge *mesh_edges_get(const struct mesh_edges *edges, uint32_t a, uint32_t b)
 {
     const struct mesh_edge wanted = {.a = a < b ? a : b, .b = a < b ? b : a};
-    return edges->n ? bsearch(&wanted, edges->edge, edges->n, sizeof wanted, compare_ends) : NULL;
+    return edges->n ? bsearch(&wanted, edges->edge, edges->n, sizeof wanted, cloth_by_two) : NULL;
 }
 
 void mesh_edges_free(struct mesh_edges *edges)

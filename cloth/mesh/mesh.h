@@ -105,18 +105,15 @@ int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error
  * are fanned from their first corner, since modellers leave twisted ones in bodies. */
 int mesh_read_surface(struct mesh *mesh, const char *path, struct cloth_error *error);
 
-/* Reads the frames of a PC2 file of version 1, which have n_vertices each. *place: n_frames x
- * n_vertices x 3 as in the file, to be freed; NULL after an error. Codes: CLOTH_E_INPUT for another
- * format, frames of another size, no frames, an early end, or a coordinate that is not finite;
- * CLOTH_E_IO, CLOTH_E_MEMORY. */
-int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t *n_frames, double **place,
-                  struct cloth_error *error);
-
-/* The same for one frame alone, MESH_LAST_FRAME the last: *place is n_vertices x 3. *n_frames: of
- * the file. A missing frame is no error: *place is NULL then. */
-#define MESH_LAST_FRAME UINT32_MAX
-int mesh_read_pc2_frame(const char *path, uint32_t n_vertices, uint32_t frame, uint32_t *n_frames,
-                        double **place, struct cloth_error *error);
+/* Reads a frame of a PC2 file of version 1, or all: *place is n_frames x n_vertices x 3 as in the
+ * file, of one frame n_vertices x 3, to be freed; NULL after an error. *n_frames: of the file. A
+ * missing frame is no error: *place is NULL then. Codes: CLOTH_E_INPUT for another format, frames
+ * of another size, no frames, an early end, or a coordinate that is not finite; CLOTH_E_IO,
+ * CLOTH_E_MEMORY. */
+#define MESH_ALL_FRAMES UINT32_MAX
+#define MESH_LAST_FRAME (MESH_ALL_FRAMES - 1)
+int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t frame, uint32_t *n_frames,
+                  double **place, struct cloth_error *error);
 
 /* Takes copies of the arrays: vertices n x 3, edges n_edges x 2, triangles n_triangles x 3 (either
  * may be absent). Checks indices, repeated corners, finite positions, non-manifold edges and edges

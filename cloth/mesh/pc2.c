@@ -1,10 +1,10 @@
 /* PC2 point caches: a header of 32 bytes, then x y z of each vertex in each frame; floats and whole
  * numbers are little-endian on any machine. */
+#include "cloth/base/bytes.h"
 #include "cloth/base/file.h"
 #include "cloth/base/memory.h"
 #include "cloth/mesh/mesh.h"
 
-#include <endian.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -14,34 +14,19 @@
 
 enum { HEADER = 32, POINT = 12 }; /* bytes */
 
-static uint32_t number_at(const unsigned char *bytes)
-{
-    uint32_t value;
-    memcpy(&value, bytes, sizeof value);
-    return le32toh(value);
-}
-
-static double float_at(const unsigned char *bytes)
-{
-    const uint32_t bits = number_at(bytes);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return (double)value;
-}
-
 /* How many frames follow of the header, one or more; the file is read up to there. */
 static int mesh_pc2_read_header(FILE *file, const char *path, uint32_t n_vertices,
                                 uint32_t *n_frames, struct cloth_error *error)
 {
     unsigned char header[HEADER];
     if (fread(header, HEADER, 1, file) != 1 || memcmp(header, "POINTCACHE2", 12) != 0 ||
-        number_at(header + 12) != 1)
+        cloth_get_u32(header + 12) != 1)
         return cloth_fail(error, CLOTH_E_INPUT, "%s: no PC2 file of version 1", path);
-    if (number_at(header + 16) != n_vertices)
+    if (cloth_get_u32(header + 16) != n_vertices)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%s: its frames have %u vertices, but the mesh has %u", path,
-                          number_at(header + 16), n_vertices);
-    *n_frames = number_at(header + 28);
+                          cloth_get_u32(header + 16), n_vertices);
+    *n_frames = cloth_get_u32(header + 28);
     if (!*n_frames)
         return cloth_fail(error, CLOTH_E_INPUT, "%s: it has no frames", path);
     return CLOTH_OK;
@@ -55,7 +40,7 @@ static int mesh_pc2_read_frame(FILE *file, const char *path, uint32_t n_vertices
         return cloth_fail(error, ferror(file) ? CLOTH_E_IO : CLOTH_E_INPUT,
                           "%s: it ends within frame %ju", path, (uintmax_t)frame + 1);
     for (size_t i = 0; i < 3 * (size_t)n_vertices; i++) {
-        place[i] = float_at(bytes + 4 * i);
+        place[i] = (double)cloth_get_float(bytes + 4 * i);
         if (!isfinite(place[i]))
             return cloth_fail(error, CLOTH_E_INPUT,
                               "%s: vertex %zu of frame %ju has a coordinate that is no finite "
@@ -101,11 +86,11 @@ static int read_frames(FILE *file, const char *path, uint32_t n_vertices, uint32
     return code;
 }
 
-/* Reads one frame, or all. */
-static int read_file(const char *path, uint32_t n_vertices, bool all, uint32_t frame,
-                     uint32_t *n_frames, double **place, struct cloth_error *error)
+int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t frame, uint32_t *n_frames,
+                  double **place, struct cloth_error *error)
 {
     FILE *file = cloth_file_open(path);
+    const bool all = frame == MESH_ALL_FRAMES;
     *n_frames = 0;
     *place = NULL;
     if (!file)
@@ -117,16 +102,4 @@ static int read_file(const char *path, uint32_t n_vertices, bool all, uint32_t f
             read_frames(file, path, n_vertices, first, all ? *n_frames : first + 1, place, error);
     fclose(file);
     return code;
-}
-
-int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t *n_frames, double **place,
-                  struct cloth_error *error)
-{
-    return read_file(path, n_vertices, true, 0, n_frames, place, error);
-}
-
-int mesh_read_pc2_frame(const char *path, uint32_t n_vertices, uint32_t frame, uint32_t *n_frames,
-                        double **place, struct cloth_error *error)
-{
-    return read_file(path, n_vertices, false, frame, n_frames, place, error);
 }

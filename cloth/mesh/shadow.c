@@ -136,24 +136,22 @@ int mesh_shadow(const struct mesh_shape *shape, const double axis[3], double *ar
                 struct cloth_error *error)
 {
     const size_t n = shape->n_triangles;
-    struct shadow shadow = {.shape = shape,
-                            .at = cloth_alloc(shape->n_vertices, sizeof *shadow.at, error),
-                            .next = cloth_alloc(n, sizeof *shadow.next, error),
-                            .active = cloth_alloc(n, sizeof *shadow.active, error),
-                            .cut = cloth_alloc(n, sizeof *shadow.cut, error)};
-    const bool made = shadow.at && shadow.next && shadow.active && shadow.cut;
+    struct shadow shadow = {.shape = shape};
+    struct cloth_pool memory = {0};
+    shadow.at = cloth_take(&memory, shape->n_vertices, sizeof *shadow.at, error);
+    shadow.next = cloth_take(&memory, n, sizeof *shadow.next, error);
+    shadow.active = cloth_take(&memory, n, sizeof *shadow.active, error);
+    shadow.cut = cloth_take(&memory, n, sizeof *shadow.cut, error);
+    const int code = memory.lacks ? CLOTH_E_MEMORY : CLOTH_OK;
     *area = 0;
-    if (made)
+    if (!code)
         project_vertices(&shadow, axis);
-    if (made && shadow.apart > 0) {
+    if (!code && shadow.apart > 0) {
         shadow_list_triangles(&shadow);
         *area = sweep_lines(&shadow);
     }
-    free(shadow.at);
-    free(shadow.next);
-    free(shadow.active);
-    free(shadow.cut);
-    return made ? CLOTH_OK : CLOTH_E_MEMORY;
+    cloth_pool_free(&memory);
+    return code;
 }
 
 double mesh_surface(const struct mesh *mesh)

@@ -10,8 +10,8 @@
  * that each triangle is cut in one segment or not at all. Local functions. */
 struct slice_mesh {
     uint32_t n_triangles;
-    const uint32_t (*triangle)[3];
     const double (*x)[3]; /* of each vertex, m */
+    const uint32_t (*triangle)[3];
 };
 
 struct slice_end {

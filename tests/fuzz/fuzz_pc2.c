@@ -11,10 +11,10 @@ static void read_cache(const char *path, uint32_t n_vertices, uint32_t frame)
     struct cloth_error error = {0};
     uint32_t n_frames;
     double *place;
-    mesh_read_pc2(path, n_vertices, &n_frames, &place, &error);
+    mesh_read_pc2(path, n_vertices, MESH_ALL_FRAMES, &n_frames, &place, &error);
     free(place);
     error = (struct cloth_error){0};
-    mesh_read_pc2_frame(path, n_vertices, frame, &n_frames, &place, &error);
+    mesh_read_pc2(path, n_vertices, frame, &n_frames, &place, &error);
     free(place);
 }
 

@@ -20,15 +20,17 @@ void meshing_make(struct meshing *meshing, const struct garment_pattern *pattern
                   struct cloth_error *error)
 {
     *meshing = (struct meshing){.pattern = pattern, .error = error};
-    meshing->first = cloth_alloc((size_t)pattern->n_panels + 1, sizeof *meshing->first, error);
-    meshing->panel = cloth_alloc(pattern->n_panels, sizeof *meshing->panel, error);
-    if (!meshing->first || !meshing->panel)
+    meshing->first =
+        cloth_take(&meshing->memory, (size_t)pattern->n_panels + 1, sizeof *meshing->first, error);
+    meshing->panel = cloth_take(&meshing->memory, pattern->n_panels, sizeof *meshing->panel, error);
+    if (meshing->memory.lacks)
         return;
     for (uint32_t p = 0; p < pattern->n_panels; p++) {
         meshing->first[p + 1] = meshing->first[p] + pattern->panel[p].n_edges;
         meshing->panel[p].clockwise = garment_panel_area(&pattern->panel[p]) < 0;
     }
-    meshing->edge = cloth_alloc(meshing->first[pattern->n_panels], sizeof *meshing->edge, error);
+    meshing->edge = cloth_take(&meshing->memory, meshing->first[pattern->n_panels],
+                               sizeof *meshing->edge, error);
     if (!meshing->edge)
         return;
     for (uint32_t p = 0; p < pattern->n_panels; p++)
@@ -47,24 +49,15 @@ void meshing_make(struct meshing *meshing, const struct garment_pattern *pattern
     }
 }
 
-static void free_outline(struct meshing_panel *panel)
-{
-    free(panel->start);
-    free(panel->place);
-    free(panel->sharp);
-}
-
 void meshing_free(struct meshing *meshing)
 {
     for (uint32_t p = 0; meshing->panel && p < meshing->pattern->n_panels; p++) {
         delaunay_free(&meshing->panel[p].plane);
-        free_outline(&meshing->panel[p]);
+        cloth_pool_free(&meshing->panel[p].memory);
     }
     for (uint32_t e = 0; meshing->edge && e < meshing->first[meshing->pattern->n_panels]; e++)
         free(meshing->edge[e].part);
-    free(meshing->first);
-    free(meshing->edge);
-    free(meshing->panel);
+    cloth_pool_free(&meshing->memory);
     *meshing = (struct meshing){0};
 }
 
@@ -216,14 +209,14 @@ bool meshing_outline(struct meshing *meshing, uint32_t panel)
     const struct meshing_edge *edge = meshing->edge + meshing->first[panel];
     const uint32_t n_edges = meshing->pattern->panel[panel].n_edges;
     uint32_t n = 0;
-    free_outline(of);
-    of->start = cloth_alloc((size_t)n_edges + 1, sizeof *of->start, error);
+    cloth_pool_free(&of->memory);
+    of->start = cloth_take(&of->memory, (size_t)n_edges + 1, sizeof *of->start, error);
     for (uint32_t e = 0; of->start && e < n_edges; e++) {
         n += edge[e].n;
         of->start[e + 1] = n;
     }
-    of->sharp = cloth_alloc(n, 1, error);
-    of->place = cloth_alloc(n, sizeof *of->place, error);
+    of->sharp = cloth_take(&of->memory, n, 1, error);
+    of->place = cloth_take(&of->memory, n, sizeof *of->place, error);
     if (error->code)
         return false;
     for (uint32_t e = 0; e < n_edges; e++)

@@ -88,8 +88,7 @@ static int take_inside(struct lattice *of, uint32_t n, const double (*loop)[2],
     for (uint32_t i = 0; i < n && !code; i++)
         code = cross_rows(of, loop[i], loop[(i + 1) % n], &list, error);
     const struct crossing *crossing = list.items;
-    if (!code && list.n)
-        qsort(list.items, list.n, sizeof *crossing, compare_crossings);
+    cloth_list_sort(&list, sizeof *crossing, compare_crossings);
     for (size_t i = 0; !code && i + 1 < list.n; i += 2) { /* each row has an even number */
         const int64_t row = crossing[i].row;
         const double x = row_x(of, row);

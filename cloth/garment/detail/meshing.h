@@ -9,12 +9,13 @@
  * first[p]. Local functions. */
 
 struct meshing_panel {
-    struct delaunay plane;  /* its mesh, in the plane as seen from its front */
-    double (*place)[2];     /* m: of its boundary */
-    unsigned char *sharp;   /* a vertex of its boundary: the panel's angle there is below 30 degrees
-                             */
-    uint32_t *start;        /* n_edges + 1: where each edge's vertices begin */
-    bool clockwise, meshed; /* meshed: by the divisions as they are now */
+    struct delaunay plane; /* its mesh, in the plane as seen from its front */
+    double (*place)[2];    /* m: of its boundary */
+    unsigned char *sharp;  /* a vertex of its boundary: the panel's angle there is below 30 degrees
+                            */
+    uint32_t *start;       /* n_edges + 1: where each edge's vertices begin */
+    struct cloth_pool memory; /* of these three */
+    bool clockwise, meshed;   /* meshed: by the divisions as they are now */
 };
 
 struct meshing_edge {
@@ -39,6 +40,7 @@ struct meshing {
     struct meshing_edge *edge;   /* first[n_panels] */
     struct meshing_panel *panel; /* n_panels */
     double spacing;              /* m: of inner triangles */
+    struct cloth_pool memory;
 };
 
 /* error: set by this function and those below; no error before. meshing_free frees it, also after

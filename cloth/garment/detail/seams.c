@@ -77,17 +77,10 @@ static void relate(const struct seams *of, uint32_t a, uint32_t b, bool one_side
     cloth_sets_join(of->set, a + n, one_side ? b + n : b);
 }
 
-static int compare_panels(const void *va, const void *vb)
-{
-    const struct vote *a = va, *b = vb;
-    const int order = cloth_compare_u32(a->panel[0], b->panel[0]);
-    return order ? order : cloth_compare_u32(a->panel[1], b->panel[1]);
-}
-
 static int compare_votes(const void *va, const void *vb)
 {
     const double a = fabs(((const struct vote *)va)->sum), b = fabs(((const struct vote *)vb)->sum);
-    return a < b ? 1 : a > b ? -1 : compare_panels(va, vb);
+    return a < b ? 1 : a > b ? -1 : cloth_by_two(va, vb);
 }
 
 /* The votes of panels, one for each two that have clear seams. */
@@ -101,9 +94,9 @@ static uint32_t count_votes(struct vote *vote, const struct seams *of)
             vote[n++] =
                 (struct vote){{a < b ? a : b, a < b ? b : a}, vote_of(&of->garment->seam[s])};
     }
-    qsort(vote, n, sizeof *vote, compare_panels);
+    qsort(vote, n, sizeof *vote, cloth_by_two);
     for (uint32_t i = 0; i < n; i++)
-        if (kept && !compare_panels(vote + kept - 1, vote + i))
+        if (kept && !cloth_by_two(vote + kept - 1, vote + i))
             vote[kept - 1].sum += vote[i].sum;
         else
             vote[kept++] = vote[i];
@@ -147,7 +140,7 @@ static int pair_vertices(const struct seams *of, uint32_t s, struct cloth_error 
     const struct garment_side *side = of->pattern->stitch[s].side;
     struct garment_seam *seam = &of->garment->seam[s];
     const uint32_t n = seam->n_pairs;
-    seam->pair = cloth_alloc(n, sizeof *seam->pair, error);
+    seam->pair = cloth_take(&of->garment->memory, n, sizeof *seam->pair, error);
     for (uint32_t k = 0; k < n && seam->pair; k++) {
         seam->pair[k][0] = vertex_of(of, side[0], k);
         seam->pair[k][1] = vertex_of(of, side[1], seam->reversed ? n - 1 - k : k);
@@ -159,11 +152,13 @@ int seams_make(struct garment *garment, const struct garment_pattern *pattern,
                struct cloth_error *error)
 {
     const uint32_t n = pattern->n_stitches, n_fronts = 2 * pattern->n_panels;
-    struct seams seams = {garment, pattern, cloth_alloc(n_fronts, sizeof *seams.set, error)};
-    struct vote *vote = cloth_alloc(n, sizeof *vote, error);
-    garment->seam = cloth_alloc(n, sizeof *garment->seam, error);
-    garment->n_seams = garment->seam ? n : 0;
-    int code = seams.set && vote && garment->seam ? CLOTH_OK : CLOTH_E_MEMORY;
+    struct cloth_pool memory = {0};
+    struct seams seams = {garment, pattern,
+                          cloth_take(&memory, n_fronts, sizeof *seams.set, error)};
+    struct vote *vote = cloth_take(&memory, n, sizeof *vote, error);
+    garment->seam = cloth_take(&garment->memory, n, sizeof *garment->seam, error);
+    garment->n_seams = n;
+    int code = memory.lacks || garment->memory.lacks ? CLOTH_E_MEMORY : CLOTH_OK;
     for (uint32_t s = 0; s < n && !code; s++)
         measure_seam(&seams, s);
     if (!code) {
@@ -173,7 +168,6 @@ int seams_make(struct garment *garment, const struct garment_pattern *pattern,
     }
     for (uint32_t s = 0; s < n && !code; s++)
         code = pair_vertices(&seams, s, error);
-    free(seams.set);
-    free(vote);
+    cloth_pool_free(&memory);
     return code;
 }

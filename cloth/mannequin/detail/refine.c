@@ -24,11 +24,10 @@ static void run_pass(struct surface *surface, double wanted,
     struct pass pass = {.surface = surface, .wanted = wanted};
     const uint32_t n = surface->n, m = surface->m;
     if (surface_links_find(&pass.links, surface))
-        pass.touched = cloth_alloc(n > m ? n : m, 1, surface->error);
+        pass.touched = cloth_take(&pass.links.memory, n > m ? n : m, 1, surface->error);
     for (uint32_t e = 0; !surface->error->code && e < pass.links.n_edges; e++)
         change(&pass, &pass.links.edge[e]);
-    surface_links_free(&pass.links);
-    free(pass.touched);
+    cloth_pool_free(&pass.links.memory);
 }
 
 static void middle_of(const struct surface *surface, const struct surface_edge *edge, double x[3])

@@ -65,12 +65,13 @@ static void find_edge(struct surface_links *links, uint32_t v, uint32_t high, ui
 bool surface_links_find(struct surface_links *links, const struct surface *surface)
 {
     struct cloth_error *error = surface->error;
-    *links = (struct surface_links){
-        .edge = cloth_alloc(3 * (size_t)surface->m, sizeof *links->edge, error),
-        .first_edge = cloth_alloc((size_t)surface->n + 1, sizeof *links->first_edge, error),
-        .first = cloth_alloc((size_t)surface->n + 2, sizeof *links->first, error),
-        .fan = cloth_alloc(3 * (size_t)surface->m, sizeof *links->fan, error),
-    };
+    struct cloth_pool *memory = &links->memory;
+    const size_t n = surface->n, sides = 3 * (size_t)surface->m;
+    *links = (struct surface_links){0};
+    links->edge = cloth_take(memory, sides, sizeof *links->edge, error);
+    links->first_edge = cloth_take(memory, n + 1, sizeof *links->first_edge, error);
+    links->first = cloth_take(memory, n + 2, sizeof *links->first, error);
+    links->fan = cloth_take(memory, sides, sizeof *links->fan, error);
     if (error->code)
         return false;
     find_fans(links, surface);
@@ -85,15 +86,6 @@ bool surface_links_find(struct surface_links *links, const struct surface *surfa
         links->first_edge[v + 1] = links->n_edges;
     }
     return true;
-}
-
-void surface_links_free(struct surface_links *links)
-{
-    free(links->edge);
-    free(links->first_edge);
-    free(links->first);
-    free(links->fan);
-    *links = (struct surface_links){0};
 }
 
 /* ---- Onto the figure ---- */
@@ -161,11 +153,10 @@ void surface_smooth(struct surface *surface)
     struct surface_links links;
     double(*sum)[4] = NULL;
     if (surface_links_find(&links, surface))
-        sum = cloth_alloc(surface->n, sizeof *sum, surface->error);
+        sum = cloth_take(&links.memory, surface->n, sizeof *sum, surface->error);
     if (sum)
         sum_neighbours(surface, &links, sum);
     for (uint32_t v = 0; sum && v < surface->n; v++)
         slide(surface, v, sum[v]);
-    free(sum);
-    surface_links_free(&links);
+    cloth_pool_free(&links.memory);
 }

@@ -27,15 +27,15 @@ struct surface_links {
     struct surface_edge *edge;
     uint32_t *first_edge;  /* n + 1: of the edges whose lower end a vertex is */
     uint32_t *first, *fan; /* triangles at vertex v: fan[first[v]] .. fan[first[v + 1] - 1] */
+    struct cloth_pool memory;
 };
 
 /* Marches over a lattice of tetrahedra with edges of `cell` and more, m: the surface is empty
  * before. */
 void surface_march(struct surface *surface, double cell);
 
-/* False after an error; the links are to be freed in any case. */
+/* False after an error; the pool is to be freed in any case. */
 bool surface_links_find(struct surface_links *links, const struct surface *surface);
-void surface_links_free(struct surface_links *links);
 
 /* One pass each of a remesher: splits edges longer than 4/3 of what figure_edge says for `edge`,
  * collapses those shorter than 4/5 of it, turns edges where vertices then have nearer to six

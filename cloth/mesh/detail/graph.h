@@ -1,6 +1,7 @@
 #ifndef CLOTH_MESH_DETAIL_GRAPH_H
 #define CLOTH_MESH_DETAIL_GRAPH_H
 
+#include "cloth/base/memory.h"
 #include "cloth/mesh/blocks.h"
 
 /* A graph: the neighbours of node i are neighbour[start[i]] .. neighbour[start[i + 1] - 1],
@@ -26,7 +27,7 @@ void mesh_graph_free(struct mesh_graph *graph);
  * repeated while the nodes get farther away. Neighbours join by rising degree within the part, then
  * by number; at last the whole order is reversed. part: of each node. nodes: n of the same part,
  * all that part has; rewritten in the new order. order: from mesh_order_make, for any number of
- * calls on one graph; to be freed also after its error, CLOTH_E_MEMORY. */
+ * calls on one graph. Its error: CLOTH_E_MEMORY. */
 struct mesh_order {
     const struct mesh_graph *graph;
     const uint32_t *part;
@@ -36,11 +37,11 @@ struct mesh_order {
     uint32_t *placed; /* the new order */
     uint64_t *sorted; /* of one node's neighbours: degree * 2^32 + node */
     uint32_t walk;
+    struct cloth_pool memory; /* of these arrays: to be freed also after an error */
 };
 int mesh_order_make(struct mesh_order *order, const struct mesh_graph *graph,
                     struct cloth_error *error);
 void mesh_order_part(struct mesh_order *order, const uint32_t *part, uint32_t n, uint32_t *nodes);
-void mesh_order_free(struct mesh_order *order);
 
 /* Cuts the nodes into n_parts <= n_nodes parts with METIS' recursive bisection, fixed seed, equal
  * numbers of nodes. part: of each node, n_nodes. A graph without pairs is cut by node number. METIS

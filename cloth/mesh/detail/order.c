@@ -15,32 +15,13 @@ int mesh_order_make(struct mesh_order *order, const struct mesh_graph *graph,
     for (size_t v = 0; v < graph->n_nodes; v++)
         if (graph->start[v + 1] - graph->start[v] > widest)
             widest = graph->start[v + 1] - graph->start[v];
-    *order = (struct mesh_order){
-        .graph = graph,
-        .degree = cloth_alloc(graph->n_nodes, sizeof *order->degree, error),
-        .seen = cloth_alloc(graph->n_nodes, sizeof *order->seen, error),
-        .queue = cloth_alloc(graph->n_nodes, sizeof *order->queue, error),
-        .placed = cloth_alloc(graph->n_nodes, sizeof *order->placed, error),
-        .sorted = cloth_alloc(widest, sizeof *order->sorted, error),
-    };
-    return order->degree && order->seen && order->queue && order->placed && order->sorted
-               ? CLOTH_OK
-               : CLOTH_E_MEMORY;
-}
-
-void mesh_order_free(struct mesh_order *order)
-{
-    free(order->degree);
-    free(order->seen);
-    free(order->queue);
-    free(order->placed);
-    free(order->sorted);
-}
-
-static int order_by_key(const void *left, const void *right)
-{
-    const uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
-    return (a > b) - (a < b);
+    *order = (struct mesh_order){.graph = graph};
+    order->degree = cloth_take(&order->memory, graph->n_nodes, sizeof *order->degree, error);
+    order->seen = cloth_take(&order->memory, graph->n_nodes, sizeof *order->seen, error);
+    order->queue = cloth_take(&order->memory, graph->n_nodes, sizeof *order->queue, error);
+    order->placed = cloth_take(&order->memory, graph->n_nodes, sizeof *order->placed, error);
+    order->sorted = cloth_take(&order->memory, widest, sizeof *order->sorted, error);
+    return order->memory.lacks ? CLOTH_E_MEMORY : CLOTH_OK;
 }
 
 /* Appends the neighbours of a node that this walk has not met, in order of degree and number. */
@@ -55,7 +36,7 @@ static uint32_t order_visit(struct mesh_order *order, uint32_t node, uint32_t n)
         order->seen[other] = order->walk;
         order->sorted[fresh++] = (uint64_t)order->degree[other] << 32 | other;
     }
-    qsort(order->sorted, fresh, sizeof *order->sorted, order_by_key);
+    qsort(order->sorted, fresh, sizeof *order->sorted, cloth_by_u64);
     for (size_t i = 0; i < fresh; i++)
         order->queue[n++] = (uint32_t)order->sorted[i];
     return n;

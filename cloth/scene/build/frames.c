@@ -12,7 +12,8 @@ static int read_pc2(struct scene_tree *tree, int node, const struct mesh *mesh, 
 {
     char *path = scene_build_path(tree, node);
     const int code =
-        path ? mesh_read_pc2(path, mesh->n_vertices, n, place, &tree->inner) : tree->error->code;
+        path ? mesh_read_pc2(path, mesh->n_vertices, MESH_ALL_FRAMES, n, place, &tree->inner)
+             : tree->error->code;
     free(path);
     return scene_build_blame(code, "frames", tree, node);
 }

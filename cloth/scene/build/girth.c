@@ -6,14 +6,14 @@
 #include <stdlib.h>
 
 /* The places of a body at time 0, n_vertices x 3, and then its triangles. */
-static void build_girth_take_body(struct girth_mesh *mesh, const struct contact_body *body,
+static void build_girth_take_body(struct slice_mesh *mesh, const struct contact_body *body,
                                   struct cloth_error *error)
 {
     const phys_vec *x = contact_body_vertices(body);
     const struct contact_facet *facet = contact_body_facets(body);
     double(*place)[3] = cloth_alloc(body->n_vertices, sizeof *place, error);
     uint32_t(*triangle)[3] = cloth_alloc(body->n_triangles, sizeof *triangle, error);
-    *mesh = (struct girth_mesh){body->n_triangles, (const double(*)[3])place,
+    *mesh = (struct slice_mesh){body->n_triangles, (const double(*)[3])place,
                                 (const uint32_t(*)[3])triangle};
     for (uint32_t v = 0; v < body->n_vertices && place; v++)
         for (int k = 0; k < 3; k++)
@@ -26,11 +26,11 @@ static void build_girth_take_body(struct girth_mesh *mesh, const struct contact_
 static int compare_girths(struct girth_worst *worst, const struct model_cloth *cloth,
                           const struct contact_body *body, struct cloth_error *error)
 {
-    const struct girth_mesh garment = {cloth->mesh.n_triangles,
+    const struct slice_mesh garment = {cloth->mesh.n_triangles,
                                        (const double(*)[3])cloth->mesh.position,
                                        (const uint32_t(*)[3])cloth->mesh.triangle};
     const struct model_seams *seams = &cloth->seams;
-    struct girth_mesh wearer;
+    struct slice_mesh wearer;
     struct girth_seam *seam = cloth_alloc(seams->n, sizeof *seam, error);
     build_girth_take_body(&wearer, body, error);
     for (uint32_t s = 0; s < seams->n && seam; s++)

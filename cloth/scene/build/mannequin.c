@@ -95,7 +95,7 @@ static int make_figure(struct scene_made_part *to, const struct mannequin *asked
 {
     if (to->is_made)
         return CLOTH_OK;
-    const int code = mannequin_make_rigged(&to->mesh, &to->rig, asked, NULL, &tree->inner);
+    const int code = mannequin_make(&to->mesh, &to->rig, asked, NULL, &tree->inner);
     to->is_made = !code;
     return scene_build_blame(code, "mannequin", tree, node);
 }

@@ -112,8 +112,8 @@ static int build_start_take_frame(struct model_cloth *cloth, const struct scene_
 {
     uint32_t n_frames = 0;
     double *places = NULL;
-    int code = mesh_read_pc2_frame(folder->pc2, folder->n_all, build_start_frame_of(from),
-                                   &n_frames, &places, &tree->inner);
+    int code = mesh_read_pc2(folder->pc2, folder->n_all, build_start_frame_of(from), &n_frames,
+                             &places, &tree->inner);
     code = scene_build_blame(code, "from", tree, scene_tree_get(tree, node, "frames")) ||
            check_from_frame(from, n_frames, folder, tree, node) ||
            build_start_take_places(cloth, folder, places, tree, node);

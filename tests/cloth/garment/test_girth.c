@@ -35,21 +35,21 @@ static void prism_make(struct prism *prism, double radius, double x, double z)
     }
 }
 
-static struct girth_mesh body_of(const struct prism *prism, uint32_t n)
+static struct slice_mesh body_of(const struct prism *prism, uint32_t n)
 {
-    return (struct girth_mesh){n * 2 * SIDES, (const double(*)[3])prism->place,
+    return (struct slice_mesh){n * 2 * SIDES, (const double(*)[3])prism->place,
                                (const uint32_t(*)[3])prism->triangle};
 }
 
 /* Compares the mesh of a pattern with a body; the first n_seams of its seams are sewn. */
 static struct girth_worst compare(const struct garment_pattern *pattern, uint32_t n_seams,
-                                  const struct girth_mesh *body)
+                                  const struct slice_mesh *body)
 {
     struct garment garment;
     struct girth_seam seam[32];
     struct girth_worst worst;
     make_garment(&garment, pattern, 0.03, 0);
-    const struct girth_mesh mesh = {garment.n_triangles, (const double(*)[3])garment.position,
+    const struct slice_mesh mesh = {garment.n_triangles, (const double(*)[3])garment.position,
                                     (const uint32_t(*)[3])garment.triangle};
     for (uint32_t s = 0; s < n_seams; s++)
         seam[s] = (struct girth_seam){garment.seam[s].n_pairs,
@@ -85,7 +85,7 @@ UNIT_TEST(a_tube_around_a_prism)
     for (int i = 0; i < 4; i++) {
         const double radius = 0.1 + 0.03 * i; /* 0.1 to 0.19: girths of 0.63 to 1.19 m */
         prism_make(&prism, radius, 0.01, 0);
-        const struct girth_mesh body = body_of(&prism, 1);
+        const struct slice_mesh body = body_of(&prism, 1);
         const struct girth_worst worst = compare(&pattern, 2, &body);
         ck_assert(worst.found);
         ck_assert_double_eq_tol(worst.garment, 1, 1e-12);
@@ -109,7 +109,7 @@ UNIT_TEST(a_tube_around_two_legs)
             for (int k = 0; k < 3; k++)
                 legs.triangle[leg][t][k] = prism.triangle[t][k] + leg * 2 * SIDES;
     }
-    const struct girth_mesh body = {4 * SIDES, (const double(*)[3])legs.place,
+    const struct slice_mesh body = {4 * SIDES, (const double(*)[3])legs.place,
                                     (const uint32_t(*)[3])legs.triangle};
     const struct girth_worst worst = compare(&pattern, 2, &body);
     ck_assert(worst.found);
@@ -120,7 +120,7 @@ UNIT_TEST(a_tube_around_two_legs)
 UNIT_TEST(nothing_to_compare)
 {
     prism_make(&prism, 0.1, 0.5, 0);
-    struct girth_mesh body = body_of(&prism, 1);
+    struct slice_mesh body = body_of(&prism, 1);
     ck_assert(!compare(&pattern, 2, &body).found);
     prism_make(&prism, 0.1, 0.25, 0);
     body = body_of(&prism, 1);
@@ -147,7 +147,7 @@ UNIT_TEST(skirts_of_random_waists)
         value[waist] = 0.7 + 0.012 * (i * 11 % 20);
         UNIT_FINE(garment_own_make(&skirt, own, value, &error));
         prism_make(&prism, radius, 0, 0);
-        const struct girth_mesh body = body_of(&prism, 1);
+        const struct slice_mesh body = body_of(&prism, 1);
         const struct girth_worst worst = compare(&skirt, skirt.n_stitches, &body);
         ck_assert(worst.found);
         ck_assert_double_eq_tol(worst.garment, value[waist] + 0.02, 1e-12);

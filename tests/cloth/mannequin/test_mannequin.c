@@ -308,7 +308,7 @@ UNIT_TEST(random_measures)
             mannequin.girth[i] = (m->least + (m->most - m->least) * random_part(&state)) *
                                  mannequin.height / MANNEQUIN_HEIGHT;
         }
-        if (mannequin_make(&mesh, &mannequin, NULL, &error)) {
+        if (mannequin_make(&mesh, NULL, &mannequin, NULL, &error)) {
             unit_says(error.text, "it has to be at least");
             continue;
         }
@@ -321,7 +321,7 @@ UNIT_TEST(random_measures)
 static void check_refused(const struct mannequin *mannequin, const char *sentence)
 {
     struct mesh mesh;
-    UNIT_REFUSED(mannequin_make(&mesh, mannequin, NULL, &error), CLOTH_E_INPUT, sentence);
+    UNIT_REFUSED(mannequin_make(&mesh, NULL, mannequin, NULL, &error), CLOTH_E_INPUT, sentence);
     ck_assert_ptr_null(mesh.position);
 }
 

@@ -13,7 +13,7 @@ struct figure_at {
 
 static void make(struct figure_at *figure, const struct mannequin *mannequin)
 {
-    UNIT_FINE(mannequin_make_rigged(&figure->mesh, &figure->rig, mannequin, NULL, &error));
+    UNIT_FINE(mannequin_make(&figure->mesh, &figure->rig, mannequin, NULL, &error));
     figure->x = calloc(figure->mesh.n_vertices, sizeof *figure->x);
 }
 

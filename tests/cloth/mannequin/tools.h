@@ -22,7 +22,7 @@ static inline double distance_of(const double *a, const double *b)
 
 static inline void make_mannequin(struct mesh *mesh, const struct mannequin *mannequin)
 {
-    UNIT_FINE(mannequin_make(mesh, mannequin, NULL, &error));
+    UNIT_FINE(mannequin_make(mesh, NULL, mannequin, NULL, &error));
 }
 
 /* How many pairs of its triangles intersect, with its vertices at x. */

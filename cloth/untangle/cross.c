@@ -1,5 +1,6 @@
 /* Finds the edges that go through triangles, from the exact pairs of triangles that intersect. An
  * edge of two triangles is found by both, and listed once. */
+#include "cloth/base/order.h"
 #include "cloth/untangle/state.h"
 #include "cloth/verify/orient.h"
 
@@ -39,33 +40,10 @@ static int try_edges(struct untangle *all, uint32_t of, uint32_t triangle)
         const struct untangle_crossing found = {all->side[of][k], triangle};
         if (!goes_through(all, found.edge, triangle))
             continue;
-        struct untangle_crossing *crossing =
-            cloth_list_add(&all->crossings, sizeof *crossing, 1, all->error);
-        if (!crossing)
+        if (cloth_list_put(&all->crossings, &found, sizeof found, all->error))
             return CLOTH_E_MEMORY;
-        *crossing = found;
     }
     return CLOTH_OK;
-}
-
-static int by_edge(const void *left, const void *right)
-{
-    const struct untangle_crossing *a = left, *b = right;
-    if (a->edge != b->edge)
-        return a->edge < b->edge ? -1 : 1;
-    return (a->triangle > b->triangle) - (a->triangle < b->triangle);
-}
-
-static void keep_once(struct cloth_list *list)
-{
-    struct untangle_crossing *crossing = list->items;
-    size_t n = 0;
-    if (list->n)
-        qsort(crossing, list->n, sizeof *crossing, by_edge);
-    for (size_t i = 0; i < list->n; i++)
-        if (!n || by_edge(crossing + i, crossing + n - 1))
-            crossing[n++] = crossing[i];
-    list->n = n;
 }
 
 /* Marks points of edges and triangles that cross their own layer: near features there may be on
@@ -123,7 +101,7 @@ int untangle_cross(struct untangle *all)
     }
     if (code)
         return code;
-    keep_once(&all->crossings);
+    cloth_list_sort_once(&all->crossings, sizeof(struct untangle_crossing), cloth_by_two);
     mark_tangled(all);
     all->count.pairs = all->pairs.n;
     return CLOTH_OK;

@@ -30,18 +30,13 @@ enum { TRIANGLE = 7 << 1 }; /* its corners, of a push whose corner 0 is a vertex
 int untangle_push_vertex(struct untangle *all, uint32_t point, const struct untangle_nearest *at,
                          const phys_vec *normal, bool still)
 {
-    struct untangle_push *push = untangle_add(all);
-    if (!push)
-        return CLOTH_E_MEMORY;
-    push->n = 4;
-    push->normal = *normal;
-    push->want = all->room;
-    push->still = still ? TRIANGLE : 0;
+    struct untangle_push push = {
+        .n = 4, .still = still ? TRIANGLE : 0, .want = all->room, .normal = *normal};
     for (uint32_t k = 0; k < 4; k++) {
-        push->point[k] = k ? all->corner[at->triangle][k - 1] : point;
-        push->weight[k] = at->at.weight[k];
+        push.point[k] = k ? all->corner[at->triangle][k - 1] : point;
+        push.weight[k] = at->at.weight[k];
     }
-    return CLOTH_OK;
+    return untangle_add(all, &push);
 }
 
 /* Pushes an end of an edge and the triangle that the edge crosses apart along the normal, at the
@@ -54,20 +49,17 @@ static int push_end(struct untangle *all, const struct untangle_crossing *crossi
     const phys_vec along = all->x[end[1]] - all->x[end[0]];
     double weight[UNTANGLE_CORNERS];
     untangle_place(all, crossing, weight);
-    struct untangle_push *push = untangle_add(all);
-    if (!push)
-        return CLOTH_E_MEMORY;
-    push->n = 4;
-    push->normal = *normal;
-    push->want = all->room;
-    push->still = still;
-    push->point[0] = end[side * phys_dot(&along, normal) < 0];
-    push->weight[0] = side;
+    struct untangle_push push = {.n = 4,
+                                 .point = {end[side * phys_dot(&along, normal) < 0]},
+                                 .still = still,
+                                 .weight = {side},
+                                 .want = all->room,
+                                 .normal = *normal};
     for (int k = 0; k < 3; k++) {
-        push->point[1 + k] = corner[k];
-        push->weight[1 + k] = -side * weight[2 + k];
+        push.point[1 + k] = corner[k];
+        push.weight[1 + k] = -side * weight[2 + k];
     }
-    return CLOTH_OK;
+    return untangle_add(all, &push);
 }
 
 int untangle_push_edge(struct untangle *all, const struct untangle_crossing *crossing, double sign,

@@ -1,18 +1,13 @@
 /* Pushes and edges are applied one after the other; each sees the moves of those before it. */
 #include "cloth/untangle/state.h"
 
-#include <string.h>
-
 enum { SWEEPS = 6 };
 static const double MOST = 5;                      /* thicknesses: of a push in a sweep */
 static const double SHORTEST = 0.8, LONGEST = 1.2; /* of the length that an edge had */
 
-struct untangle_push *untangle_add(struct untangle *all)
+int untangle_add(struct untangle *all, const struct untangle_push *push)
 {
-    struct untangle_push *push = cloth_list_add(&all->pushes, sizeof *push, 1, all->error);
-    if (push)
-        memset(push, 0, sizeof *push);
-    return push;
+    return cloth_list_put(&all->pushes, push, sizeof *push, all->error);
 }
 
 /* The corners that move: those that are free and need not stay, else all that are free. */

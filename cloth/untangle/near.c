@@ -29,30 +29,25 @@ static int base_of(const struct untangle *all, const struct corners *c, double g
     return a < b ? 0 : 1;
 }
 
-static int push_apart(struct untangle *all, const struct corners *c,
-                      const struct contact_nearest *at)
+static void push_apart(struct untangle *all, const struct corners *c,
+                       const struct contact_nearest *at)
 {
     const int base = base_of(all, c, at->gap);
-    struct untangle_push *push = untangle_add(all);
+    struct untangle_push push = {.n = 4, .want = all->room, .normal = at->normal};
     phys_vec normal = {0};
-    if (!push)
-        return CLOTH_E_MEMORY;
-    push->n = 4;
-    push->normal = at->normal;
-    push->want = all->room;
     for (uint32_t k = 0; k < 4; k++) {
         const bool is_base = base == (k >= c->first);
-        push->point[k] = c->point[k];
-        push->weight[k] = at->weight[k];
-        push->still |= (uint32_t)is_base << k;
+        push.point[k] = c->point[k];
+        push.weight[k] = at->weight[k];
+        push.still |= (uint32_t)is_base << k;
         if (is_base)
             normal += fabs(at->weight[k]) * all->normal[c->point[k]];
     }
     if (base == 0)
         normal = -normal;
-    if (phys_dot(&normal, &push->normal) < 0)
-        push->normal = -push->normal;
-    return CLOTH_OK;
+    if (phys_dot(&normal, &push.normal) < 0)
+        push.normal = -push.normal;
+    untangle_add(all, &push);
 }
 
 static bool near_pair_meets(const struct untangle *all, const struct corners *c)

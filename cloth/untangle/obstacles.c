@@ -5,37 +5,30 @@
 
 #include <string.h>
 
-static int push_vertex(struct untangle *all, uint32_t point, const struct contact_hit *hit)
+static void push_vertex(struct untangle *all, uint32_t point, const struct contact_hit *hit)
 {
-    struct untangle_push *push = untangle_add(all);
-    if (!push)
-        return CLOTH_E_MEMORY;
+    const struct untangle_push push = {.n = 1,
+                                       .point = {point},
+                                       .weight = {1},
+                                       .want = phys_dot(&hit->normal, all->x + point) + all->room -
+                                               hit->gap,
+                                       .normal = hit->normal};
     all->count.entered++;
     all->inside[point] = 1;
-    push->n = 1;
-    push->point[0] = point;
-    push->weight[0] = 1;
-    push->normal = hit->normal;
-    push->want = phys_dot(&hit->normal, all->x + point) + all->room - hit->gap;
-    return CLOTH_OK;
+    untangle_add(all, &push);
 }
 
-static int push_triangle(struct untangle *all, uint32_t triangle,
-                         const struct contact_solid_point *at)
+static void push_triangle(struct untangle *all, uint32_t triangle,
+                          const struct contact_solid_point *at)
 {
-    struct untangle_push *push = untangle_add(all);
-    if (!push)
-        return CLOTH_E_MEMORY;
+    struct untangle_push push = {.n = 3, .want = all->room - at->gap, .normal = at->normal};
     all->count.entered++;
-    push->n = 3;
-    push->normal = at->normal;
-    push->want = all->room - at->gap;
     for (int k = 0; k < 3; k++) {
-        push->point[k] = all->corner[triangle][k];
-        push->weight[k] = at->weight[k];
-        push->want += at->weight[k] * phys_dot(&at->normal, all->x + push->point[k]);
+        push.point[k] = all->corner[triangle][k];
+        push.weight[k] = at->weight[k];
+        push.want += at->weight[k] * phys_dot(&at->normal, all->x + push.point[k]);
     }
-    return CLOTH_OK;
+    untangle_add(all, &push);
 }
 
 /* Pushes a vertex out that is too deep; true if it was. The caller looks at each vertex once. */

@@ -10,26 +10,15 @@
 
 static const double OPEN = 0.1, ROOM = 0.5; /* of the thickness */
 
-void *untangle_room(struct untangle *all, size_t n, size_t size)
+/* A zeroed array that lives as long as `all`. */
+static void *open_room(struct untangle *all, size_t n, size_t size)
 {
-    const size_t line = CONTACT_ALIGN, lines = n < SIZE_MAX / 2 / size ? n * size / line + 1 : 0;
-    void **kept = cloth_list_add(&all->memory, sizeof *kept, 1, all->error);
-    if (!kept)
-        return NULL;
-    *kept = lines ? aligned_alloc(line, lines * line) : NULL;
-    if (*kept)
-        memset(*kept, 0, lines * line);
-    else
-        cloth_fail(all->error, CLOTH_E_MEMORY, "out of memory while the start is untangled");
-    return *kept;
+    return cloth_take(&all->memory, n, size, all->error);
 }
 
 void untangle_close(struct untangle *all)
 {
-    void **kept = all->memory.items;
-    for (size_t i = 0; i < all->memory.n; i++)
-        free(kept[i]);
-    free(all->memory.items);
+    cloth_pool_free(&all->memory);
     free(all->pairs.items);
     free(all->crossings.items);
     free(all->links.items);
@@ -55,7 +44,7 @@ static int count_soup(struct untangle *all)
                           "contact.untangle: cloths and bodies have more than %u vertices or "
                           "triangles",
                           UINT32_MAX / 4);
-    all->body = untangle_room(all, all->n_obstacles, sizeof *all->body);
+    all->body = open_room(all, all->n_obstacles, sizeof *all->body);
     for (uint32_t i = 0; i < all->n_obstacles && all->body; i++) {
         struct untangle_body *body = all->body + i;
         body->body = contact_bodies_at(of->bodies, of->obstacles[i].body);
@@ -67,36 +56,9 @@ static int count_soup(struct untangle *all)
 
 static int open_make_room(struct untangle *all)
 {
-    const uint32_t p = all->n_points, t = all->n_triangles;
-    all->x = untangle_room(all, p, sizeof *all->x);
-    all->start = untangle_room(all, p, sizeof *all->start);
-    all->best = untangle_room(all, p, sizeof *all->best);
-    all->normal = untangle_room(all, p, sizeof *all->normal);
-    all->place = untangle_room(all, p, sizeof *all->place);
-    all->corner = untangle_room(all, t, sizeof *all->corner);
-    all->side = untangle_room(all, t, sizeof *all->side);
-    all->owner = untangle_room(all, t, sizeof *all->owner);
-    all->cloth = untangle_room(all, p, sizeof *all->cloth);
-    all->held = untangle_room(all, p, sizeof *all->held);
-    all->border = untangle_room(all, p, sizeof *all->border);
-    all->edge = untangle_room(all, 3 * (size_t)t, sizeof *all->edge);
-    all->part = untangle_room(all, p, sizeof *all->part);
-    all->piece = untangle_room(all, p, sizeof *all->piece);
-    all->size = untangle_room(all, p, sizeof *all->size);
-    all->largest = untangle_room(all, p, sizeof *all->largest);
-    all->cut = untangle_room(all, 3 * (size_t)t, sizeof *all->cut);
-    all->zone = untangle_room(all, p, sizeof *all->zone);
-    all->votes[0] = untangle_room(all, p, sizeof *all->votes[0]);
-    all->votes[1] = untangle_room(all, p, sizeof *all->votes[1]);
-    all->label = untangle_room(all, p, sizeof *all->label);
-    all->stamp = untangle_room(all, t, sizeof *all->stamp);
-    all->wrong = untangle_room(all, p, sizeof *all->wrong);
-    all->tangled = untangle_room(all, p, sizeof *all->tangled);
-    all->used = untangle_room(all, p, 1);
-    all->shared = untangle_room(all, p, 1);
-    all->moved = untangle_room(all, p, 1);
-    all->seen = untangle_room(all, p, 1);
-    all->inside = untangle_room(all, p, sizeof *all->inside);
+    const size_t p = all->n_points, t = all->n_triangles;
+#define MAKE(type, name, numbers, items) all->name = open_room(all, items, sizeof *all->name);
+    UNTANGLE_ARRAYS(MAKE)
     return all->error->code;
 }
 
@@ -127,7 +89,7 @@ static void open_take_cloths(struct untangle *all, const phys_vec *x)
 
 static int open_place_body(struct untangle *all, const struct untangle_body *at)
 {
-    phys_vec way, *end = at->body ? untangle_room(all, at->body->n_vertices, sizeof *end) : NULL;
+    phys_vec way, *end = at->body ? open_room(all, at->body->n_vertices, sizeof *end) : NULL;
     if (!end)
         return all->error->code;
     contact_body_ends(at->body, &at->pose, all->x + at->first.point, end, &way);
@@ -137,45 +99,41 @@ static int open_place_body(struct untangle *all, const struct untangle_body *at)
 
 /* ---- Edges ---- */
 
-static void open_add_side(struct untangle *all, uint32_t side, bool is_new, const uint32_t end[2])
+/* Adds the edge of the sides from `first` to before `end` in their order. */
+static void open_add_edge(struct untangle *all, const struct mesh_sides *sides, uint32_t first,
+                          uint32_t end)
 {
-    const uint32_t opposite = all->corner[side / 3][(side % 3 + 2) % 3];
-    if (is_new) {
-        const phys_vec along = all->x[end[1]] - all->x[end[0]];
-        all->edge[all->n_edges++] =
-            (struct untangle_edge){.end = {end[0], end[1]},
+    const uint32_t *ends = sides->pair + 2 * (size_t)sides->order[first];
+    const phys_vec along = all->x[ends[1]] - all->x[ends[0]];
+    struct untangle_edge *edge = all->edge + all->n_edges;
+    *edge = (struct untangle_edge){.end = {ends[0], ends[1]},
                                    .opposite = {UNTANGLE_NONE, UNTANGLE_NONE},
-                                   .owner = all->owner[side / 3],
+                                   .n = end - first,
+                                   .owner = all->owner[sides->order[first] / 3],
                                    .length = sqrt(phys_dot(&along, &along))};
+    for (uint32_t i = first; i < end; i++) {
+        const uint32_t side = sides->order[i];
+        all->side[side / 3][side % 3] = all->n_edges;
+        if (i < first + 2)
+            edge->opposite[i - first] = all->corner[side / 3][(side % 3 + 2) % 3];
     }
-    struct untangle_edge *edge = all->edge + all->n_edges - 1;
-    all->side[side / 3][side % 3] = all->n_edges - 1;
-    if (edge->n < 2)
-        edge->opposite[edge->n] = opposite;
-    edge->n++;
+    for (int k = 0; k < 2 && edge->n == 1; k++)
+        all->border[ends[k]] = 1;
+    all->n_edges++;
 }
 
 static int open_find_edges(struct untangle *all)
 {
-    const size_t n = 3 * (size_t)all->n_triangles;
-    uint32_t(*ends)[2] = untangle_room(all, n, sizeof *ends);
-    uint32_t *order = untangle_room(all, n, sizeof *order);
-    if (!ends || !order)
-        return CLOTH_E_MEMORY;
-    for (size_t s = 0; s < n; s++) {
-        const uint32_t a = all->corner[s / 3][s % 3], b = all->corner[s / 3][(s + 1) % 3];
-        ends[s][0] = a < b ? a : b;
-        ends[s][1] = a < b ? b : a;
+    const struct mesh soup = {
+        .n_vertices = all->n_points, .n_triangles = all->n_triangles, .triangle = *all->corner};
+    struct mesh_sides sides;
+    const int code = mesh_sides_sort(&sides, &soup, all->error);
+    for (uint32_t i = 0, end; i < sides.n; i = end) {
+        end = mesh_sides_run(&sides, i);
+        open_add_edge(all, &sides, i, end);
     }
-    if (mesh_sort_pairs(order, n, *ends, all->n_points, all->error))
-        return CLOTH_E_MEMORY;
-    for (size_t i = 0; i < n; i++)
-        open_add_side(all, order[i], !i || memcmp(ends[order[i]], ends[order[i - 1]], sizeof *ends),
-                      ends[order[i]]);
-    for (uint32_t e = 0; e < all->n_edges; e++)
-        for (int k = 0; k < 2 && all->edge[e].n == 1; k++)
-            all->border[all->edge[e].end[k]] = 1;
-    return CLOTH_OK;
+    mesh_sides_free(&sides);
+    return code;
 }
 
 /* ---- Skins ---- */
@@ -183,8 +141,8 @@ static int open_find_edges(struct untangle *all)
 /* Bits of the features that each triangle of cloth stands for. *skin gets the counts. */
 static int find_features(struct untangle *all, unsigned char *stands, struct contact_skin *skin)
 {
-    unsigned char *edge = untangle_room(all, all->n_edges, 1);
-    unsigned char *point = untangle_room(all, all->n_cloth_points, 1);
+    unsigned char *edge = open_room(all, all->n_edges, 1);
+    unsigned char *point = open_room(all, all->n_cloth_points, 1);
     if (!edge || !point)
         return CLOTH_E_MEMORY;
     *skin = (struct contact_skin){.n_points = all->n_cloth_points,
@@ -206,7 +164,7 @@ static int open_find_joined(struct untangle *all)
     const uint32_t *joined = all->of->apart ? all->of->apart->joined : NULL;
     if (!joined)
         return CLOTH_OK;
-    all->joined = untangle_room(all, all->n_points, sizeof *all->joined);
+    all->joined = open_room(all, all->n_points, sizeof *all->joined);
     for (uint32_t p = 0; p < all->n_points && all->joined; p++)
         all->joined[p] = p < all->n_cloth_points ? joined[p] : p;
     return all->joined ? CLOTH_OK : CLOTH_E_MEMORY;
@@ -214,8 +172,8 @@ static int open_find_joined(struct untangle *all)
 
 static int open_make_skin(struct untangle *all)
 {
-    unsigned char *stands = untangle_room(all, all->n_cloth_triangles, 1);
-    uint32_t *id = untangle_room(all, all->n_cloth_points, sizeof *id);
+    unsigned char *stands = open_room(all, all->n_cloth_triangles, 1);
+    uint32_t *id = open_room(all, all->n_cloth_points, sizeof *id);
     struct contact_skin skin;
     if (!stands || !id || find_features(all, stands, &skin))
         return CLOTH_E_MEMORY;
@@ -229,8 +187,8 @@ static int open_make_skin(struct untangle *all)
                                              .joined = all->joined,
                                              .held = all->held,
                                              .x = all->x};
-    void *table = untangle_room(all, contact_skin_bytes(&skin), 1);
-    all->boxes = untangle_room(all, contact_boxes_bytes(&skin), 1);
+    void *table = open_room(all, contact_skin_bytes(&skin), 1);
+    all->boxes = open_room(all, contact_boxes_bytes(&skin), 1);
     if (!table || !all->boxes || contact_skin_make(&from, table, all->error))
         return CLOTH_E_MEMORY;
     all->skin = contact_skin_open(table);
@@ -242,8 +200,8 @@ static int make_body_skin(struct untangle *all, struct untangle_body *at)
     const phys_vec none = {0};
     if (!at->body)
         return CLOTH_OK;
-    void *table = untangle_room(all, contact_body_skin_bytes(at->body), 1);
-    at->boxes = untangle_room(all, contact_body_boxes_bytes(at->body), 1);
+    void *table = open_room(all, contact_body_skin_bytes(at->body), 1);
+    at->boxes = open_room(all, contact_body_boxes_bytes(at->body), 1);
     if (!table || !at->boxes ||
         contact_body_skin_make(at->body, at->first.point, table, all->error))
         return CLOTH_E_MEMORY;
@@ -268,11 +226,11 @@ static void open_box_of(const struct untangle *all, uint32_t triangle, phys_vec 
 static int make_tree(struct untangle *all)
 {
     const uint32_t n = all->n_cloth_triangles;
-    phys_vec *low = untangle_room(all, n, sizeof *low), *high = untangle_room(all, n, sizeof *high);
-    uint32_t *order = untangle_room(all, n, sizeof *order);
+    phys_vec *low = open_room(all, n, sizeof *low), *high = open_room(all, n, sizeof *high);
+    uint32_t *order = open_room(all, n, sizeof *order);
     all->n_nodes = contact_tree_nodes(n);
-    all->node = untangle_room(all, all->n_nodes, sizeof *all->node);
-    all->facet = untangle_room(all, n, sizeof *all->facet);
+    all->node = open_room(all, all->n_nodes, sizeof *all->node);
+    all->facet = open_room(all, n, sizeof *all->facet);
     if (!low || !high || !order || !all->node || !all->facet)
         return CLOTH_E_MEMORY;
     for (uint32_t t = 0; t < n; t++)
@@ -317,7 +275,7 @@ static void find_normals(struct untangle *all)
         const uint32_t *c = all->corner[t];
         const phys_vec u = all->x[c[1]] - all->x[c[0]], v = all->x[c[2]] - all->x[c[0]];
         phys_vec area;
-        untangle_product(&u, &v, &area);
+        phys_cross(&u, &v, &area);
         for (int k = 0; k < 3; k++)
             all->normal[c[k]] += area;
     }

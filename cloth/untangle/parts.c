@@ -3,6 +3,7 @@
  * that their edges cross, and go through its nearest place. */
 #include "cloth/untangle/state.h"
 
+#include "cloth/base/order.h"
 #include "cloth/base/sets.h"
 
 #include <stdlib.h>
@@ -58,14 +59,6 @@ static void parts_find_wrong(struct untangle *all, uint32_t *largest)
 
 /* ---- Cloths that they are on the wrong side of ---- */
 
-static int by_part(const void *left, const void *right)
-{
-    const struct link *a = left, *b = right;
-    if (a->part != b->part)
-        return a->part < b->part ? -1 : 1;
-    return (a->cloth > b->cloth) - (a->cloth < b->cloth);
-}
-
 static int find_links(struct untangle *all)
 {
     const struct untangle_crossing *crossing = all->crossings.items;
@@ -77,20 +70,12 @@ static int find_links(struct untangle *all)
             const uint32_t end = all->edge[crossing[i].edge].end[k];
             if (!all->wrong[end])
                 continue;
-            struct link *link = cloth_list_add(&all->links, sizeof *link, 1, all->error);
-            if (!link)
+            const struct link link = {all->part[end], all->owner[crossing[i].triangle]};
+            if (cloth_list_put(&all->links, &link, sizeof link, all->error))
                 return CLOTH_E_MEMORY;
-            *link = (struct link){all->part[end], all->owner[crossing[i].triangle]};
             all->stamp[crossing[i].triangle] = all->part[end];
         }
-    struct link *link = all->links.items;
-    size_t n = 0;
-    if (all->links.n)
-        qsort(link, all->links.n, sizeof *link, by_part);
-    for (size_t i = 0; i < all->links.n; i++)
-        if (!n || by_part(link + i, link + n - 1))
-            link[n++] = link[i];
-    all->links.n = n;
+    cloth_list_sort_once(&all->links, sizeof(struct link), cloth_by_two);
     return CLOTH_OK;
 }
 
@@ -129,18 +114,11 @@ static int push_through(struct untangle *all, uint32_t point, uint32_t cloth)
 
 static int push_part(struct untangle *all, uint32_t point)
 {
-    const struct link *link = all->links.items, key = {all->part[point], 0};
-    size_t low = 0, high = all->links.n;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (by_part(link + middle, &key) < 0)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    for (; low < all->links.n && link[low].part == key.part; low++)
-        if (!untangle_zoned(all, all->cloth[point], link[low].cloth) &&
-            push_through(all, point, link[low].cloth))
+    const struct link *link = all->links.items;
+    const uint32_t part = all->part[point], n = (uint32_t)all->links.n;
+    for (uint32_t i = cloth_first_from(link, 2, n, part); i < n && link[i].part == part; i++)
+        if (!untangle_zoned(all, all->cloth[point], link[i].cloth) &&
+            push_through(all, point, link[i].cloth))
             return CLOTH_E_MEMORY;
     return CLOTH_OK;
 }

@@ -23,8 +23,8 @@ static bool find_gradient(const struct untangle *all, const struct untangle_cros
         const phys_vec to = all->x[edge->opposite[k]] - all->x[edge->end[0]];
         const phys_vec across = to - phys_dot(&to, &along) * along;
         phys_vec face, line;
-        untangle_product(&along, &across, &face);
-        untangle_product(&face, &normal, &line);
+        phys_cross(&along, &across, &face);
+        phys_cross(&face, &normal, &line);
         if (!untangle_unit(&line))
             continue;
         if (phys_dot(&line, &across) < 0)
@@ -42,20 +42,17 @@ static int push_edge(struct untangle *all, const struct untangle_crossing *cross
     const double square = phys_dot(&gradient, &gradient);
     if (!untangle_unit(&gradient))
         return CLOTH_OK;
-    struct untangle_push *push = untangle_add(all);
-    if (!push)
-        return CLOTH_E_MEMORY;
-    untangle_place(all, crossing, push->weight);
-    push->n = UNTANGLE_CORNERS;
-    push->normal = gradient;
-    push->want = all->of->thickness * sqrt(square / (1 + square));
-    for (uint32_t k = 0; k < push->n; k++) {
-        push->point[k] =
+    struct untangle_push push = {.n = UNTANGLE_CORNERS,
+                                 .want = all->of->thickness * sqrt(square / (1 + square)),
+                                 .normal = gradient};
+    untangle_place(all, crossing, push.weight);
+    for (uint32_t k = 0; k < push.n; k++) {
+        push.point[k] =
             k < 2 ? all->edge[crossing->edge].end[k] : all->corner[crossing->triangle][k - 2];
         if (k >= 2)
-            push->weight[k] = -push->weight[k];
+            push.weight[k] = -push.weight[k];
     }
-    return CLOTH_OK;
+    return untangle_add(all, &push);
 }
 
 /* True if another kind of push moves its points in the round. */

@@ -42,52 +42,63 @@ struct untangle_body {
     void *boxes;
 };
 
+/* clang-format off */
+/* The arrays: type, name, numbers of an item, items: p points, t triangles. */
+#define UNTANGLE_ARRAYS(X)                                                                         \
+    X(phys_vec, x, , p)                                                                            \
+    X(phys_vec, start, , p)                                                                        \
+    X(phys_vec, best, , p)           /* of the round with the least wrong */                       \
+    X(phys_vec, normal, , p)         /* as long as areas are */                                    \
+    X(double, place, [3], p)         /* the same as x, for verify */                               \
+    X(uint32_t, corner, [3], t)                                                                    \
+    X(uint32_t, side, [3], t)        /* its edges */                                               \
+    X(uint32_t, owner, , t)          /* a cloth, or n_cloths + an obstacle */                      \
+    X(uint32_t, cloth, , p)          /* a cloth that has it, or the same of a body */              \
+    X(struct untangle_edge, edge, , 3 * t)                                                         \
+    X(unsigned char, held, , p)                                                                    \
+    X(unsigned char, border, , p)    /* a surface ends there, or goes on as another */             \
+    X(unsigned char, used, , p)      /* a triangle of cloth has it */                              \
+    X(unsigned char, shared, , p)    /* of two cloths */                                           \
+    X(unsigned char, moved, , p)     /* so far */                                                  \
+    /* used within a round */                                                                      \
+    X(uint32_t, part, , p)           /* the root of its part */                                    \
+    X(uint32_t, piece, , p)          /* the root of its piece */                                   \
+    X(uint32_t, size, , p)           /* vertices of a part */                                      \
+    X(uint32_t, largest, , p)        /* of a piece: a point of its largest part */                 \
+    X(unsigned char, cut, , 3 * t)   /* by edge: 0 between rounds */                               \
+    X(uint32_t, zone, , p)           /* the root of its zone; */                                   \
+    X(uint32_t, votes, [2], p)       /* of it, for either side */                                  \
+    X(signed char, label, , p)       /* side of a cloth, 1 or -1; 0: none */                       \
+    X(uint32_t, stamp, , t)          /* a part that crosses it */                                  \
+    X(unsigned char, wrong, , p)     /* of a part on the wrong side */                             \
+    X(unsigned char, tangled, , p)   /* of a crossing within its own layer */                      \
+    X(unsigned char, inside, , p)    /* too deep in an obstacle */                                 \
+    X(unsigned char, seen, , p)      /* already looked at */
+/* clang-format on */
+
 struct untangle {
     const struct untangle_cloths *of;
     uint32_t n_cloths, n_obstacles;
     uint32_t n_cloth_points, n_cloth_triangles; /* the first ones of: */
     uint32_t n_points, n_triangles, n_edges;
-    phys_vec *x, *start, *best;        /* by point; best: of the round with the least wrong */
-    phys_vec *normal;                  /* by point: as long as areas are */
-    double (*place)[3];                /* the same as x, for verify */
-    uint32_t (*corner)[3], (*side)[3]; /* by triangle; its edges */
-    uint32_t *owner;                   /* by triangle: a cloth, or n_cloths + an obstacle; */
-    uint32_t *cloth;                   /* by point: a cloth that has it, or the same of a body */
-    struct untangle_edge *edge;
-    unsigned char *held,
-        *border; /* by point; border: where a surface ends, or goes on as another; */
-    unsigned char *used, *shared; /* a triangle of cloth has it; of two cloths */
-    unsigned char *moved;         /* so far */
-    struct untangle_body *body;   /* by obstacle */
-    uint32_t *joined;             /* by point of all: as of contact_apart; NULL: none is */
-    struct contact_skin skin;     /* of all cloths */
+#define UNTANGLE_MEMBER(type, name, numbers, items) type(*name) numbers;
+    UNTANGLE_ARRAYS(UNTANGLE_MEMBER)
+    struct untangle_body *body; /* by obstacle */
+    uint32_t *joined;           /* by point of all: as of contact_apart; NULL: none is */
+    struct contact_skin skin;   /* of all cloths */
     void *boxes;
     struct contact_facet *facet; /* of the tree of all cloths */
     struct contact_node *node;
     uint32_t n_nodes;
     double open, room; /* m: no pair may be nearer; the distance to which pushes move */
-
-    /* Used within a round. */
-    struct cloth_list pairs, crossings, links, zoned, pushes;
-    uint32_t *part;                 /* by point: the root of its part */
-    uint32_t *piece, *size;         /* by point: the root of its piece; vertices of a part; */
-    uint32_t *largest;              /* of a piece: a point of its largest part */
-    unsigned char *cut;             /* by edge: 0 between rounds */
-    uint32_t *zone, *votes[2];      /* by point: the root of its zone; of it, for either side */
-    signed char *label;             /* by point: side of a cloth, 1 or -1; 0: none */
-    uint32_t *stamp;                /* by triangle: a part that crosses it */
-    unsigned char *wrong, *tangled; /* by point: of a part on the wrong side; of a crossing
-                                     * within its own layer */
-    unsigned char *inside, *seen;   /* by point: too deep in an obstacle; already looked at */
+    struct cloth_list pairs, crossings, links, zoned, pushes; /* of a round */
     struct untangle_count count;
     uint32_t near[4]; /* as of untangle_result */
 
-    struct cloth_list memory; /* void *: all of the above */
+    struct cloth_pool memory; /* of all above but lists */
     struct cloth_error *error;
 };
 
-/* A zeroed array that lives as long as `all`. */
-void *untangle_room(struct untangle *all, size_t n, size_t size);
 int untangle_open(struct untangle *all, phys_vec *x);
 void untangle_close(struct untangle *all);
 /* Boxes, normals and the tree follow the points. */
@@ -132,8 +143,8 @@ int untangle_push_triangle(struct untangle *all, const struct untangle_crossing 
 void untangle_place(const struct untangle *all, const struct untangle_crossing *crossing,
                     double weight[UNTANGLE_CORNERS]);
 
-/* Adds a push, zeroed; NULL: no memory. */
-struct untangle_push *untangle_add(struct untangle *all);
+/* Adds a push. Error: CLOTH_E_MEMORY. */
+int untangle_add(struct untangle *all, const struct untangle_push *push);
 /* Moves x. */
 void untangle_move(struct untangle *all);
 
@@ -168,12 +179,6 @@ static inline bool untangle_layered(const struct untangle *all, uint32_t a, uint
 /* True if untangle_zones treats this pair of cloths. */
 bool untangle_zoned(const struct untangle *all, uint32_t a, uint32_t b);
 
-PHYS_INLINE void untangle_product(const phys_vec *a, const phys_vec *b, phys_vec *to)
-{
-    *to = (phys_vec){(*a)[1] * (*b)[2] - (*a)[2] * (*b)[1], (*a)[2] * (*b)[0] - (*a)[0] * (*b)[2],
-                     (*a)[0] * (*b)[1] - (*a)[1] * (*b)[0], 0};
-}
-
 /* Scales it to length 1; false if it has no length. */
 PHYS_INLINE bool untangle_unit(phys_vec *a)
 {
@@ -189,7 +194,7 @@ PHYS_INLINE void untangle_face(const struct untangle *all, uint32_t triangle, ph
 {
     const uint32_t *c = all->corner[triangle];
     const phys_vec u = all->x[c[1]] - all->x[c[0]], v = all->x[c[2]] - all->x[c[0]];
-    untangle_product(&u, &v, normal);
+    phys_cross(&u, &v, normal);
     if (!untangle_unit(normal))
         *normal = (phys_vec){0};
 }

@@ -4,6 +4,7 @@
  * the others go there. */
 #include "cloth/untangle/state.h"
 
+#include "cloth/base/order.h"
 #include "cloth/base/sets.h"
 
 #include <stdlib.h>
@@ -17,13 +18,6 @@ struct zoned {
 
 /* ---- Which cloths ---- */
 
-static int by_cloths(const void *left, const void *right)
-{
-    const struct zoned *a = left, *b = right;
-    const int k = a->cloth[0] == b->cloth[0];
-    return (a->cloth[k] > b->cloth[k]) - (a->cloth[k] < b->cloth[k]);
-}
-
 static struct zoned zoned_of(uint32_t a, uint32_t b)
 {
     return a < b ? (struct zoned){{a, b}, 0} : (struct zoned){{b, a}, 0};
@@ -33,7 +27,7 @@ bool untangle_zoned(const struct untangle *all, uint32_t a, uint32_t b)
 {
     const struct zoned key = zoned_of(a, b);
     return all->zoned.n &&
-           bsearch(&key, all->zoned.items, all->zoned.n, sizeof key, by_cloths) != NULL;
+           bsearch(&key, all->zoned.items, all->zoned.n, sizeof key, cloth_by_two) != NULL;
 }
 
 /* True if a crossing is one of two cloths of equal layers, and none of its points is in a wrong
@@ -65,10 +59,9 @@ static void keep_along(struct cloth_list *list)
 {
     struct zoned *zoned = list->items;
     size_t n = 0, kept = 0;
-    if (list->n)
-        qsort(zoned, list->n, sizeof *zoned, by_cloths);
+    cloth_list_sort(list, sizeof *zoned, cloth_by_two);
     for (size_t i = 0; i < list->n; i++) {
-        if (n && !by_cloths(zoned + i, zoned + n - 1))
+        if (n && !cloth_by_two(zoned + i, zoned + n - 1))
             zoned[n - 1].along += zoned[i].along;
         else
             zoned[n++] = zoned[i];
@@ -85,11 +78,11 @@ static int find_zoned(struct untangle *all)
     for (size_t i = 0; i < all->crossings.n; i++) {
         if (!is_open(all, crossing + i))
             continue;
-        struct zoned *zoned = cloth_list_add(&all->zoned, sizeof *zoned, 1, all->error);
-        if (!zoned)
+        struct zoned zoned =
+            zoned_of(all->edge[crossing[i].edge].owner, all->owner[crossing[i].triangle]);
+        zoned.along = is_along(all, crossing + i) ? 1 : -1;
+        if (cloth_list_put(&all->zoned, &zoned, sizeof zoned, all->error))
             return CLOTH_E_MEMORY;
-        *zoned = zoned_of(all->edge[crossing[i].edge].owner, all->owner[crossing[i].triangle]);
-        zoned->along = is_along(all, crossing + i) ? 1 : -1;
     }
     keep_along(&all->zoned);
     return CLOTH_OK;
@@ -112,8 +105,7 @@ static void find_labels(struct untangle *all, const struct zoned *zoned)
 static void zones_count_votes(struct untangle *all, const struct zoned *zoned)
 {
     cloth_sets_start(all->zone, all->n_cloth_points);
-    for (uint32_t p = 0; p < all->n_cloth_points; p++)
-        all->votes[0][p] = all->votes[1][p] = 0;
+    memset(all->votes, 0, all->n_cloth_points * sizeof *all->votes);
     for (uint32_t e = 0; e < all->n_edges; e++) {
         const struct untangle_edge *edge = all->edge + e;
         if (edge->owner != zoned->cloth[0] || !all->label[edge->end[0]] ||
@@ -123,14 +115,14 @@ static void zones_count_votes(struct untangle *all, const struct zoned *zoned)
     }
     for (uint32_t p = 0; p < all->n_cloth_points; p++)
         if (all->label[p])
-            all->votes[all->label[p] > 0][cloth_sets_root(all->zone, p)]++;
+            all->votes[cloth_sets_root(all->zone, p)][all->label[p] > 0]++;
 }
 
 /* The right side of a point's zone: 1 or -1; 0: it is in no zone. */
 static int zones_side_of(struct untangle *all, uint32_t point)
 {
     const uint32_t root = cloth_sets_root(all->zone, point);
-    return !all->label[point] ? 0 : all->votes[1][root] >= all->votes[0][root] ? 1 : -1;
+    return !all->label[point] ? 0 : all->votes[root][1] >= all->votes[root][0] ? 1 : -1;
 }
 
 /* ---- The way there ---- */

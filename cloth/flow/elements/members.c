@@ -129,7 +129,8 @@ int flow_source_collect(struct flow_source *source, uint32_t from, uint32_t to,
     struct collector collector = {source, from, to, from};
     const size_t lists = (size_t)ELEMENT_KINDS * (to - from);
     size_t n = 0;
-    source->member_start = cloth_alloc(lists + 1, sizeof *source->member_start, error);
+    source->member_start =
+        cloth_take(&source->gathered, lists + 1, sizeof *source->member_start, error);
     if (!source->member_start)
         return CLOTH_E_MEMORY;
     for (uint32_t b = from; b < to; b++)
@@ -137,7 +138,7 @@ int flow_source_collect(struct flow_source *source, uint32_t from, uint32_t to,
             *list_of(source, b, kind) = n;
             n += source->shape[b].n_elements[kind];
         }
-    source->member = cloth_alloc(n, sizeof *source->member, error);
+    source->member = cloth_take(&source->gathered, n, sizeof *source->member, error);
     if (!source->member)
         return CLOTH_E_MEMORY;
     if (n)

@@ -13,19 +13,19 @@
  * and stretches in all directions alike. Beside every other length it is as 0. */
 static const double NO_LENGTH = -1e-300;
 
-int flow_joints_use(const struct model *model, unsigned char *used, struct cloth_error *error)
+int flow_joints_use(struct flow_particles *particles, const struct model *model,
+                    struct cloth_error *error)
 {
+    struct cloth_list *list = &particles->joints;
+    unsigned char *used = particles->used;
     int code = CLOTH_OK;
-    for (uint32_t j = 0; j < model->n_joints && !code; j++) {
-        struct cloth_list list = {0};
-        code = flow_pairs_list(&list, model, &model->joints[j].pairs, "a joint", error);
-        const struct flow_pair *pair = list.items;
-        for (size_t i = 0; i < list.n && !code; i++) {
-            used[pair[i].vertex[0]] = used[pair[i].vertex[1]] = 1;
-            if (pair[i].second != UINT32_MAX)
-                used[pair[i].second] = 1;
-        }
-        free(list.items);
+    for (uint32_t j = 0; j < model->n_joints && !code; j++)
+        code = flow_pairs_list(list, model, &model->joints[j].pairs, "a joint", error);
+    const struct flow_pair *pair = list->items;
+    for (size_t i = 0; i < list->n && !code; i++) {
+        used[pair[i].vertex[0]] = used[pair[i].vertex[1]] = 1;
+        if (pair[i].second != UINT32_MAX)
+            used[pair[i].second] = 1;
     }
     return code;
 }
@@ -114,20 +114,19 @@ static int joints_make_one(struct flow_springs *springs, const struct flow_parti
     return code;
 }
 
-static int make_all(struct flow_springs *springs, const struct flow_particles *particles,
-                    struct cloth_list *list, struct cloth_error *error)
+int flow_joints_make(struct flow_springs *springs, struct flow_particles *particles,
+                     struct cloth_error *error)
 {
     const struct model *model = springs->model;
+    struct cloth_list *list = &particles->joints;
+    struct flow_pair *pair = list->items;
     int code = CLOTH_OK;
-    for (uint32_t j = 0; j < model->n_joints && !code; j++)
-        code = flow_pairs_list(list, model, &model->joints[j].pairs, "a joint", error);
-    if (code)
-        return code;
+    if (!model->n_joints)
+        return CLOTH_OK;
     springs->joint = cloth_alloc(list->n, sizeof *springs->joint, error);
     springs->timed = cloth_alloc(list->n, sizeof *springs->timed, error);
     if (!springs->joint || !springs->timed)
         return CLOTH_E_MEMORY;
-    struct flow_pair *pair = list->items;
     for (uint32_t j = 0, k = 0, seam = 0; j < model->n_joints; j++) {
         seam += model->joints[j].pairs.seam != 0;
         for (uint32_t i = 0; i < model->joints[j].pairs.end[0].n && !code; i++, k++) {
@@ -141,17 +140,6 @@ static int make_all(struct flow_springs *springs, const struct flow_particles *p
         for (int end = 0; end < 2; end++)
             pair[i].vertex[end] = flow_root(&particles->welds, pair[i].vertex[end]);
     return code ? code : flow_pairs_once(list, model, "a joint", error);
-}
-
-int flow_joints_make(struct flow_springs *springs, const struct flow_particles *particles,
-                     struct cloth_error *error)
-{
-    struct cloth_list list = {0};
-    if (!springs->model->n_joints)
-        return CLOTH_OK;
-    const int code = make_all(springs, particles, &list, error);
-    free(list.items);
-    return code;
 }
 
 bool flow_joints_act(const struct model *model, const struct flow_timed *timed)

@@ -105,8 +105,7 @@ int flow_pairs_once(struct cloth_list *list, const struct model *model, const ch
                     struct cloth_error *error)
 {
     const struct flow_pair *pair = list->items;
-    if (list->n)
-        qsort(list->items, list->n, sizeof *pair, partners_compare_pairs);
+    cloth_list_sort(list, sizeof *pair, partners_compare_pairs);
     for (size_t i = 1; i < list->n; i++)
         if (low(pair + i - 1) == low(pair + i) && high(pair + i - 1) == high(pair + i))
             return flow_pair_fail(model, pair + i, what, "where there is one already", error);

@@ -10,23 +10,9 @@
 
 /* An edge at the border of its mesh with two welded ends. */
 struct border {
-    uint32_t root[2]; /* ascending */
-    uint32_t cloth, edge;
-    uint32_t corner[3]; /* of the mesh: ends, in the order of their roots; the vertex opposite */
-    uint32_t triangle;  /* that has these */
+    uint32_t root[2], cloth, edge; /* root: ascending */
+    struct element_side side;      /* ends in the order of their roots */
 };
-
-static int compare_borders(const void *a, const void *b)
-{
-    return cloth_compare_numbers(a, b, 4);
-}
-
-/* True if a root has several names. */
-static bool is_welded(const struct flow_welds *welds, uint32_t root)
-{
-    const uint32_t at = cloth_first_from(welds->name, 2, welds->n, root);
-    return at < welds->n && welds->name[at][0] == root;
-}
 
 /* Finds the borders of a cloth, the first vertex of which is `first`. */
 static int find_borders(struct cloth_list *list, const struct element_cloths *elements,
@@ -39,17 +25,16 @@ static int find_borders(struct cloth_list *list, const struct element_cloths *el
         const uint32_t a = welds->root[first + edge->a], b = welds->root[first + edge->b];
         const bool turned = b < a;
         if (edge->opposite[0] == UINT32_MAX || edge->opposite[1] != UINT32_MAX ||
-            !is_welded(welds, a) || !is_welded(welds, b))
+            !flow_is_welded(welds, a) || !flow_is_welded(welds, b))
             continue;
-        struct border *border = cloth_list_add(list, sizeof *border, 1, error);
-        if (!border)
+        const uint32_t ends[2] = {edge->a, edge->b};
+        const struct border border = {
+            {turned ? b : a, turned ? a : b},
+            cloth,
+            e,
+            {cloth, first, {ends[turned], ends[!turned], edge->opposite[0]}, edge->triangle[0]}};
+        if (cloth_list_put(list, &border, sizeof border, error))
             return CLOTH_E_MEMORY;
-        *border = (struct border){
-            .root = {turned ? b : a, turned ? a : b},
-            .cloth = cloth,
-            .edge = e,
-            .corner = {turned ? edge->b : edge->a, turned ? edge->a : edge->b, edge->opposite[0]},
-            .triangle = edge->triangle[0]};
     }
     return CLOTH_OK;
 }
@@ -92,11 +77,6 @@ struct stitch {
     double bending;   /* as of model_sewing */
 };
 
-static int compare_stitches(const void *a, const void *b)
-{
-    return cloth_compare_numbers(a, b, 2);
-}
-
 static int list_stitches(struct cloth_list *list, const struct model *model,
                          const struct flow_welds *welds, struct cloth_error *error)
 {
@@ -115,8 +95,7 @@ static int list_stitches(struct cloth_list *list, const struct model *model,
             stitch[i] = (struct stitch){{a < b ? a : b, a < b ? b : a}, seam->sewing.bending};
         }
     }
-    if (list->n)
-        qsort(list->items, list->n, sizeof(struct stitch), compare_stitches);
+    cloth_list_sort(list, sizeof(struct stitch), cloth_by_two);
     return CLOTH_OK;
 }
 
@@ -125,7 +104,7 @@ static double bending_of(const struct cloth_list *stitches, const uint32_t root[
 {
     const struct stitch key = {{root[0], root[1]}, 0};
     const struct stitch *found = stitches->n ? bsearch(&key, stitches->items, stitches->n,
-                                                       sizeof(struct stitch), compare_stitches)
+                                                       sizeof(struct stitch), cloth_by_two)
                                              : NULL;
     return found ? found->bending : -1;
 }
@@ -141,12 +120,8 @@ static void weld_hinges_add_seam(struct element_cloths *elements, const struct f
     struct element_seam *seam = elements->seam + elements->n_seams;
     uint32_t opposite[2];
     for (int k = 0; k < 2; k++) {
-        seam->side[k].cloth = border[k].cloth;
-        seam->side[k].triangle = border[k].triangle;
-        for (int i = 0; i < 3; i++)
-            seam->side[k].corner[i] = border[k].corner[i];
-        seam->side[k].first = model_first(elements->model, border[k].cloth);
-        opposite[k] = welds->root[seam->side[k].first + border[k].corner[2]];
+        seam->side[k] = border[k].side;
+        opposite[k] = welds->root[border[k].side.first + border[k].side.corner[2]];
     }
     seam->tolerance = fmax(ends[0]->tolerance, ends[1]->tolerance);
     seam->flat = ends[0]->sewn && ends[1]->sewn;
@@ -161,7 +136,7 @@ static int make_seams(struct element_cloths *elements, const struct flow_welds *
     struct cloth_list stitches = {0};
     if (!list->n)
         return CLOTH_OK;
-    qsort(list->items, list->n, sizeof *border, compare_borders);
+    cloth_list_sort(list, sizeof *border, cloth_by_four);
     elements->seam = cloth_alloc(list->n, sizeof *elements->seam, error);
     struct welded *welded =
         elements->seam ? weld_hinges_find_welded(elements->model, welds, error) : NULL;

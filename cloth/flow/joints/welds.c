@@ -27,17 +27,16 @@ static int list_pairs(struct cloth_list *list, const struct model *model, const 
     return code ? code : flow_pairs_once(list, model, "a weld", error);
 }
 
-static int welds_compare_names(const void *a, const void *b)
-{
-    return cloth_compare_numbers(a, b, 2);
-}
-
 /* The root of each vertex, and the list of all other names. */
-static int name_all(struct flow_welds *welds, uint32_t n, const struct cloth_list *list,
+static int name_all(struct flow_particles *p, const struct cloth_list *list,
                     struct cloth_error *error)
 {
+    struct flow_welds *welds = &p->welds;
     const struct flow_pair *pair = list->items;
-    uint32_t *root = welds->root;
+    const uint32_t n = p->n;
+    uint32_t *root = welds->root = cloth_take(&p->memory, n, sizeof *root, error);
+    if (!root)
+        return CLOTH_E_MEMORY;
     cloth_sets_start(root, n);
     for (size_t i = 0; i < list->n; i++)
         cloth_sets_join(root, pair[i].vertex[0], pair[i].vertex[1]);
@@ -45,7 +44,7 @@ static int name_all(struct flow_welds *welds, uint32_t n, const struct cloth_lis
         root[v] = cloth_sets_root(root, v);
         welds->n += root[v] != v;
     }
-    welds->name = cloth_alloc(welds->n, sizeof *welds->name, error);
+    welds->name = cloth_take(&p->memory, welds->n, sizeof *welds->name, error);
     if (!welds->name)
         return CLOTH_E_MEMORY;
     for (uint32_t v = 0, k = 0; v < n; v++) {
@@ -54,7 +53,7 @@ static int name_all(struct flow_welds *welds, uint32_t n, const struct cloth_lis
         welds->name[k][0] = root[v];
         welds->name[k++][1] = v;
     }
-    qsort(welds->name, welds->n, sizeof *welds->name, welds_compare_names);
+    qsort(welds->name, welds->n, sizeof *welds->name, cloth_by_two);
     return CLOTH_OK;
 }
 
@@ -107,20 +106,21 @@ static int check_shapes(const struct flow_welds *welds, const struct model *mode
     return code;
 }
 
-int flow_welds_make(struct flow_welds *welds, const struct model *model, uint32_t n,
-                    const unsigned char *used, struct cloth_error *error)
+int flow_welds_make(struct flow_particles *p, const struct model *model, struct cloth_error *error)
 {
     struct cloth_list list = {0};
-    *welds = (struct flow_welds){0};
     if (!model->n_welds)
         return CLOTH_OK;
-    int code = list_pairs(&list, model, used, error);
-    if (!code) {
-        welds->root = cloth_alloc(n, sizeof *welds->root, error);
-        code = welds->root ? name_all(welds, n, &list, error) : CLOTH_E_MEMORY;
-    }
+    int code = list_pairs(&list, model, p->used, error);
+    code = code ? code : name_all(p, &list, error);
     free(list.items);
-    return code ? code : check_shapes(welds, model, error);
+    return code ? code : check_shapes(&p->welds, model, error);
+}
+
+bool flow_is_welded(const struct flow_welds *welds, uint32_t root)
+{
+    const uint32_t at = cloth_first_from(welds->name, 2, welds->n, root);
+    return at < welds->n && welds->name[at][0] == root;
 }
 
 int flow_welds_check(const struct flow_welds *welds, const struct element_cloths *elements,
@@ -139,13 +139,6 @@ int flow_welds_check(const struct flow_welds *welds, const struct element_cloths
         root += model->cloths[c].mesh.n_vertices;
     }
     return code;
-}
-
-void flow_welds_free(struct flow_welds *welds)
-{
-    free(welds->root);
-    free(welds->name);
-    *welds = (struct flow_welds){0};
 }
 
 /* ---- Welded vertices ---- */
@@ -236,7 +229,7 @@ static int keep_unwelded(struct flow_particles *p, const struct model *model,
         sewn = sewn || model->welds[w].pairs.seam;
     if (!sewn)
         return CLOTH_OK;
-    p->unwelded = cloth_alloc(p->n, sizeof *p->unwelded, error);
+    p->unwelded = cloth_take(&p->memory, p->n, sizeof *p->unwelded, error);
     for (uint32_t v = 0; v < p->n && p->unwelded; v++)
         for (int c = 0; c < 3; c++)
             p->unwelded[v][c] = p->start[v][c];
@@ -283,13 +276,22 @@ int flow_names_make(struct flow_names *names, const struct flow_welds *welds,
         names->name[i][0] = place;
         names->name[i][1] = welds->name[i][1];
     }
-    qsort(names->name, names->n, sizeof *names->name, welds_compare_names);
+    qsort(names->name, names->n, sizeof *names->name, cloth_by_two);
     return CLOTH_OK;
 }
 
-uint32_t flow_names_from(const struct flow_names *names, uint32_t place)
+bool flow_name_of(const struct flow_names *names, const uint32_t *vertex,
+                  const struct flow_table *t, uint32_t k, struct flow_name *name)
 {
-    return cloth_first_from(names->name, 2, names->n, place);
+    const uint32_t at =
+        k < t->n ? 0 : cloth_first_from(names->name, 2, names->n, t->first) + (k - t->n);
+    if (k < t->n)
+        *name = (struct flow_name){k, vertex[t->first + k]};
+    else if (at < names->n && names->name[at][0] < t->first + t->n)
+        *name = (struct flow_name){names->name[at][0] - t->first, names->name[at][1]};
+    else
+        return false;
+    return true;
 }
 
 /* ---- Springs ---- */
@@ -301,8 +303,7 @@ struct candidate {
 };
 
 struct finder {
-    const uint32_t *root;
-    unsigned char *welded; /* a vertex: whether it has other names */
+    const struct flow_welds *welds;
     uint64_t number;
     struct cloth_list found; /* candidates */
     struct cloth_error *error;
@@ -313,17 +314,14 @@ static void welds_find_joined(void *to, const struct flow_spring *s)
 {
     struct finder *finder = to;
     const uint64_t number = finder->number++;
-    const uint32_t a = finder->root[s->a], b = finder->root[s->b];
-    if (!finder->welded[a] || !finder->welded[b] || finder->code)
+    const struct flow_welds *welds = finder->welds;
+    const uint32_t a = welds->root[s->a], b = welds->root[s->b];
+    if (finder->code || !flow_is_welded(welds, a) || !flow_is_welded(welds, b))
         return;
-    struct candidate *candidate =
-        cloth_list_add(&finder->found, sizeof *candidate, 1, finder->error);
-    finder->code = candidate ? CLOTH_OK : CLOTH_E_MEMORY;
-    if (!candidate)
-        return;
-    *candidate = (struct candidate){*s, number};
-    candidate->spring.a = a < b ? a : b;
-    candidate->spring.b = a < b ? b : a;
+    struct candidate candidate = {*s, number};
+    candidate.spring.a = a < b ? a : b;
+    candidate.spring.b = a < b ? b : a;
+    finder->code = cloth_list_put(&finder->found, &candidate, sizeof candidate, finder->error);
 }
 
 static int compare_kinds(const struct flow_spring *a, const struct flow_spring *b)
@@ -339,12 +337,6 @@ static int compare_candidates(const void *va, const void *vb)
     const struct candidate *a = va, *b = vb;
     const int order = compare_kinds(&a->spring, &b->spring);
     return order ? order : (a->number > b->number) - (a->number < b->number);
-}
-
-static int compare_merged(const void *va, const void *vb)
-{
-    const struct flow_merged *a = va, *b = vb;
-    return (a->number > b->number) - (a->number < b->number);
 }
 
 /* The first of alike ones has the sum, the others go. */
@@ -366,29 +358,20 @@ static int merge(struct flow_springs *springs, const struct cloth_list *found,
                 end > i ? (struct flow_merged){all[end].number, 0, 0, true} : *sum;
         }
     }
-    qsort(springs->merged, springs->n_merged, sizeof *springs->merged, compare_merged);
+    qsort(springs->merged, springs->n_merged, sizeof *springs->merged, cloth_by_u64);
     return CLOTH_OK;
 }
 
-int flow_springs_merge(struct flow_springs *springs, uint32_t n_vertices, struct cloth_error *error)
+int flow_springs_merge(struct flow_springs *springs, struct cloth_error *error)
 {
-    const struct flow_welds *welds = springs->welds;
-    if (!welds->n)
+    struct finder finder = {.welds = springs->welds, .error = error};
+    if (!springs->welds->n)
         return CLOTH_OK;
-    struct finder finder = {.root = welds->root, .error = error};
-    finder.welded = cloth_alloc(n_vertices, 1, error);
-    for (uint32_t i = 0; finder.welded && i < welds->n; i++)
-        finder.welded[welds->name[i][0]] = 1;
-    int code = finder.welded ? CLOTH_OK : CLOTH_E_MEMORY;
-    if (!code) {
-        flow_springs_each(springs, welds_find_joined, &finder);
-        code = finder.code;
-    }
-    if (!code && finder.found.n) {
-        qsort(finder.found.items, finder.found.n, sizeof(struct candidate), compare_candidates);
+    flow_springs_each(springs, welds_find_joined, &finder);
+    int code = finder.code;
+    cloth_list_sort(&finder.found, sizeof(struct candidate), compare_candidates);
+    if (!code && finder.found.n)
         code = merge(springs, &finder.found, error);
-    }
-    free(finder.welded);
     free(finder.found.items);
     return code;
 }

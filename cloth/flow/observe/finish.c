@@ -80,26 +80,17 @@ static void turn_double(void *to, const void *from)
     memcpy(to, &bits, sizeof bits);
 }
 
-/* On rank 0: copies row i of a block, if its vertex v is in the part. */
-static void place_row(const struct flow_state *state, const struct part *part, uint32_t i,
-                      uint32_t v)
-{
-    const unsigned char *packed = (const unsigned char *)state->rows;
-    if (v >= part->from && v < part->to)
-        memcpy(state->bytes + FLOW_VERTEX_BYTES * (size_t)(v - part->from),
-               packed + FLOW_VERTEX_BYTES * (size_t)i, FLOW_VERTEX_BYTES);
-}
-
-/* The vertices of a block, by all their names. */
+/* On rank 0: copies the rows of a block whose vertices, by all their names, are in the part. */
 static void place_rows(const struct flow_state *state, uint32_t block, const struct part *part)
 {
     const struct flow *flow = state->flow;
+    const unsigned char *packed = (const unsigned char *)state->rows;
     const struct flow_table *t = flow->tables.block + block;
-    const uint32_t end = flow_names_from(&flow->names, t->first + t->n);
-    for (uint32_t i = 0; i < t->n; i++)
-        place_row(state, part, i, flow->vertex[t->first + i]);
-    for (uint32_t i = flow_names_from(&flow->names, t->first); i < end; i++)
-        place_row(state, part, flow->names.name[i][0] - t->first, flow->names.name[i][1]);
+    struct flow_name name;
+    for (uint32_t k = 0; flow_name_of(&flow->names, flow->vertex, t, k, &name); k++)
+        if (name.vertex >= part->from && name.vertex < part->to)
+            memcpy(state->bytes + FLOW_VERTEX_BYTES * (size_t)(name.vertex - part->from),
+                   packed + FLOW_VERTEX_BYTES * (size_t)name.row, FLOW_VERTEX_BYTES);
 }
 
 /* A vector of a block without its fourth lane. */

@@ -16,43 +16,29 @@ static double frame_tick(const struct flow_state *state, uint64_t frame)
     return fabs(tick - nearbyint(tick)) < ROUNDED ? nearbyint(tick) : tick;
 }
 
-static void observe_frames_put_vector(struct flow *flow, uint32_t vertex, const phys_vec *x)
-{
-    for (int c = 0; c < 3; c++)
-        flow->room[3 * (size_t)vertex + (size_t)c] = (*x)[c];
-}
-
 /* A vector of the vertices of all blocks, by all their names. */
 static void observe_frames_put_all(struct flow *flow, const duite_param *vector)
 {
+    struct flow_name name;
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
         const phys_vec *x = flow_rows_of(vector, b);
         const struct flow_table *t = flow->tables.block + b;
-        const uint32_t end = flow_names_from(&flow->names, t->first + t->n);
-        for (uint32_t i = 0; i < t->n; i++)
-            observe_frames_put_vector(flow, flow->vertex[t->first + i], x + i);
-        for (uint32_t i = flow_names_from(&flow->names, t->first); i < end; i++)
-            observe_frames_put_vector(flow, flow->names.name[i][1],
-                                      x + flow->names.name[i][0] - t->first);
+        for (uint32_t k = 0; flow_name_of(&flow->names, flow->vertex, t, k, &name); k++)
+            for (size_t c = 0; c < 3; c++)
+                flow->room[3 * (size_t)name.vertex + c] = x[name.row][c];
     }
-}
-
-static void observe_frames_put_numbers(const struct flow *flow, uint32_t vertex, uint32_t block)
-{
-    flow->block_of[vertex] = (int32_t)block;
-    flow->rank_of[vertex] = flow->home[block];
 }
 
 /* The block of each vertex, and the rank that keeps it. */
 static void put_places(const struct flow *flow)
 {
+    struct flow_name name;
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
         const struct flow_table *t = flow->tables.block + b;
-        const uint32_t end = flow_names_from(&flow->names, t->first + t->n);
-        for (uint32_t i = 0; i < t->n; i++)
-            observe_frames_put_numbers(flow, flow->vertex[t->first + i], b);
-        for (uint32_t i = flow_names_from(&flow->names, t->first); i < end; i++)
-            observe_frames_put_numbers(flow, flow->names.name[i][1], b);
+        for (uint32_t k = 0; flow_name_of(&flow->names, flow->vertex, t, k, &name); k++) {
+            flow->block_of[name.vertex] = (int32_t)b;
+            flow->rank_of[name.vertex] = flow->home[b];
+        }
     }
     for (uint32_t i = 0; i < flow->unused.n; i++)
         flow->block_of[flow->unused.vertex[i]] = flow->rank_of[flow->unused.vertex[i]] = -1;

@@ -9,69 +9,45 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Entries as they are found. */
-struct finder {
-    struct cloth_list entries; /* uint32_t: vertices of all cloths together */
-    uint32_t first;            /* of the cloth */
-    struct cloth_error *error;
-};
-
-static void find_entry(void *to, uint32_t vertex)
+static int check_used(const struct flow_picking *picking, const struct model_probe *probe,
+                      size_t from, struct cloth_error *error)
 {
-    struct finder *finder = to;
-    uint32_t *entry = cloth_list_add(&finder->entries, sizeof *entry, 1, finder->error);
-    if (entry)
-        *entry = finder->first + vertex;
-}
-
-static int check_used(const struct flow_source *source, const struct model_probe *probe,
-                      const struct finder *finder, size_t from, struct cloth_error *error)
-{
-    const uint32_t *entry = finder->entries.items;
-    for (size_t i = from; i < finder->entries.n; i++)
-        if (!source->particles.used[entry[i]])
+    const uint32_t *entry = picking->list.items;
+    for (size_t i = from; i < picking->list.n; i++)
+        if (!picking->used[entry[i]])
             return model_fail(probe->pick.place, error,
                               "probe '%.60s' names vertex %u of cloth '%.60s', which no face or "
                               "edge uses: it does not move",
-                              probe->name, entry[i] - finder->first,
-                              source->model->cloths[probe->cloth].name);
+                              probe->name, entry[i] - picking->first, picking->cloth->name);
     return CLOTH_OK;
 }
 
-static int find_all(struct flow_watched *watched, const struct flow_source *source,
-                    struct finder *finder, struct cloth_error *error)
+static int find_all(struct flow_watched *watched, const struct model *model,
+                    struct flow_picking *picking, struct cloth_error *error)
 {
-    const struct model *model = source->model;
-    for (uint32_t p = 0; p < model->n_probes; p++) {
+    int code = CLOTH_OK;
+    for (uint32_t p = 0; p < model->n_probes && !code; p++) {
         const struct model_probe *probe = model->probes + p;
-        watched->first[p + 1] = (uint32_t)finder->entries.n;
-        if (probe->by_obstacle)
-            continue;
-        finder->first = model_first(model, probe->cloth);
-        const struct flow_picking picking = {model->cloths + probe->cloth,
-                                             source->particles.used + finder->first, "a probe",
-                                             find_entry, finder};
-        int code = flow_pick(&probe->pick, &picking, error);
-        if (!code && error->code)
-            code = error->code;
+        picking->cloth = model->cloths + probe->cloth;
+        picking->first = model_first(model, probe->cloth);
+        if (!probe->by_obstacle)
+            code = flow_pick(&probe->pick, picking, error);
         if (!code)
-            code = check_used(source, probe, finder, watched->first[p], error);
-        if (code)
-            return code;
-        watched->first[p + 1] = (uint32_t)finder->entries.n;
+            code = check_used(picking, probe, watched->first[p], error);
+        watched->first[p + 1] = (uint32_t)picking->list.n;
     }
-    return CLOTH_OK;
+    return code;
 }
 
 /* Places of the entries, ascending, each once; and where each entry's is. */
 static int sort_places(struct flow_watched *watched, const struct flow_source *source, size_t n,
                        const uint32_t *vertex, struct cloth_error *error)
 {
-    watched->place = cloth_alloc(n, sizeof *watched->place, error);
-    watched->entry = cloth_alloc(n, sizeof *watched->entry, error);
-    watched->vertex = cloth_alloc(n, sizeof *watched->vertex, error);
-    watched->again = cloth_alloc(n, 1, error);
-    if (!watched->place || !watched->entry || !watched->vertex || !watched->again)
+    watched->place = cloth_take(&watched->memory, n, sizeof *watched->place, error);
+    watched->entry = cloth_take(&watched->memory, n, sizeof *watched->entry, error);
+    watched->vertex = cloth_take(&watched->memory, n, sizeof *watched->vertex, error);
+    watched->again = cloth_take(&watched->memory, n, 1, error);
+    if (watched->memory.lacks)
         return CLOTH_E_MEMORY;
     for (size_t i = 0; i < n; i++)
         watched->place[i] = source->blocks.place[vertex[i]];
@@ -81,9 +57,7 @@ static int sort_places(struct flow_watched *watched, const struct flow_source *s
             watched->place[watched->n++] = watched->place[i];
     for (size_t i = 0; i < n; i++) {
         const uint32_t place = source->blocks.place[vertex[i]];
-        const uint32_t *at = bsearch(&place, watched->place, watched->n, sizeof *watched->place,
-                                     cloth_compare_items_u32);
-        watched->entry[i] = (uint32_t)(at - watched->place);
+        watched->entry[i] = cloth_first_from(watched->place, 1, watched->n, place);
         watched->vertex[i] = vertex[i];
     }
     return CLOTH_OK;
@@ -121,28 +95,19 @@ int flow_watched_make(struct flow_watched *watched, const struct flow_source *so
     *watched = (struct flow_watched){0};
     if (!model->n_probes)
         return CLOTH_OK;
-    struct finder finder = {.error = error};
-    watched->first = cloth_alloc((size_t)model->n_probes + 1, sizeof *watched->first, error);
-    int code = watched->first ? find_all(watched, source, &finder, error) : CLOTH_E_MEMORY;
+    struct flow_picking picking = {.used = source->particles.used, .what = "a probe"};
+    watched->first =
+        cloth_take(&watched->memory, (size_t)model->n_probes + 1, sizeof *watched->first, error);
+    int code = watched->first ? find_all(watched, model, &picking, error) : CLOTH_E_MEMORY;
     if (!code)
-        code = sort_places(watched, source, finder.entries.n, finder.entries.items, error);
+        code = sort_places(watched, source, picking.list.n, picking.list.items, error);
     if (!code)
         code = find_again(watched, model->n_probes, error);
-    free(finder.entries.items);
+    free(picking.list.items);
     watched->n_columns = FLOW_RUN_COLUMNS;
     for (uint32_t p = 0; p < model->n_probes && !code; p++)
         watched->n_columns += columns_of(watched, model, p);
     return code;
-}
-
-void flow_watched_free(struct flow_watched *watched)
-{
-    free(watched->place);
-    free(watched->entry);
-    free(watched->vertex);
-    free(watched->again);
-    free(watched->first);
-    *watched = (struct flow_watched){0};
 }
 
 /* ---- The header ---- */

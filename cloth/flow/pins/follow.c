@@ -34,13 +34,6 @@ static void place_all(const struct model *model, uint32_t obstacle, phys_vec *pl
         place_vertex(model, obstacle, v, 0, place + v);
 }
 
-static void cross_product(const phys_vec *a, const phys_vec *b, phys_vec *to)
-{
-    const phys_vec u = *a, v = *b;
-    *to = (phys_vec){u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                     u[0] * v[1] - u[1] * v[0], 0};
-}
-
 /* Makes a vector one of length 1; one of length 0 becomes another. */
 static void normalise_axis(phys_vec *x, const phys_vec *other)
 {
@@ -53,10 +46,10 @@ static void find_axes(const phys_vec x[3], phys_vec axis[3])
 {
     const phys_vec first = {1, 0, 0, 0}, last = {0, 0, 1, 0}, side = x[2] - x[0];
     axis[0] = x[1] - x[0];
-    cross_product(axis, &side, axis + 2);
+    phys_cross(axis, &side, axis + 2);
     normalise_axis(axis, &first);
     normalise_axis(axis + 2, &last);
-    cross_product(axis + 2, axis, axis + 1);
+    phys_cross(axis + 2, axis, axis + 1);
 }
 
 /* Finds the anchor of a vertex at x, m, when a run starts: the nearest point of the body, of equals
@@ -120,9 +113,13 @@ static int mark_followers(struct flow_particles *p, const struct model *model,
     p->attached = cloth_alloc(p->n, sizeof *p->attached, error);
     if (!p->attached)
         return CLOTH_E_MEMORY;
-    for (uint32_t v = 0; v < p->n; v++)
+    size_t n = 0;
+    for (uint32_t v = 0; v < p->n; v++) {
         p->attached[v] = followed_by(p, model, flow_root(&p->welds, v));
-    return CLOTH_OK;
+        n += p->attached[v] != 0;
+    }
+    p->anchor = cloth_take(&p->memory, n, sizeof *p->anchor, error);
+    return p->anchor ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
 /* Adds the anchors of an obstacle, whose vertices are at `place`. */
@@ -144,29 +141,22 @@ static void add_anchors(struct flow_particles *p, const struct model *model, uin
 static int anchor_all(struct flow_particles *p, const struct model *model, uint32_t obstacle,
                       struct cloth_error *error)
 {
-    const struct contact_body *body = pins_follow_body_of(model, obstacle);
-    uint32_t n = 0;
-    for (uint32_t v = 0; v < p->n; v++)
-        n += p->attached[v] == obstacle + 1;
-    if (!n || !has_frames(model, obstacle))
-        return CLOTH_OK;
-    struct flow_anchor *grown = realloc(p->anchor, ((size_t)p->n_anchors + n) * sizeof *grown);
-    p->anchor = grown ? grown : p->anchor;
-    phys_vec *place = aligned_alloc(sizeof *place, body->n_vertices * sizeof *place);
-    if (grown && place) {
+    struct cloth_pool memory = {0};
+    const uint32_t n = pins_follow_body_of(model, obstacle)->n_vertices;
+    phys_vec *place = cloth_take(&memory, n, sizeof *place, error);
+    if (place) {
         place_all(model, obstacle, place);
         add_anchors(p, model, obstacle, place);
-    } else {
-        cloth_fail(error, CLOTH_E_MEMORY, "out of memory for pins that follow a body");
     }
-    free(place);
-    return grown && place ? CLOTH_OK : CLOTH_E_MEMORY;
+    cloth_pool_free(&memory);
+    return place ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
 int flow_follow_make(struct flow_particles *p, const struct model *model, struct cloth_error *error)
 {
     int code = model_follows(model) ? mark_followers(p, model, error) : CLOTH_OK;
     for (uint32_t i = 0; i < model->n_obstacles && p->attached && !code; i++)
-        code = anchor_all(p, model, i, error);
+        if (has_frames(model, i))
+            code = anchor_all(p, model, i, error);
     return code;
 }

@@ -4,6 +4,7 @@
  * it (b - A z of Ascher & Boxerman 2003, with the change z made beforehand). After the step they
  * are put exactly there, so that nothing adds up. In the step a slider is where it is at its end.
  */
+#include "cloth/base/order.h"
 #include "cloth/flow/pins/sliders.h"
 #include "cloth/flow/run/step.h"
 
@@ -63,8 +64,7 @@ void flow_pins_slider(struct flow_pins *pins, uint32_t i, struct flow_slider *sl
 const phys_vec *flow_pins_filter(struct flow_pins *pins, uint32_t row)
 {
     const struct flow_table *t = pins->table;
-    while (pins->next < t->n_sliding && t->sliding[pins->next][0] < row)
-        pins->next++;
+    pins->next = cloth_first_from(t->sliding, 2, t->n_sliding, row);
     if (pins->next == t->n_sliding || t->sliding[pins->next][0] != row)
         return NULL;
     flow_pins_slider(pins, pins->next, &pins->slider);

@@ -33,7 +33,7 @@ PHYS_INLINE bool flow_slider_way(const phys_vec *filter, phys_vec *up)
     return pace > 1e-12;
 }
 
-/* The pins of a block at one time, and the place of a walk through its rows. */
+/* The pins of a block at one time. */
 struct flow_pins {
     const struct model *model;
     const struct flow_anchor *anchor;
@@ -41,7 +41,7 @@ struct flow_pins {
     double time;
     uint32_t motion;              /* that the pose is of; 0: none yet */
     struct phys_pose pose, begin; /* now; where the run starts, of one that follows an obstacle */
-    uint32_t next;                /* sliding row */
+    uint32_t next;                /* sliding row that was found last */
     struct flow_slider slider;
 };
 /* At a time, s: in a step its end. */
@@ -52,8 +52,7 @@ void flow_pins_begin(const duite_call *call, const struct flow_table *t, double 
 void flow_pins_place(struct flow_pins *pins, uint32_t motion, const phys_vec *x, phys_vec *to);
 /* The slider of sliding row i. */
 void flow_pins_slider(struct flow_pins *pins, uint32_t i, struct flow_slider *slider);
-/* The part of S of a row, NULL without a slider; for rows in ascending order. Valid until the next
- * call. */
+/* The part of S of a row, NULL without a slider. Valid until the next call. */
 const phys_vec *flow_pins_filter(struct flow_pins *pins, uint32_t row);
 
 /* An obstacle in a step. */

@@ -12,66 +12,47 @@
 
 /* ---- Set-up ---- */
 
-/* A load and its addition to a vertex. */
-struct loader {
-    struct flow_particles *particles;
-    uint32_t first; /* vertex of the cloth */
-    const struct model_cloth *cloth;
-    const char *place;
-    uint32_t curve;
-    phys_vec force; /* N */
-    struct cloth_error *error;
-    bool failed; /* there was no memory */
-};
-
 static const uint32_t NO_TRIANGLES[2] = {UINT32_MAX, UINT32_MAX};
 
-static void add_varying(struct loader *loader, uint32_t vertex)
+/* Adds a force, N, to a vertex of all cloths. */
+static int add_load(struct flow_particles *p, const struct flow_picking *picking,
+                    const struct model_load *load, uint32_t vertex, const phys_vec *force,
+                    struct cloth_error *error)
 {
-    struct cloth_list *list = &loader->particles->varying;
-    struct flow_varying *to = cloth_list_add(list, sizeof *to, 1, loader->error);
-    loader->failed = loader->failed || !to;
-    if (!to)
-        return;
-    *to = (struct flow_varying){.at = vertex, .number = (uint32_t)list->n, .curve = loader->curve};
-    for (int c = 0; c < 3; c++)
-        to->force[c] = loader->force[c];
+    struct cloth_list *list = &p->varying;
+    if (!p->used[vertex])
+        flow_unusual_note(&p->loaded, picking->cloth, vertex - picking->first, load->pick.place);
+    if (!load->curve) {
+        p->load[flow_root(&p->welds, vertex)] += *force;
+        return CLOTH_OK;
+    }
+    const struct flow_varying varying = {.at = vertex,
+                                         .number = (uint32_t)list->n,
+                                         .curve = load->curve,
+                                         .force = {(*force)[0], (*force)[1], (*force)[2]}};
+    return cloth_list_put(list, &varying, sizeof varying, error);
 }
 
-static void add_load(void *to, uint32_t vertex)
+static int load_edges(struct flow_particles *p, const struct flow_picking *picking,
+                      const struct model_load *load, struct cloth_error *error)
 {
-    struct loader *loader = to;
-    struct flow_particles *p = loader->particles;
-    const uint32_t v = loader->first + vertex;
-    if (!p->used[v])
-        flow_unusual_note(&p->loaded, loader->cloth, vertex, loader->place);
-    if (loader->curve)
-        add_varying(loader, v);
-    else
-        p->load[flow_root(&p->welds, v)] += loader->force;
-}
-
-static int load_edges(struct loader *loader, const struct model_load *load,
-                      struct cloth_error *error)
-{
-    const struct mesh *mesh = model_rest(loader->cloth);
+    const struct mesh *mesh = model_rest(picking->cloth);
     struct mesh_edges edges = {0}; /* found where ends alone do not say the length */
     int code =
         mesh->placed_by_uv && mesh->triangle_uv ? mesh_edges_find(&edges, mesh, error) : CLOTH_OK;
-    const phys_vec force = PHYS_VEC(load->force);
     for (uint32_t i = 0; i < load->n_edges && !code; i++) {
         const uint32_t *end = load->edges[i];
         for (int k = 0; k < 2 && !code; k++)
             if (end[k] >= mesh->n_vertices)
-                code = flow_no_vertex(loader->cloth, "a load", end[k], loader->place, error);
+                code = flow_no_vertex(picking->cloth, "a load", end[k], load->pick.place, error);
         if (code)
             break;
         const struct mesh_edge *edge = mesh_edges_get(&edges, end[0], end[1]);
         const double length =
             mesh_length(mesh, edge ? edge->triangle : NO_TRIANGLES, end[0], end[1]);
-        loader->force = 0.5 * length * force;
-        add_load(loader, end[0]);
-        add_load(loader, end[1]);
+        const phys_vec force = 0.5 * length * PHYS_VEC(load->force);
+        for (int k = 0; k < 2 && !code; k++)
+            code = add_load(p, picking, load, picking->first + end[k], &force, error);
     }
     mesh_edges_free(&edges);
     return code;
@@ -80,28 +61,19 @@ static int load_edges(struct loader *loader, const struct model_load *load,
 int flow_loads_make(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
                     struct cloth_error *error)
 {
+    struct flow_picking picking = {cloth, first, p->used, "a load", {0}};
     int code = CLOTH_OK;
-    for (uint32_t i = 0; i < cloth->n_loads && !code; i++) {
+    for (uint32_t i = 0; i < cloth->n_loads && !code; i++, picking.list.n = 0) {
         const struct model_load *load = cloth->loads + i;
-        struct loader loader = {.particles = p,
-                                .first = first,
-                                .cloth = cloth,
-                                .place = load->pick.place,
-                                .curve = load->curve,
-                                .error = error};
-        const struct flow_picking picking = {cloth, p->used + first, "a load", add_load, &loader};
-        loader.force = PHYS_VEC(load->force);
-        code = load->n_edges ? load_edges(&loader, load, error)
+        const phys_vec force = PHYS_VEC(load->force);
+        code = load->n_edges ? load_edges(p, &picking, load, error)
                              : flow_pick(&load->pick, &picking, error);
-        if (!code && loader.failed)
-            code = CLOTH_E_MEMORY;
+        const uint32_t *vertex = picking.list.items;
+        for (size_t k = 0; k < picking.list.n && !code; k++)
+            code = add_load(p, &picking, load, vertex[k], &force, error);
     }
+    free(picking.list.items);
     return code;
-}
-
-static int compare_varying(const void *a, const void *b)
-{
-    return cloth_compare_numbers(a, b, 2);
 }
 
 void flow_varying_settle(struct flow_source *source)
@@ -116,8 +88,7 @@ void flow_varying_settle(struct flow_source *source)
             all[n++] = load;
     }
     list->n = n;
-    if (n)
-        qsort(all, n, sizeof *all, compare_varying);
+    cloth_list_sort(list, sizeof *all, cloth_by_two);
 }
 
 uint32_t flow_varying_from(const struct flow_source *source, uint32_t place)

@@ -13,15 +13,6 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-void *flow_take(struct flow *flow, size_t n, size_t size)
-{
-    void **taken = cloth_list_add(&flow->taken, sizeof *taken, 1, &flow->trouble);
-    if (!taken)
-        return NULL;
-    *taken = cloth_alloc(n + FLOW_LINE / size + 1, size, &flow->trouble);
-    return *taken ? (char *)*taken + (FLOW_LINE - (uintptr_t)*taken % FLOW_LINE) : NULL;
-}
-
 /* Room on rank 0 to gather a frame, and a part of the state to be hashed. */
 static void run_memory_take_room(struct flow_state *state)
 {
@@ -121,12 +112,8 @@ int flow_memory_take(struct flow_state *state)
 void flow_memory_free(struct flow_state *state)
 {
     struct flow *flow = state->flow;
-    void **taken = flow->taken.items;
     flow_preconditioner_free(flow);
     flow_contact_free(state);
     XXH64_freeState(state->hash);
-    for (size_t i = 0; i < flow->taken.n; i++)
-        free(taken[i]);
-    free(taken);
-    flow->taken = (struct cloth_list){0};
+    cloth_pool_free(&flow->taken);
 }

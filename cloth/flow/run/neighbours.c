@@ -32,11 +32,9 @@ static uint32_t patch_of(const struct flow_source *source, uint32_t block, uint3
 static void add_need(struct finder *finder, uint32_t reader, uint32_t other, uint32_t place,
                      uint32_t patch)
 {
-    struct need *need = cloth_list_add(&finder->needs, sizeof *need, 1, finder->error);
+    const struct need need = {reader, other, place, UINT32_C(1) << patch};
     finder->source->halo[place] = 1;
-    if (need)
-        *need = (struct need){reader, other, place, UINT32_C(1) << patch};
-    else
+    if (cloth_list_put(&finder->needs, &need, sizeof need, finder->error))
         finder->code = CLOTH_E_MEMORY;
 }
 
@@ -115,11 +113,6 @@ static void number_halo(const struct flow_source *source, struct flow_table *sha
     shape->halo_start[SOLVE_MAX_PATCHES] = shape->n_halo;
 }
 
-static int compare_needs(const void *a, const void *b)
-{
-    return cloth_compare_numbers(a, b, 3);
-}
-
 /* Keeps each of the sorted needs once, and counts neighbours and ghosts. Returns how many are left.
  */
 static size_t count_needs(struct flow_source *source, struct need *need, size_t n)
@@ -127,7 +120,7 @@ static size_t count_needs(struct flow_source *source, struct need *need, size_t 
     size_t kept = 0;
     for (size_t i = 0; i < n; i++) {
         struct need *last = kept ? need + kept - 1 : NULL;
-        if (last && compare_needs(last, need + i) == 0) {
+        if (last && cloth_by_three(last, need + i) == 0) {
             last->patches |= need[i].patches;
             continue;
         }
@@ -185,17 +178,17 @@ static int make_neighbours(struct flow_source *source, struct cloth_list *needs,
 {
     struct flow_neighbours *all = &source->neighbours;
     const uint32_t n_blocks = source->blocks.n_blocks;
-    if (needs->n)
-        qsort(needs->items, needs->n, sizeof(struct need), compare_needs);
+    cloth_list_sort(needs, sizeof(struct need), cloth_by_three);
     all->n_ghosts = (uint32_t)count_needs(source, needs->items, needs->n);
     for (uint32_t b = 0; b < n_blocks; b++)
         all->n_neighbours += source->shape[b].n_neighbours;
-    all->neighbour = cloth_alloc(all->n_neighbours, sizeof *all->neighbour, error);
-    all->ghost_start =
-        cloth_alloc((size_t)all->n_neighbours + n_blocks, sizeof *all->ghost_start, error);
-    all->ghost = cloth_alloc(all->n_ghosts, sizeof *all->ghost, error);
-    all->joins = cloth_alloc(all->n_neighbours, sizeof *all->joins, error);
-    if (!all->neighbour || !all->joins || !all->ghost_start || !all->ghost)
+    struct cloth_pool *memory = &source->memory;
+    const size_t n = all->n_neighbours;
+    all->neighbour = cloth_take(memory, n, sizeof *all->neighbour, error);
+    all->ghost_start = cloth_take(memory, n + n_blocks, sizeof *all->ghost_start, error);
+    all->ghost = cloth_take(memory, all->n_ghosts, sizeof *all->ghost, error);
+    all->joins = cloth_take(memory, n, sizeof *all->joins, error);
+    if (memory->lacks)
         return CLOTH_E_MEMORY;
     fill_neighbour(source, needs->items);
     return CLOTH_OK;
@@ -206,8 +199,8 @@ int flow_source_meet(struct flow_source *source, struct cloth_error *error)
     struct finder finder = {.source = source, .error = error};
     source->patches = model_patches(source->model, source->blocks.n_blocks);
     if (source->model->correction_rounds)
-        source->cut = cloth_alloc(source->particles.n, sizeof *source->cut, error);
-    if (source->model->correction_rounds && !source->cut)
+        source->cut = cloth_take(&source->memory, source->particles.n, sizeof *source->cut, error);
+    if (source->memory.lacks)
         return CLOTH_E_MEMORY;
     flow_springs_each(&source->springs, find_need, &finder);
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++)

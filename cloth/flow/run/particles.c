@@ -12,16 +12,6 @@
 /* kg of a vertex: squares of momenta beyond these would vanish or be infinite. */
 static const double MIN_MASS = 1e-30, MAX_MASS = 1e30;
 
-/* A pin and whom it holds. */
-struct holder {
-    struct flow_particles *particles;
-    uint32_t first; /* vertex of the cloth */
-    const struct model *model;
-    const struct model_cloth *cloth;
-    const struct model_pin *pin;
-    uint32_t torn; /* a vertex that another pin moves in another way, or holds; UINT32_MAX: none */
-};
-
 /* True if two sliders, by number, hold alike; both may be none. */
 static bool alike(const struct model_slider *sliders, uint32_t a, uint32_t b)
 {
@@ -34,48 +24,47 @@ static bool alike(const struct model_slider *sliders, uint32_t a, uint32_t b)
     return same;
 }
 
-static void hold(void *to, uint32_t vertex)
+/* Returns false if another pin moves the vertex, of all cloths, in another way, or holds it. */
+static bool hold(struct flow_particles *p, const struct model *model, const struct model_pin *pin,
+                 const struct flow_picking *picking, uint32_t vertex)
 {
-    struct holder *holder = to;
-    struct flow_particles *p = holder->particles;
-    const uint32_t v = flow_root(&p->welds, holder->first + vertex), motion = holder->pin->motion;
-    const uint32_t slider = holder->pin->slider, sliding = p->slider ? p->slider[v] : 0;
+    const uint32_t v = flow_root(&p->welds, vertex);
+    const uint32_t sliding = p->slider ? p->slider[v] : 0;
     const bool held = p->free[v] == 0 || sliding;
     if (!p->used[v] && !held)
-        flow_unusual_note(&p->pinned, holder->cloth, vertex, holder->pin->pick.place);
-    if (held &&
-        ((p->motion && p->motion[v] != motion) || !alike(holder->model->sliders, sliding, slider)))
-        holder->torn = vertex;
+        flow_unusual_note(&p->pinned, picking->cloth, vertex - picking->first, pin->pick.place);
+    const bool torn = held && ((p->motion && p->motion[v] != pin->motion) ||
+                               !alike(model->sliders, sliding, pin->slider));
     if (p->motion)
-        p->motion[v] = motion;
+        p->motion[v] = pin->motion;
     if (p->slider)
-        p->slider[v] = slider;
-    p->free[v] = slider ? 1 : 0;
+        p->slider[v] = pin->slider;
+    p->free[v] = pin->slider ? 1 : 0;
+    return !torn;
 }
 
 static int pins(struct flow_particles *p, uint32_t first, const struct model *model,
                 const struct model_cloth *cloth, struct cloth_error *error)
 {
+    struct flow_picking picking = {cloth, first, p->used, "a pin", {0}};
     int code = CLOTH_OK;
-    for (uint32_t i = 0; i < cloth->n_pins && !code; i++) {
-        struct holder holder = {p, first, model, cloth, cloth->pins + i, UINT32_MAX};
-        const struct flow_picking picking = {cloth, p->used + first, "a pin", hold, &holder};
-        code = flow_pick(&cloth->pins[i].pick, &picking, error);
-        if (!code && holder.torn != UINT32_MAX)
-            code = model_fail(cloth->pins[i].pick.place, error,
+    for (uint32_t i = 0; i < cloth->n_pins && !code; i++, picking.list.n = 0) {
+        const struct model_pin *pin = cloth->pins + i;
+        uint32_t torn = UINT32_MAX;
+        code = flow_pick(&pin->pick, &picking, error);
+        const uint32_t *vertex = picking.list.items;
+        for (size_t k = 0; k < picking.list.n && !code; k++)
+            if (!hold(p, model, pin, &picking, vertex[k]))
+                torn = vertex[k] - first;
+        if (torn != UINT32_MAX)
+            code = model_fail(pin->pick.place, error,
                               "vertex %u of cloth '%.60s' is held by two pins that do not hold "
                               "and move alike; one is expected (vertices count from 1)",
-                              holder.torn + 1, cloth->name);
+                              torn + 1, cloth->name);
     }
+    free(picking.list.items);
     return code;
 }
-
-/* A mass and the vertices that it is added to. */
-struct weigher {
-    struct flow_particles *particles;
-    uint32_t first; /* vertex of the cloth */
-    double mass;
-};
 
 /* Adds a mass to a vertex of all cloths: a name's mass goes to its root. */
 static void particles_weigh(struct flow_particles *p, uint32_t vertex, double mass)
@@ -85,21 +74,18 @@ static void particles_weigh(struct flow_particles *p, uint32_t vertex, double ma
         p->own[vertex] += mass;
 }
 
-static void add_mass(void *to, uint32_t vertex)
-{
-    const struct weigher *weigher = to;
-    particles_weigh(weigher->particles, weigher->first + vertex, weigher->mass);
-}
-
 static int more_masses(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
                        struct cloth_error *error)
 {
+    struct flow_picking picking = {cloth, first, p->used, "a mass", {0}};
     int code = CLOTH_OK;
-    for (uint32_t i = 0; i < cloth->n_masses && !code; i++) {
-        struct weigher weigher = {p, first, cloth->masses[i].mass};
-        const struct flow_picking picking = {cloth, p->used + first, "a mass", add_mass, &weigher};
+    for (uint32_t i = 0; i < cloth->n_masses && !code; i++, picking.list.n = 0) {
         code = flow_pick(&cloth->masses[i].pick, &picking, error);
+        const uint32_t *vertex = picking.list.items;
+        for (size_t k = 0; k < picking.list.n && !code; k++)
+            particles_weigh(p, vertex[k], cloth->masses[i].mass);
     }
+    free(picking.list.items);
     return code;
 }
 
@@ -229,31 +215,25 @@ static int each_cloth(struct flow_particles *p, const struct model *model,
 static int particles_allocate(struct flow_particles *p, uint32_t n, bool loaded, bool starts,
                               const struct model *model, struct cloth_error *error)
 {
-    const bool moved = model->n_motions, sliding = model->n_sliders, welded = model->n_welds;
+    struct cloth_pool *memory = &p->memory;
     p->n = n;
-    p->used = cloth_alloc(n, 1, error);
-    p->free = cloth_alloc(n, 1, error);
-    p->mass = cloth_alloc(n, sizeof *p->mass, error);
-    p->motion = moved ? cloth_alloc(n, sizeof *p->motion, error) : NULL;
-    p->slider = sliding ? cloth_alloc(n, sizeof *p->slider, error) : NULL;
-    p->own = welded ? cloth_alloc(n, sizeof *p->own, error) : NULL;
-    p->drag = welded ? cloth_alloc(n, sizeof *p->drag, error) : NULL;
-    p->start = starts ? cloth_alloc(n, sizeof *p->start, error) : NULL;
-    if (!p->used || !p->free || !p->mass || (moved && !p->motion) || (sliding && !p->slider) ||
-        (welded && (!p->own || !p->drag)) || (starts && !p->start))
-        return CLOTH_E_MEMORY;
-    if (!loaded)
-        return CLOTH_OK;
-    p->load = aligned_alloc(sizeof *p->load, ((size_t)n + 1) * sizeof *p->load);
-    return p->load ? CLOTH_OK
-                   : cloth_fail(error, CLOTH_E_MEMORY, "out of memory for %u vertices", n);
+    p->used = cloth_take(memory, n, 1, error);
+    p->free = cloth_take(memory, n, 1, error);
+    p->mass = cloth_take(memory, n, sizeof *p->mass, error);
+    p->motion = model->n_motions ? cloth_take(memory, n, sizeof *p->motion, error) : NULL;
+    p->slider = model->n_sliders ? cloth_take(memory, n, sizeof *p->slider, error) : NULL;
+    p->own = model->n_welds ? cloth_take(memory, n, sizeof *p->own, error) : NULL;
+    p->drag = model->n_welds ? cloth_take(memory, n, sizeof *p->drag, error) : NULL;
+    p->start = starts ? cloth_take(memory, n, sizeof *p->start, error) : NULL;
+    p->load = loaded ? cloth_take(memory, n, sizeof *p->load, error) : NULL;
+    return memory->lacks ? CLOTH_E_MEMORY : CLOTH_OK;
 }
 
 static int find_used(struct flow_particles *p, const struct model *model, struct cloth_error *error)
 {
     for (uint32_t c = 0; c < model->n_cloths; c++)
         mesh_used(&model->cloths[c].mesh, p->used + model_first(model, c));
-    return flow_joints_use(model, p->used, error);
+    return flow_joints_use(p, model, error);
 }
 
 int flow_particles_make(struct flow_particles *particles, const struct model *model,
@@ -270,10 +250,9 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
     if (n >= UINT32_MAX)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%zu vertices are too many; at most 4294967294 are possible", n);
-    struct flow_welds *welds = &particles->welds;
     int code = particles_allocate(particles, (uint32_t)n, loaded, starts, model, error);
     code = code ? code : find_used(particles, model, error);
-    code = code ? code : flow_welds_make(welds, model, particles->n, particles->used, error);
+    code = code ? code : flow_welds_make(particles, model, error);
     code = code ? code : each_cloth(particles, model, cloth_particles, error);
     code = code ? code : flow_welds_settle(particles, model, error);
     code = code ? code : each_cloth(particles, model, cloth_forces, error);
@@ -358,20 +337,9 @@ double flow_source_release(const struct flow_source *source)
 
 void flow_particles_free(struct flow_particles *particles)
 {
-    free(particles->used);
-    free(particles->free);
-    free(particles->mass);
-    free(particles->unwelded);
-    free(particles->own);
-    free(particles->drag);
-    flow_welds_free(&particles->welds);
-    free(particles->motion);
-    free(particles->anchor);
+    cloth_pool_free(&particles->memory);
     free(particles->attached);
     free(particles->varying.items);
-    free(particles->slider);
-    free(particles->piece);
-    free(particles->load);
-    free(particles->start);
+    free(particles->joints.items);
     *particles = (struct flow_particles){0};
 }

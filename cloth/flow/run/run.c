@@ -118,7 +118,7 @@ void flow_free(struct flow *flow)
     free(flow->unused.position);
     free(flow->attached);
     free(flow->saving.items); /* of a save that a failure ended */
-    flow_watched_free(&flow->watched);
+    cloth_pool_free(&flow->watched.memory);
     free(flow->header);
     free(flow);
 }

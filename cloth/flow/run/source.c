@@ -59,7 +59,7 @@ static int make_pieces(struct flow_source *source, struct cloth_error *error)
     struct flow_particles *p = &source->particles;
     uint32_t *parent = cloth_alloc(p->n, sizeof *parent, error);
     unsigned char *held = cloth_alloc(p->n, 1, error);
-    p->piece = cloth_alloc(p->n, sizeof *p->piece, error);
+    p->piece = cloth_take(&p->memory, p->n, sizeof *p->piece, error);
     const bool made = parent && held && p->piece;
     if (made)
         cloth_sets_start(parent, p->n);
@@ -133,21 +133,15 @@ static int cut_blocks(struct flow_source *source, int ranks, struct cloth_error 
 
 /* ---- Shapes ---- */
 
-static void widen_range(struct flow_table *shape, uint32_t v)
-{
-    shape->lowest = v < shape->lowest ? v : shape->lowest;
-    shape->highest = v > shape->highest ? v : shape->highest;
-}
-
 static void find_vertices(const struct flow_source *source, struct flow_table *shape)
 {
-    const struct flow_names *names = &source->names;
-    const uint32_t end = flow_names_from(names, shape->first + shape->n);
+    struct flow_name name;
     shape->lowest = UINT32_MAX;
-    for (uint32_t i = 0; i < shape->n; i++)
-        widen_range(shape, source->blocks.vertex[shape->first + i]);
-    for (uint32_t i = flow_names_from(names, shape->first); i < end; i++)
-        widen_range(shape, names->name[i][1]);
+    for (uint32_t k = 0; flow_name_of(&source->names, source->blocks.vertex, shape, k, &name);
+         k++) {
+        shape->lowest = (uint32_t)cloth_smaller(name.vertex, shape->lowest);
+        shape->highest = (uint32_t)cloth_larger(name.vertex, shape->highest);
+    }
 }
 
 /* Counts the watched vertices of each block. */
@@ -173,9 +167,9 @@ static uint32_t count_numbered(const struct flow_source *source, const struct fl
 static int find_shapes(struct flow_source *source, struct cloth_error *error)
 {
     const struct mesh_blocks *blocks = &source->blocks;
-    source->halo = cloth_alloc(blocks->n_places, sizeof *source->halo, error);
-    source->shape = cloth_alloc(blocks->n_blocks, sizeof *source->shape, error);
-    if (!source->halo || !source->shape)
+    source->halo = cloth_take(&source->memory, blocks->n_places, sizeof *source->halo, error);
+    source->shape = cloth_take(&source->memory, blocks->n_blocks, sizeof *source->shape, error);
+    if (source->memory.lacks)
         return CLOTH_E_MEMORY;
     flow_varying_settle(source);
     for (uint32_t b = 0; b < blocks->n_blocks; b++) {
@@ -209,7 +203,7 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
     code = code ? code : element_folds_check(&source->elements, error);
     code =
         code ? code : flow_springs_make(&source->springs, model, welds, &source->elements, error);
-    code = code ? code : flow_springs_merge(&source->springs, source->particles.n, error);
+    code = code ? code : flow_springs_merge(&source->springs, error);
     code = code ? code : flow_joints_make(&source->springs, &source->particles, error);
     code = code || !model_is_implicit(model) ? code : make_pieces(source, error);
     code = code ? code : cut_blocks(source, ranks, error);
@@ -224,16 +218,10 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
 void flow_source_free(struct flow_source *source)
 {
     flow_source_forget(source);
-    free(source->neighbours.neighbour);
-    free(source->neighbours.ghost_start);
-    free(source->neighbours.ghost);
-    free(source->neighbours.joins);
-    flow_watched_free(&source->watched);
+    cloth_pool_free(&source->memory);
+    cloth_pool_free(&source->watched.memory);
     flow_skins_free(&source->skins);
     free(source->names.name);
-    free(source->shape);
-    free(source->halo);
-    free(source->cut);
     mesh_blocks_free(&source->blocks);
     flow_springs_free(&source->springs);
     element_cloths_free(&source->elements);

@@ -70,6 +70,8 @@ struct flow_particles {
     struct cloth_list varying; /* struct flow_varying: in the scene's order; then by place */
     double (*start)[6];        /* m, m/s; NULL: all start where the meshes have them */
     double (*unwelded)[3];     /* m: before the welds; NULL: no weld is of a seam */
+    struct cloth_list joints;  /* struct flow_pair: of all; flow_joints_make uses it up */
+    struct cloth_pool memory;  /* of arrays that live as long */
 };
 
 /* Errors: CLOTH_E_INPUT for pins and loads outside their mesh, boxes without a vertex, starts
@@ -132,12 +134,12 @@ int flow_pairs_once(struct cloth_list *list, const struct model *model, const ch
 int flow_pair_fail(const struct model *model, const struct flow_pair *pair, const char *what,
                    const char *why, struct cloth_error *error);
 
-/* Finds the vertices that are one. n, used: of all cloths. Errors: CLOTH_E_INPUT as of
+/* Finds the vertices that are one; a part of flow_particles_make. Errors: CLOTH_E_INPUT as of
  * flow_pairs_list, for pairs that stand twice, unused vertices, and welds that make two corners of
  * a triangle or two ends of an edge one; CLOTH_E_MEMORY. Local. */
-int flow_welds_make(struct flow_welds *welds, const struct model *model, uint32_t n,
-                    const unsigned char *used, struct cloth_error *error);
-void flow_welds_free(struct flow_welds *welds);
+int flow_welds_make(struct flow_particles *particles, const struct model *model,
+                    struct cloth_error *error);
+bool flow_is_welded(const struct flow_welds *welds, uint32_t root); /* it has several names */
 /* Adds the seams of cloths with hinges. Errors: CLOTH_E_INPUT as of element_seams_check;
  * CLOTH_E_MEMORY. Local. */
 int flow_seams_make(struct element_cloths *elements, const struct flow_welds *welds,
@@ -157,19 +159,25 @@ struct flow_names {
 /* Gives the other names the places of their roots, and lists them. Error: CLOTH_E_MEMORY. Local. */
 int flow_names_make(struct flow_names *names, const struct flow_welds *welds,
                     struct mesh_blocks *blocks, struct cloth_error *error);
-/* The first of them at or after a place. */
-uint32_t flow_names_from(const struct flow_names *names, uint32_t place);
+/* Name k of a block's vertices: those that stand for all, then the others. vertex: by place.
+ * Returns false behind the last. */
+struct flow_name {
+    uint32_t row, vertex;
+};
+bool flow_name_of(const struct flow_names *names, const uint32_t *vertex,
+                  const struct flow_table *t, uint32_t k, struct flow_name *name);
 
-/* The thing that picks vertices of a cloth, and the function that gets each. */
+/* The thing that picks vertices of a cloth, and those that it found. */
 struct flow_picking {
     const struct model_cloth *cloth;
-    const unsigned char *used;                /* of the cloth's vertices */
-    const char *what;                         /* in sentences: "a pin" */
-    void (*visit)(void *to, uint32_t vertex); /* of the cloth's mesh */
-    void *to;
+    uint32_t first;            /* vertex of the cloth */
+    const unsigned char *used; /* by vertex of all cloths */
+    const char *what;          /* in sentences: "a pin" */
+    struct cloth_list list;    /* uint32_t: vertices of all cloths */
 };
-/* Errors: CLOTH_E_INPUT for vertices outside the mesh and boxes without a vertex. Local. */
-int flow_pick(const struct model_pick *pick, const struct flow_picking *picking,
+/* Adds to the list. Errors: CLOTH_E_INPUT for vertices outside the mesh and boxes without a vertex;
+ * CLOTH_E_MEMORY. Local. */
+int flow_pick(const struct model_pick *pick, struct flow_picking *picking,
               struct cloth_error *error);
 /* The error of a vertex outside the mesh. */
 int flow_no_vertex(const struct model_cloth *cloth, const char *what, uint32_t vertex,
@@ -231,24 +239,24 @@ int flow_springs_make(struct flow_springs *springs, const struct model *model,
 void flow_springs_each(const struct flow_springs *springs,
                        void (*visit)(void *to, const struct flow_spring *spring), void *to);
 void flow_springs_free(struct flow_springs *springs);
-/* Finds those that welds make parallel. n_vertices: of all cloths. Error: CLOTH_E_MEMORY. Local. */
-int flow_springs_merge(struct flow_springs *springs, uint32_t n_vertices,
-                       struct cloth_error *error);
+/* Finds those that welds make parallel. Error: CLOTH_E_MEMORY. Local. */
+int flow_springs_merge(struct flow_springs *springs, struct cloth_error *error);
 
 struct flow_source;
 
 /* Adds the model's joints to the springs, which free them, when particles are there. Errors:
  * CLOTH_E_INPUT for two joints between the same vertices and one between a vertex and itself;
  * CLOTH_E_MEMORY. Local. */
-int flow_joints_make(struct flow_springs *springs, const struct flow_particles *particles,
+int flow_joints_make(struct flow_springs *springs, struct flow_particles *particles,
                      struct cloth_error *error);
 /* True if a step of the model's h has a timed joint. Local. */
 bool flow_joints_act(const struct model *model, const struct flow_timed *timed);
 /* A timed joint as a tie between rows of blocks, when these are there. Local. */
 struct flow_tie flow_joints_tie(const struct flow_source *source, const struct flow_timed *timed);
-/* Marks the vertices that joints use. used: by vertex of all cloths. Error: CLOTH_E_INPUT for one
- * outside its mesh. Local. */
-int flow_joints_use(const struct model *model, unsigned char *used, struct cloth_error *error);
+/* Lists the pairs of all joints and marks their vertices as used; a part of flow_particles_make.
+ * Errors: as of flow_pairs_list. Local. */
+int flow_joints_use(struct flow_particles *particles, const struct model *model,
+                    struct cloth_error *error);
 
 /* The neighbours of all blocks, block after block, and the rows read of them, as every rank knows
  * them. */
@@ -279,6 +287,7 @@ struct flow_watched {
     uint32_t *vertex;     /* an entry: its vertex, of all cloths */
     unsigned char *again; /* an entry: whether one before it, of its probe, is another name of it */
     size_t n_columns;
+    struct cloth_pool memory;
 };
 
 /* The triangles of skins (contact/skin_tables.c), block after block: numbers among those of all
@@ -317,6 +326,7 @@ struct flow_source {
     size_t *start;            /* a block of the group: where its sides begin */
     struct element *member;   /* its elements, */
     size_t *member_start;     /* a block and kind: where they begin */
+    struct cloth_pool gathered, memory; /* of the group; of the others that live as long */
 };
 
 /* Cuts the model into blocks and finds their shapes. The model must outlive it. Errors: as of the
@@ -360,7 +370,6 @@ int flow_source_meet(struct flow_source *source, struct cloth_error *error);
  * vertices that no face or edge uses; CLOTH_E_MEMORY. Local. */
 int flow_watched_make(struct flow_watched *watched, const struct flow_source *source,
                       struct cloth_error *error);
-void flow_watched_free(struct flow_watched *watched);
 /* Names of the columns, with units and commas; the caller frees it. NULL: no probes. Error:
  * CLOTH_E_MEMORY. Local. */
 int flow_watched_header(const struct flow_watched *watched, const struct model *model, char **text,

@@ -8,14 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A start and the vertices that it moves. */
-struct starter {
-    double (*start)[6]; /* of the cloth's first vertex */
-    const double *mesh; /* where the mesh has them */
-    const struct model_start *how;
-    uint32_t lost; /* one that it takes beyond all bounds; UINT32_MAX: none */
-};
-
 static bool is_bounded(const double start[6])
 {
     const phys_vec x = PHYS_VEC(start), v = {start[3], start[4], start[5], 0};
@@ -41,12 +33,11 @@ static double wave_at(const struct model_start *how, const double mesh[3])
     return phys_sine(cycles);
 }
 
-static void move_start(void *to, uint32_t vertex)
+/* mesh: where the mesh has the vertex. */
+static void move_start(double start[6], const double mesh[3], const struct model_start *how)
 {
-    struct starter *starter = to;
-    const struct model_start *how = starter->how;
-    double *x = starter->start[vertex], *v = x + 3, arm[3];
-    const double sine = wave_at(how, starter->mesh + 3 * (size_t)vertex);
+    double *x = start, *v = x + 3, arm[3];
+    const double sine = wave_at(how, mesh);
     struct mesh one = {.n_vertices = 1, .position = arm};
     for (int c = 0; c < 3; c++)
         arm[c] = x[c] - how->about[c];
@@ -58,8 +49,6 @@ static void move_start(void *to, uint32_t vertex)
             before + (how->spin[a] * arm[b] - how->spin[b] * arm[a]) + how->wave.velocity[c] * sine;
         x[c] = how->about[c] + arm[c] + how->wave.translate[c] * sine;
     }
-    if (!is_bounded(x))
-        starter->lost = vertex;
 }
 
 static void at_mesh(const struct model_cloth *cloth, double (*start)[6])
@@ -79,19 +68,25 @@ int flow_starts_make(struct flow_particles *particles, uint32_t first,
     if (!particles->start)
         return CLOTH_OK;
     double(*start)[6] = particles->start + first;
-    at_mesh(cloth, start);
+    struct flow_picking picking = {cloth, first, particles->used, "a start", {0}};
     int code = CLOTH_OK;
+    at_mesh(cloth, start);
     for (uint32_t i = 0; i < cloth->mesh.n_vertices && !code; i++)
         code = is_bounded(start[i]) ? CLOTH_OK : refuse_start(cloth, i, start, cloth->place, error);
-    for (uint32_t i = 0; i < cloth->n_starts && !code; i++) {
+    for (uint32_t i = 0; i < cloth->n_starts && !code; i++, picking.list.n = 0) {
         const struct model_pick *pick = &cloth->starts[i].pick;
-        struct starter starter = {start, cloth->mesh.position, cloth->starts + i, UINT32_MAX};
-        const struct flow_picking picking = {cloth, particles->used + first, "a start", move_start,
-                                             &starter};
+        uint32_t lost = UINT32_MAX;
         code = flow_pick(pick, &picking, error);
-        if (!code && starter.lost != UINT32_MAX)
-            code = refuse_start(cloth, starter.lost, start, pick->place, error);
+        const uint32_t *vertex = picking.list.items;
+        for (size_t k = 0; k < picking.list.n && !code; k++) {
+            const uint32_t v = vertex[k] - first;
+            move_start(start[v], cloth->mesh.position + 3 * (size_t)v, cloth->starts + i);
+            lost = is_bounded(start[v]) ? lost : v;
+        }
+        if (lost != UINT32_MAX)
+            code = refuse_start(cloth, lost, start, pick->place, error);
     }
+    free(picking.list.items);
     return code;
 }
 

@@ -5,7 +5,6 @@
  * one after the other in the order of the table. Two rounds are recorded once a run and replayed
  * until their scalars, which every rank makes alike, say that they are done. The main thread waits
  * for none of them. x moves in the rounds; v and the halos follow when they are over. */
-#include "cloth/base/order.h"
 #include "cloth/flow/pins/sliders.h"
 #include "cloth/flow/run/step.h"
 
@@ -21,6 +20,13 @@ struct edge_args {
     double t; /* s: x = X + t v */
 };
 
+/* S of a row. */
+static void find_filter(struct flow_pins *pins, uint32_t row, phys_vec *filter)
+{
+    const phys_vec *slider = flow_pins_filter(pins, row);
+    *filter = slider ? *slider : (phys_vec){0, 0, 0, 1};
+}
+
 /* Writes the data of halo rows that other blocks need. */
 static void show_ends(const duite_call *call, const struct flow_table *t, double time,
                       const phys_vec *base, const phys_vec *begin, phys_vec *ends)
@@ -28,10 +34,9 @@ static void show_ends(const duite_call *call, const struct flow_table *t, double
     struct flow_pins pins;
     flow_pins_begin(call, t, time, &pins);
     for (uint32_t i = 0; i < t->n_halo; i++, ends += 3) {
-        const phys_vec *filter = flow_pins_filter(&pins, t->halo[i]);
         ends[0] = base[t->halo[i]];
         ends[1] = begin[t->halo[i]];
-        ends[2] = filter ? *filter : (phys_vec){0, 0, 0, 1};
+        find_filter(&pins, t->halo[i], ends + 2);
     }
     if (!t->n_halo)
         memset(ends, 0, 3 * sizeof *ends);
@@ -83,25 +88,12 @@ static void split_base(const phys_vec *base, struct solve_end *end)
     end->base[3] = 0;
 }
 
-/* S of a row. */
-static void find_filter(struct block *block, uint32_t row, phys_vec *filter)
-{
-    const struct flow_table *t = block->t;
-    const uint32_t at = cloth_first_from(t->sliding, 2, t->n_sliding, row);
-    *filter = (phys_vec){0, 0, 0, 1};
-    if (at == t->n_sliding || t->sliding[at][0] != row)
-        return;
-    struct flow_slider slider;
-    flow_pins_slider(&block->pins, at, &slider);
-    *filter = slider.filter;
-}
-
 static void open_row(struct block *block, uint32_t row, struct solve_end *end)
 {
     end->x = block->x[row];
     end->begin = block->begin[row];
     split_base(block->base + row, end);
-    find_filter(block, row, &end->filter);
+    find_filter(&block->pins, row, &end->filter);
 }
 
 static void open_shown(const phys_vec *x, const phys_vec *ends, uint32_t place,

@@ -16,11 +16,6 @@ struct flow_side {
     struct flow_spring spring;
 };
 
-static int compare_sides(const void *a, const void *b)
-{
-    return cloth_compare_numbers(a, b, 4);
-}
-
 /* The sides of the group: counted from the shapes, then put where their block's part goes on. */
 struct gatherer {
     struct flow_source *source;
@@ -62,14 +57,8 @@ static void gather_spring(void *to, const struct flow_spring *s)
 
 void flow_source_forget(struct flow_source *source)
 {
-    free(source->side);
-    free(source->start);
-    free(source->member);
-    free(source->member_start);
+    cloth_pool_free(&source->gathered);
     source->side = NULL;
-    source->start = NULL;
-    source->member = NULL;
-    source->member_start = NULL;
 }
 
 int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
@@ -78,7 +67,8 @@ int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
     struct gatherer gatherer = {
         .source = source, .first = source->blocks.start[from], .end = source->blocks.start[to]};
     flow_source_forget(source);
-    source->start = cloth_alloc((size_t)(to - from) + 1, sizeof *source->start, error);
+    source->start =
+        cloth_take(&source->gathered, (size_t)(to - from) + 1, sizeof *source->start, error);
     if (!source->start)
         return CLOTH_E_MEMORY;
     size_t n = 0;
@@ -86,7 +76,7 @@ int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
         source->start[b - from] = n;
         n += (size_t)source->shape[b].n_inner + source->shape[b].n_cut;
     }
-    source->side = cloth_alloc(n, sizeof *source->side, error);
+    source->side = cloth_take(&source->gathered, n, sizeof *source->side, error);
     if (!source->side)
         return CLOTH_E_MEMORY;
     source->from = from;
@@ -272,7 +262,7 @@ void flow_source_table(const struct flow_source *source, uint32_t block, void *m
     struct flow_side *side = source->side + source->start[block - source->from];
     const struct flow_layout arrays = flow_table_layout(t, memory);
     memset(memory, 0, flow_table_bytes(t));
-    qsort(side, (size_t)t->n_inner + t->n_cut, sizeof *side, compare_sides);
+    qsort(side, (size_t)t->n_inner + t->n_cut, sizeof *side, cloth_by_four);
     fill_rows(source, t, &arrays);
     fill_watched(source, t, &arrays);
     fill_numbered(source, t, source->particles.motion, t->n_moved, arrays.moved);

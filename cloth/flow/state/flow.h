@@ -132,7 +132,7 @@ struct flow {
     struct flow_checkpoint from; /* that the run goes on from; bytes NULL: none */
 
     /* The run under way. */
-    struct cloth_list taken;           /* all memory of it, of flow_take */
+    struct cloth_pool taken;           /* all memory of it, of flow_take */
     uint32_t made[FLOW_FIELDS_OF_ALL]; /* in which blocks a field exists: in none from there on */
     const struct flow_progress *progress; /* tasks ask it whether to stop; NULL: they do not ask */
     unsigned n_clocks;
@@ -182,7 +182,10 @@ static inline bool flow_is_preconditioned(const struct flow *flow)
 }
 
 /* Takes zeroed memory of n items for the run under way, aligned to a cache line; it is freed at its
- * end. NULL: there is none, and flow->trouble says so. Local. (run/memory.c) */
-void *flow_take(struct flow *flow, size_t n, size_t size);
+ * end. NULL: there is none, and flow->trouble says so. Local. */
+static inline void *flow_take(struct flow *flow, size_t n, size_t size)
+{
+    return cloth_take(&flow->taken, n, size, &flow->trouble);
+}
 
 #endif

@@ -154,9 +154,9 @@ struct flow_kernel {
 #define FLOW_WORD_ALL(field)        MANY, const, , , FLOW_OF_ALL, field
 #define FLOW_WORD_TIED(field)       TIED, const, , , FLOW_OF_TIED, field
 #define FLOW_WORD_KEEPERS(field)    REST, const, DUITE_R, , FLOW_OF_KEEPERS, field
-#define FLOW_WORD_GIVEN_R(object)   GIVEN, const, DUITE_R, NULL, FLOW_OF_FORK, object
-#define FLOW_WORD_GIVEN_W(object)   GIVEN, , DUITE_W, NULL, FLOW_OF_FORK, object
-#define FLOW_WORD_GIVEN_SUM(object) GIVEN, , DUITE_CW, &duite_sum, FLOW_OF_FORK, object
+#define FLOW_WORD_GIVEN_R(object)   FIXED, const, DUITE_R, NULL, FLOW_OF_FORK, object
+#define FLOW_WORD_GIVEN_W(object)   FIXED, , DUITE_W, NULL, FLOW_OF_FORK, object
+#define FLOW_WORD_GIVEN_SUM(object) FIXED, , DUITE_CW, &duite_sum, FLOW_OF_FORK, object
 #define FLOW_WORD_REST_R(object)    REST, const, DUITE_R, , FLOW_REST_OF_FORK, object
 #define FLOW_WORD_REST_W(object)    REST, const, DUITE_W, , FLOW_REST_OF_FORK, object
 #define FLOW_SPREAD(f, ...)         f(__VA_ARGS__)
@@ -165,7 +165,6 @@ struct flow_kernel {
 #define FLOW_INDEX(k, word) FLOW_SPREAD(FLOW_INDEX_IN, k, FLOW_WORD_##word)
 #define FLOW_INDEX_IN(k, kind, only, mode, law, whose, field) FLOW_INDEX_##kind(k, field)
 #define FLOW_INDEX_FIXED(k, field) FLOW_INDEX_OF(k, field),
-#define FLOW_INDEX_GIVEN(k, field) FLOW_INDEX_OF(k, field),
 #define FLOW_INDEX_WITH(k, field)
 #define FLOW_INDEX_LESS(k, field)
 #define FLOW_INDEX_READ(k, field)
@@ -182,7 +181,6 @@ struct flow_kernel {
 #define FLOW_HAS_READ(only, field)  only flow_type_of_##field *field;
 #define FLOW_HAS_MANY(only, field)  only duite_param *field;
 #define FLOW_HAS_TIED(only, field)  only duite_param *tied_##field;
-#define FLOW_HAS_GIVEN(only, field) only flow_type_of_##field *field;
 #define FLOW_HAS_REST(only, field)  only duite_param *field; size_t n_##field;
 
 /* Fills them. */
@@ -199,7 +197,6 @@ struct flow_kernel {
 #define FLOW_OPEN_TIED(k, whose, field)                                                            \
     on.tied_##field = call->param + next;                                                          \
     next += flow_of(call)->made[FLOW_FIELD_##field] ? flow_ties_others(on.tie_table) : 0;
-#define FLOW_OPEN_GIVEN(k, whose, field) FLOW_OPEN_FIXED(k, whose, field)
 #define FLOW_OPEN_REST(k, whose, field)                                                            \
     on.field = call->param + next;                                                                 \
     on.n_##field = call->n_params - next;
@@ -221,8 +218,6 @@ struct flow_kernel {
 #define FLOW_MANY_IN_LESS(member)
 #define FLOW_TIED_IN_WITH(member)
 #define FLOW_TIED_IN_LESS(member)
-#define FLOW_GIVEN_IN_WITH(member) member,
-#define FLOW_GIVEN_IN_LESS(member) member,
 #define FLOW_REST_IN_WITH(member)
 #define FLOW_REST_IN_LESS(member)
 
@@ -235,7 +230,6 @@ struct flow_kernel {
 #define FLOW_FURTHER_FIXED(mode)
 #define FLOW_FURTHER_WITH(mode)
 #define FLOW_FURTHER_LESS(mode)
-#define FLOW_FURTHER_GIVEN(mode)
 #define FLOW_FURTHER_READ(mode) | DUITE_R
 #define FLOW_FURTHER_MANY(mode) | DUITE_R
 #define FLOW_FURTHER_TIED(mode) | DUITE_R

@@ -140,56 +140,50 @@ struct flow_kernel {
 #define FLOW_E24(f, k, a, ...)                                                                    f(k, a) FLOW_E23(f, k, __VA_ARGS__)
 
 /* clang-format off */
-/* A word: its kind, `const` if it only reads, mode and law in the runtime, whose object, the field. */
-#define FLOW_WORD_R(field)          FIXED, const, DUITE_R, NULL, FLOW_OWN, field
-#define FLOW_WORD_W(field)          FIXED, , DUITE_W, NULL, FLOW_OWN, field
-#define FLOW_WORD_RW(field)         FIXED, , DUITE_RW, NULL, FLOW_OWN, field
-#define FLOW_WORD_SUM(field)        FIXED, , DUITE_CW, &duite_sum, FLOW_OWN, field
-#define FLOW_WORD_MAX(field)        FIXED, , DUITE_CW, &duite_max, FLOW_OWN, field
-#define FLOW_WORD_W_IF(field)       WITH, , DUITE_W, NULL, FLOW_OWN_IF_MADE, field
-#define FLOW_WORD_RW_IF(field)      WITH, , DUITE_RW, NULL, FLOW_OWN_IF_MADE, field
-#define FLOW_WORD_SUM_ELSE(field)   LESS, , DUITE_CW, &duite_sum, FLOW_OWN_IF_MADE, field
-#define FLOW_WORD_IF_MADE(field)    READ, const, , , FLOW_IF_MADE, field
-#define FLOW_WORD_NEIGHBOURS(field) MANY, const, , , FLOW_OF_NEIGHBOURS, field
-#define FLOW_WORD_ALL(field)        MANY, const, , , FLOW_OF_ALL, field
-#define FLOW_WORD_TIED(field)       TIED, const, , , FLOW_OF_TIED, field
-#define FLOW_WORD_KEEPERS(field)    REST, const, DUITE_R, , FLOW_OF_KEEPERS, field
-#define FLOW_WORD_GIVEN_R(object)   FIXED, const, DUITE_R, NULL, FLOW_OF_FORK, object
-#define FLOW_WORD_GIVEN_W(object)   FIXED, , DUITE_W, NULL, FLOW_OF_FORK, object
-#define FLOW_WORD_GIVEN_SUM(object) FIXED, , DUITE_CW, &duite_sum, FLOW_OF_FORK, object
-#define FLOW_WORD_REST_R(object)    REST, const, DUITE_R, , FLOW_REST_OF_FORK, object
-#define FLOW_WORD_REST_W(object)    REST, const, DUITE_W, , FLOW_REST_OF_FORK, object
+/* A word: its kind; whether the runtime's kernel lists it by itself, in the form WITH and in LESS (the
+ * others are further ones); `const` if it only reads, mode and law there; whose object, the field. */
+#define FLOW_WORD_R(field)          FIXED, 1, 1, const, DUITE_R, NULL, FLOW_OWN, field
+#define FLOW_WORD_W(field)          FIXED, 1, 1, , DUITE_W, NULL, FLOW_OWN, field
+#define FLOW_WORD_RW(field)         FIXED, 1, 1, , DUITE_RW, NULL, FLOW_OWN, field
+#define FLOW_WORD_SUM(field)        FIXED, 1, 1, , DUITE_CW, &duite_sum, FLOW_OWN, field
+#define FLOW_WORD_MAX(field)        FIXED, 1, 1, , DUITE_CW, &duite_max, FLOW_OWN, field
+#define FLOW_WORD_W_IF(field)       MADE, 1, 0, , DUITE_W, NULL, FLOW_OWN_IF_MADE, field
+#define FLOW_WORD_RW_IF(field)      MADE, 1, 0, , DUITE_RW, NULL, FLOW_OWN_IF_MADE, field
+#define FLOW_WORD_SUM_ELSE(field)   MADE, 0, 1, , DUITE_CW, &duite_sum, FLOW_OWN_IF_MADE, field
+#define FLOW_WORD_IF_MADE(field)    MADE, 0, 0, const, DUITE_R, , FLOW_IF_MADE, field
+#define FLOW_WORD_NEIGHBOURS(field) MANY, 0, 0, const, DUITE_R, , FLOW_OF_NEIGHBOURS, field
+#define FLOW_WORD_ALL(field)        MANY, 0, 0, const, DUITE_R, , FLOW_OF_ALL, field
+#define FLOW_WORD_TIED(field)       TIED, 0, 0, const, DUITE_R, , FLOW_OF_TIED, field
+#define FLOW_WORD_KEEPERS(field)    REST, 0, 0, const, DUITE_R, , FLOW_OF_KEEPERS, field
+#define FLOW_WORD_GIVEN_R(object)   FIXED, 1, 1, const, DUITE_R, NULL, FLOW_OF_FORK, object
+#define FLOW_WORD_GIVEN_W(object)   FIXED, 1, 1, , DUITE_W, NULL, FLOW_OF_FORK, object
+#define FLOW_WORD_GIVEN_SUM(object) FIXED, 1, 1, , DUITE_CW, &duite_sum, FLOW_OF_FORK, object
+#define FLOW_WORD_REST_R(object)    REST, 0, 0, const, DUITE_R, , FLOW_REST_OF_FORK, object
+#define FLOW_WORD_REST_W(object)    REST, 0, 0, const, DUITE_W, , FLOW_REST_OF_FORK, object
 #define FLOW_SPREAD(f, ...)         f(__VA_ARGS__)
+#define FLOW_IF_1(...)              __VA_ARGS__
+#define FLOW_IF_0(...)
 
 /* name_at_field, of parameters that are always there. */
 #define FLOW_INDEX(k, word) FLOW_SPREAD(FLOW_INDEX_IN, k, FLOW_WORD_##word)
-#define FLOW_INDEX_IN(k, kind, only, mode, law, whose, field) FLOW_INDEX_##kind(k, field)
-#define FLOW_INDEX_FIXED(k, field) FLOW_INDEX_OF(k, field),
-#define FLOW_INDEX_WITH(k, field)
-#define FLOW_INDEX_LESS(k, field)
-#define FLOW_INDEX_READ(k, field)
-#define FLOW_INDEX_MANY(k, field)
-#define FLOW_INDEX_TIED(k, field)
-#define FLOW_INDEX_REST(k, field)
+#define FLOW_INDEX_IN(k, kind, with, less, only, mode, law, whose, field)                          \
+    FLOW_IF_##with(FLOW_IF_##less(FLOW_INDEX_OF(k, field),))
 
 /* Members of struct name_fields. */
 #define FLOW_HAS(k, word) FLOW_SPREAD(FLOW_HAS_IN, k, FLOW_WORD_##word)
-#define FLOW_HAS_IN(k, kind, only, mode, law, whose, field) FLOW_HAS_##kind(only, field)
+#define FLOW_HAS_IN(k, kind, with, less, only, mode, law, whose, field) FLOW_HAS_##kind(only, field)
 #define FLOW_HAS_FIXED(only, field) only flow_type_of_##field *field;
-#define FLOW_HAS_WITH(only, field)  only flow_type_of_##field *field;
-#define FLOW_HAS_LESS(only, field)  only flow_type_of_##field *field;
-#define FLOW_HAS_READ(only, field)  only flow_type_of_##field *field;
+#define FLOW_HAS_MADE(only, field)  only flow_type_of_##field *field;
 #define FLOW_HAS_MANY(only, field)  only duite_param *field;
 #define FLOW_HAS_TIED(only, field)  only duite_param *tied_##field;
 #define FLOW_HAS_REST(only, field)  only duite_param *field; size_t n_##field;
 
 /* Fills them. */
 #define FLOW_OPEN(k, word) FLOW_SPREAD(FLOW_OPEN_IN, k, FLOW_WORD_##word)
-#define FLOW_OPEN_IN(k, kind, only, mode, law, whose, field) FLOW_OPEN_##kind(k, whose, field)
+#define FLOW_OPEN_IN(k, kind, with, less, only, mode, law, whose, field)                           \
+    FLOW_OPEN_##kind(k, whose, field)
 #define FLOW_OPEN_FIXED(k, whose, field) on.field = call->param[FLOW_INDEX_OF(k, field)].data;
-#define FLOW_OPEN_WITH(k, whose, field)  FLOW_OPEN_READ(k, whose, field)
-#define FLOW_OPEN_LESS(k, whose, field)  FLOW_OPEN_READ(k, whose, field)
-#define FLOW_OPEN_READ(k, whose, field)                                                            \
+#define FLOW_OPEN_MADE(k, whose, field)                                                            \
     on.field = flow_of(call)->made[FLOW_FIELD_##field] ? call->param[next++].data : NULL;
 #define FLOW_OPEN_MANY(k, whose, field)                                                            \
     on.field = call->param + next;                                                                 \
@@ -203,37 +197,26 @@ struct flow_kernel {
 
 /* Members of the runtime's kernel, of the form WITH or LESS what a run may lack. */
 #define FLOW_MODE(form, word) FLOW_SPREAD(FLOW_MODE_IN, form, FLOW_WORD_##word)
-#define FLOW_MODE_IN(form, kind, only, mode, law, whose, field) FLOW_##kind##_IN_##form(mode)
+#define FLOW_MODE_IN(form, kind, with, less, only, mode, law, whose, field)                        \
+    FLOW_IN_##form(with, less, mode)
 #define FLOW_LAW(form, word) FLOW_SPREAD(FLOW_LAW_IN, form, FLOW_WORD_##word)
-#define FLOW_LAW_IN(form, kind, only, mode, law, whose, field) FLOW_##kind##_IN_##form(law)
-#define FLOW_FIXED_IN_WITH(member) member,
-#define FLOW_FIXED_IN_LESS(member) member,
-#define FLOW_WITH_IN_WITH(member)  member,
-#define FLOW_WITH_IN_LESS(member)
-#define FLOW_LESS_IN_WITH(member)
-#define FLOW_LESS_IN_LESS(member)  member,
-#define FLOW_READ_IN_WITH(member)
-#define FLOW_READ_IN_LESS(member)
-#define FLOW_MANY_IN_WITH(member)
-#define FLOW_MANY_IN_LESS(member)
-#define FLOW_TIED_IN_WITH(member)
-#define FLOW_TIED_IN_LESS(member)
-#define FLOW_REST_IN_WITH(member)
-#define FLOW_REST_IN_LESS(member)
+#define FLOW_LAW_IN(form, kind, with, less, only, mode, law, whose, field)                         \
+    FLOW_IN_##form(with, less, law)
+#define FLOW_IN_WITH(with, less, member) FLOW_IF_##with(member,)
+#define FLOW_IN_LESS(with, less, member) FLOW_IF_##less(member,)
 
 /* The parameters at the fork. */
 #define FLOW_PARAMETER(k, word) FLOW_SPREAD(FLOW_PARAMETER_IN, k, FLOW_WORD_##word)
-#define FLOW_PARAMETER_IN(k, kind, only, mode, law, whose, field) {whose, FLOW_FIELD_##field},
+#define FLOW_PARAMETER_IN(k, kind, with, less, only, mode, law, whose, field)                      \
+    {whose, FLOW_FIELD_##field},
 /* The mode of those whose number varies: one for all of a kernel. */
 #define FLOW_FURTHER(k, word) FLOW_SPREAD(FLOW_FURTHER_IN, k, FLOW_WORD_##word)
-#define FLOW_FURTHER_IN(k, kind, only, mode, law, whose, field) FLOW_FURTHER_##kind(mode)
-#define FLOW_FURTHER_FIXED(mode)
-#define FLOW_FURTHER_WITH(mode)
-#define FLOW_FURTHER_LESS(mode)
-#define FLOW_FURTHER_READ(mode) | DUITE_R
-#define FLOW_FURTHER_MANY(mode) | DUITE_R
-#define FLOW_FURTHER_TIED(mode) | DUITE_R
-#define FLOW_FURTHER_REST(mode) | mode
+#define FLOW_FURTHER_IN(k, kind, with, less, only, mode, law, whose, field)                        \
+    FLOW_FURTHER_##with##less(mode)
+#define FLOW_FURTHER_11(mode)
+#define FLOW_FURTHER_10(mode)
+#define FLOW_FURTHER_01(mode)
+#define FLOW_FURTHER_00(mode) | mode
 /* clang-format on */
 
 #define FLOW_KERNEL_OPEN(name, part, arguments, fields)                                            \

@@ -80,29 +80,17 @@ struct walk {
     struct element element; /* of the kind and cloth that are gone through */
 };
 
-static void walk_triangles(struct walk *walk)
-{
-    const struct mesh *mesh = &walk->cloth->mesh;
-    walk->element.corners = 3;
-    for (uint32_t t = 0; t < mesh->n_triangles; t++) {
-        mesh_corners(mesh, t, walk->element.corner);
-        walk->element.triangle[0] = t;
-        walk->visit(walk->to, &walk->element);
-    }
-}
-
+/* Triangles; of faces the cells, if the mesh has them. */
 static void walk_faces(struct walk *walk)
 {
     const struct mesh *mesh = &walk->cloth->mesh;
-    if (!model_has_cells(walk->cloths->model, walk->cloth)) {
-        walk_triangles(walk);
-        return;
-    }
-    walk->element.corners = 4;
+    const bool cells = element_kinds[walk->element.kind]->part == ELEMENT_FACES &&
+                       model_has_cells(walk->cloths->model, walk->cloth);
+    walk->element.corners = cells ? 4 : 3;
     for (uint32_t t = 0; t < mesh->n_triangles; t++) {
         mesh_corners(mesh, t, walk->element.corner);
         walk->element.triangle[0] = t;
-        walk->element.corner[3] = mesh_fourth(mesh, t);
+        walk->element.corner[3] = cells ? mesh_fourth(mesh, t) : 0;
         walk->visit(walk->to, &walk->element);
     }
 }
@@ -170,7 +158,7 @@ static void walk_seams(struct walk *walk)
 }
 
 static void (*const walks[ELEMENT_PARTS])(struct walk *) = {
-    [ELEMENT_TRIANGLES] = walk_triangles,
+    [ELEMENT_TRIANGLES] = walk_faces,
     [ELEMENT_FACES] = walk_faces,
     [ELEMENT_HINGES] = walk_hinges,
     [ELEMENT_EDGES] = walk_edges,

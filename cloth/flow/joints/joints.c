@@ -7,7 +7,6 @@
 #include "cloth/base/memory.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Stands for a length of 0: a spring whose ends are at one place is then longer than at rest, too,
  * and stretches in all directions alike. Beside every other length it is as 0. */
@@ -123,9 +122,9 @@ int flow_joints_make(struct flow_springs *springs, struct flow_particles *partic
     int code = CLOTH_OK;
     if (!model->n_joints)
         return CLOTH_OK;
-    springs->joint = cloth_alloc(list->n, sizeof *springs->joint, error);
-    springs->timed = cloth_alloc(list->n, sizeof *springs->timed, error);
-    if (!springs->joint || !springs->timed)
+    springs->joint = cloth_take(&springs->memory, list->n, sizeof *springs->joint, error);
+    springs->timed = cloth_take(&springs->memory, list->n, sizeof *springs->timed, error);
+    if (springs->memory.lacks)
         return CLOTH_E_MEMORY;
     for (uint32_t j = 0, k = 0, seam = 0; j < model->n_joints; j++) {
         seam += model->joints[j].pairs.seam != 0;

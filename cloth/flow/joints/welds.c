@@ -344,7 +344,7 @@ static int merge(struct flow_springs *springs, const struct cloth_list *found,
                  struct cloth_error *error)
 {
     const struct candidate *all = found->items;
-    springs->merged = cloth_alloc(found->n, sizeof *springs->merged, error);
+    springs->merged = cloth_take(&springs->memory, found->n, sizeof *springs->merged, error);
     if (!springs->merged)
         return CLOTH_E_MEMORY;
     for (size_t i = 0, end; i < found->n; i = end) {

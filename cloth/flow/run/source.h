@@ -230,6 +230,7 @@ struct flow_springs {
     const struct flow_welds *welds;
     size_t n_merged;
     struct flow_merged *merged; /* by number; NULL: none */
+    struct cloth_pool memory;
 };
 /* Welds and elements must outlive them; links of elements come after the springs of their cloth.
  * Errors: CLOTH_E_INPUT as of mesh_lattice_build, with the place; CLOTH_E_MEMORY. Local. */

@@ -5,7 +5,6 @@
 #include "cloth/base/memory.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Finds the moduli of the regions of a cloth, for its lattice. */
@@ -13,7 +12,8 @@ static int find_regions(struct flow_springs *springs, uint32_t c, struct mesh_re
                         struct cloth_error *error)
 {
     const struct model_cloth *cloth = springs->model->cloths + c;
-    struct mesh_moduli *moduli = cloth_alloc(cloth->n_regions, sizeof *moduli, error);
+    struct mesh_moduli *moduli =
+        cloth_take(&springs->memory, cloth->n_regions, sizeof *moduli, error);
     if (!moduli)
         return CLOTH_E_MEMORY;
     for (uint32_t i = 0; i < cloth->n_regions; i++)
@@ -68,9 +68,10 @@ int flow_springs_make(struct flow_springs *springs, const struct model *model,
                       struct cloth_error *error)
 {
     *springs = (struct flow_springs){.model = model, .welds = welds, .elements = elements};
-    springs->lattice = cloth_alloc(model->n_cloths, sizeof *springs->lattice, error);
-    springs->regions = cloth_alloc(model->n_cloths, sizeof *springs->regions, error);
-    int code = springs->lattice && springs->regions ? CLOTH_OK : CLOTH_E_MEMORY;
+    struct cloth_pool *memory = &springs->memory;
+    springs->lattice = cloth_take(memory, model->n_cloths, sizeof *springs->lattice, error);
+    springs->regions = cloth_take(memory, model->n_cloths, sizeof *springs->regions, error);
+    int code = memory->lacks ? CLOTH_E_MEMORY : CLOTH_OK;
     for (uint32_t c = 0; c < model->n_cloths && !code; c++)
         code = springs_make_cloth(springs, c, error);
     if (code)
@@ -274,13 +275,7 @@ void flow_springs_free(struct flow_springs *springs)
 {
     for (uint32_t c = 0; springs->lattice && c < springs->model->n_cloths; c++)
         mesh_lattice_free(springs->lattice + c);
-    for (uint32_t c = 0; springs->regions && c < springs->model->n_cloths; c++)
-        free((void *)springs->regions[c].moduli);
-    free(springs->lattice);
-    free(springs->regions);
-    free(springs->joint);
-    free(springs->timed);
-    free(springs->merged);
+    cloth_pool_free(&springs->memory);
     *springs = (struct flow_springs){0};
 }
 

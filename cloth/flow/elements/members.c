@@ -3,6 +3,7 @@
 #include "cloth/flow/run/source.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 #include "cloth/solve/assemble.h"
 
 #include <stdlib.h>
@@ -72,26 +73,10 @@ static void collect_member(void *to, const struct element *element)
             source->member[(*list_of(source, block[i], element->kind))++] = *element;
 }
 
-/* Roots of the ends of a hinge's edge, the lower one above. */
-static uint64_t members_edge_of(const struct flow_welds *welds, const struct element *element)
-{
-    const uint64_t a = flow_root(welds, element->first + element->corner[0]);
-    const uint64_t b = flow_root(welds, element->first + element->corner[1]);
-    return a < b ? a << 32 | b : b << 32 | a;
-}
-
 struct ordered {
-    uint64_t edge;
-    size_t number;
+    uint32_t root[2], number; /* of the ends of the hinge's edge, ascending */
     struct element element;
 };
-
-static int compare_ordered(const void *va, const void *vb)
-{
-    const struct ordered *a = va, *b = vb;
-    const int order = (a->edge > b->edge) - (a->edge < b->edge);
-    return order ? order : (a->number > b->number) - (a->number < b->number);
-}
 
 /* Hinges come in the order of their edges, as in one mesh: those across seams come last till then.
  */
@@ -101,10 +86,13 @@ static int order_hinges(const struct flow_source *source, size_t n, struct eleme
     struct ordered *ordered = cloth_alloc(n, sizeof *ordered, error);
     if (!ordered)
         return CLOTH_E_MEMORY;
-    for (size_t i = 0; i < n; i++)
-        ordered[i] =
-            (struct ordered){members_edge_of(&source->particles.welds, element + i), i, element[i]};
-    qsort(ordered, n, sizeof *ordered, compare_ordered);
+    for (size_t i = 0; i < n; i++) {
+        const uint32_t *corner = element[i].corner;
+        const uint32_t a = flow_root(&source->particles.welds, element[i].first + corner[0]);
+        const uint32_t b = flow_root(&source->particles.welds, element[i].first + corner[1]);
+        ordered[i] = (struct ordered){{a < b ? a : b, a < b ? b : a}, (uint32_t)i, element[i]};
+    }
+    qsort(ordered, n, sizeof *ordered, cloth_by_three);
     for (size_t i = 0; i < n; i++)
         element[i] = ordered[i].element;
     free(ordered);

@@ -12,7 +12,6 @@
 #include "cloth/physics/limit.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Twice the block of a vertex, xx yy zz xy yz zx, N/m; and twice the damping of its springs. */
 struct block {
@@ -24,6 +23,7 @@ struct visitor {
     struct flow_cloths at;
     struct block *block;
     void *material[ELEMENT_KINDS]; /* as element_materials fills them */
+    struct cloth_pool memory;
 };
 
 static void particle_of(struct visitor *visitor, uint32_t vertex, struct flow_particle *particle)
@@ -152,21 +152,16 @@ static void find_fastest(struct visitor *visitor, struct flow_limit *limit)
     }
 }
 
-/* Makes the elements' data of materials. False: no memory. */
-static bool make_materials(struct visitor *visitor, struct cloth_error *error)
+/* Makes the elements' data of materials. */
+static void make_materials(struct visitor *visitor, struct cloth_error *error)
 {
     const struct model *model = visitor->source->model;
     for (int i = 0; i < ELEMENT_KINDS; i++) {
-        const size_t line = sizeof(phys_vec), bytes = element_kinds[i]->material_bytes;
-        const size_t lines = bytes * model->n_materials / line + 1;
-        visitor->material[i] = aligned_alloc(line, lines * line);
-        if (!visitor->material[i]) {
-            cloth_fail(error, CLOTH_E_MEMORY, "out of memory for %u materials", model->n_materials);
-            return false;
-        }
-        element_materials(element_kinds[i], model, visitor->material[i]);
+        const size_t bytes = element_kinds[i]->material_bytes * model->n_materials;
+        visitor->material[i] = cloth_take(&visitor->memory, bytes, 1, error);
+        if (visitor->material[i])
+            element_materials(element_kinds[i], model, visitor->material[i]);
     }
-    return true;
 }
 
 int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
@@ -174,9 +169,10 @@ int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
 {
     struct visitor visitor = {.source = source};
     *limit = (struct flow_limit){0};
-    visitor.block = cloth_alloc(source->particles.n, sizeof *visitor.block, error);
-    const bool there = visitor.block && make_materials(&visitor, error);
-    if (there) {
+    visitor.block = cloth_take(&visitor.memory, source->particles.n, sizeof *visitor.block, error);
+    make_materials(&visitor, error);
+    const int code = visitor.memory.lacks ? CLOTH_E_MEMORY : CLOTH_OK;
+    if (!code) {
         flow_springs_each(&source->springs, visit_spring, &visitor);
         for (uint32_t i = 0; i < source->springs.n_timed; i++)
             if (flow_joints_act(source->model, source->springs.timed + i))
@@ -186,10 +182,8 @@ int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
         element_each(&source->elements, visit_element, &visitor);
         find_fastest(&visitor, limit);
     }
-    for (int i = 0; i < ELEMENT_KINDS; i++)
-        free(visitor.material[i]);
-    free(visitor.block);
-    return there ? CLOTH_OK : CLOTH_E_MEMORY;
+    cloth_pool_free(&visitor.memory);
+    return code;
 }
 
 double flow_limit_of(const struct flow_limit *limit, enum model_integrator integrator)

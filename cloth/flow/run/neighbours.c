@@ -67,37 +67,24 @@ static void join_blocks(struct finder *finder, uint32_t a, uint32_t b, struct fl
     add_need(finder, bq, bp, p, kq);
 }
 
-/* Counts an edge whose velocities are corrected. */
-static void count_corrected(struct flow_source *source, const struct flow_spring *spring,
-                            struct flow_table *const block[2])
-{
-    if (block[0] == block[1]) {
-        block[0]->n_corrected++;
-        return;
-    }
-    block[0]->n_corrected_cut++;
-    block[1]->n_corrected_cut++;
-    source->cut[source->blocks.place[spring->a]]++;
-    source->cut[source->blocks.place[spring->b]]++;
-}
-
 static void find_need(void *to, const struct flow_spring *spring)
 {
-    struct finder *finder = to;
+    const struct flow_source *source = ((struct finder *)to)->source;
     struct flow_table *block[2];
     join_blocks(to, spring->a, spring->b, block);
-    if (spring->correction)
-        count_corrected(finder->source, spring, block);
-    block[0]->n_stiff += spring->stiffness > 0;
-    block[0]->n_pulled += spring->seam != 0;
-    if (block[0] == block[1]) {
-        block[0]->n_inner++;
-        return;
+    const bool cut = block[0] != block[1], corrected = spring->correction;
+    for (int k = 0; k <= cut; k++) {
+        block[k]->n_stiff += spring->stiffness > 0;
+        block[k]->n_pulled += spring->seam != 0;
+        block[k]->n_inner += !cut;
+        block[k]->n_cut += cut;
+        block[k]->n_corrected += corrected && !cut;
+        block[k]->n_corrected_cut += corrected && cut;
     }
-    block[1]->n_stiff += spring->stiffness > 0;
-    block[1]->n_pulled += spring->seam != 0;
-    block[0]->n_cut++;
-    block[1]->n_cut++;
+    if (corrected && cut) {
+        source->cut[source->blocks.place[spring->a]]++;
+        source->cut[source->blocks.place[spring->b]]++;
+    }
 }
 
 /* Numbers the rows that other blocks need, which are marked. */

@@ -137,28 +137,38 @@ PHYS_INLINE void multiply(const struct solve_block *block, enum solve_format for
     }
 }
 
-/* Adds the products of ties with p to q. It reads without a branch, which no processor would
- * predict. */
-PHYS_INLINE void add_ties(size_t n_rows, const struct solve_ties *ties, const phys_vec *restrict p,
+/* Adds the products of ties from .. to - 1 with p to q. Of so many corners each, `own` are rows. */
+PHYS_INLINE void add_ties(const struct solve_ties *ties, size_t from, size_t to, int own,
+                          int corners, size_t n_rows, const phys_vec *restrict p,
                           phys_vec *restrict q)
 {
-    const phys_vec *const from[] = {p, ties->p_other};
-    const size_t first[] = {0, n_rows};
-    for (size_t i = 0; i < ties->n; i++) {
+    for (size_t i = from; i < to; i++) {
         const uint32_t *corner = ties->corner[i];
         const double *weight = ties->weight[i];
-        phys_vec u = {0}, y;
+        phys_vec u = weight[0] * p[corner[0]], y;
         PHYS_UNROLL
-        for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
-            const bool other = corner[k] >= n_rows;
-            u += weight[k] * from[other][corner[k] - first[other]];
-        }
+        for (int k = 1; k < corners; k++)
+            u += weight[k] * (k < own ? p[corner[k]] : ties->p_other[corner[k] - n_rows]);
         solve_spring_times(ties->value + i, &u, &y);
         PHYS_UNROLL
-        for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
-            if (weight[k] != 0 && corner[k] < n_rows)
-                q[corner[k]] += weight[k] * y;
+        for (int k = 0; k < own; k++)
+            q[corner[k]] += weight[k] * y;
     }
+}
+
+/* Inlining makes the numbers of corners constants, too. */
+PHYS_KERNEL(solve_add_ties,
+            (size_t n_rows, const struct solve_ties *ties, const phys_vec *restrict p,
+             phys_vec *restrict q),
+            (n_rows, ties, p, q))
+{
+    const struct solve_ties here = *ties; /* stays in registers */
+    const uint32_t *start = ties->start;
+    add_ties(&here, start[0], start[1], 1, 1, n_rows, p, q);
+    add_ties(&here, start[1], start[2], 1, SOLVE_TIE_CORNERS, n_rows, p, q);
+    add_ties(&here, start[2], start[3], 2, SOLVE_TIE_CORNERS, n_rows, p, q);
+    add_ties(&here, start[3], start[4], 3, SOLVE_TIE_CORNERS, n_rows, p, q);
+    add_ties(&here, start[4], start[5], 4, SOLVE_TIE_CORNERS, n_rows, p, q);
 }
 
 /* The entries into other blocks, ties, and the rows that waited for them. */
@@ -176,7 +186,7 @@ PHYS_INLINE void end_halo(const struct solve_block *block, enum solve_format for
         rows->q[a] += y;
     }
     if (cut->ties)
-        add_ties(block->n, cut->ties, rows->p, rows->q);
+        solve_add_ties(block->n, cut->ties, rows->p, rows->q);
     for (size_t i = 0; i < cut->n_halo; i++) {
         const phys_vec total = rows->q[cut->halo[i]];
         end_row(block, format, preconditioned, values, cut->halo[i], &total, rows, sum);

@@ -36,12 +36,20 @@ PHYS_INLINE void solve_filter(const phys_vec *filter, phys_vec *y)
 /* Ties join rows for some solves only, in a block of any format. A tie has up to four corners with
  * weights w_k. It adds w_i w_k N to row i and column k, N a value of SOLVE_SPRINGS: with u the sum
  * of w_k p_k it adds w_i N u to row i. Every block with a corner knows the whole tie. Ties that add
- * nothing may be left out. */
+ * nothing may be left out. Corners that are rows of the block come first, and ties of as many of
+ * them are side by side: a product then has no branch, which no processor would predict. */
 enum { SOLVE_TIE_CORNERS = 4 };
+
+/* Kinds of ties, in their order: one corner alone; 1, 2 or 3 rows, the other corners ghosts; rows
+ * alone. */
+enum { SOLVE_TIE_ALONE, SOLVE_TIE_INNER = SOLVE_TIE_CORNERS, SOLVE_TIE_KINDS };
+
 struct solve_ties {
     size_t n;
+    const uint32_t
+        *start; /* SOLVE_TIE_KINDS + 1: ties of kind k are start[k] .. start[k + 1] - 1 */
     const uint32_t (*corner)[SOLVE_TIE_CORNERS]; /* n: rows; those behind the block's are ghosts */
-    const double (*weight)[SOLVE_TIE_CORNERS];   /* n: 0: it has no such corner */
+    const double (*weight)[SOLVE_TIE_CORNERS];   /* n: 0: it has no such corner, but any number */
     const phys_vec *value;                       /* n */
     const phys_vec *p_other;                     /* p of the ghosts */
 };

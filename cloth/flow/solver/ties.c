@@ -4,13 +4,14 @@
 
 /* ---- Ties that add something ---- */
 
-/* Their number, then arrays with room for all ties. */
+/* Where those of each kind start, then arrays with room for all ties. */
 struct acting {
-    uint64_t *n;
+    uint32_t *start; /* SOLVE_TIE_KINDS + 1 */
     phys_vec *value;
     double (*weight)[SOLVE_TIE_CORNERS];
     uint32_t (*corner)[SOLVE_TIE_CORNERS];
 };
+_Static_assert((SOLVE_TIE_KINDS + 1) * sizeof(uint32_t) <= sizeof(phys_vec), "start takes a row");
 
 /* Finds them behind the values of all ties. */
 static struct acting find_acting(const struct flow_ties *ties, const phys_vec *value)
@@ -21,34 +22,75 @@ static struct acting find_acting(const struct flow_ties *ties, const phys_vec *v
                            (void *)(rows + 1 + 2 * room)};
 }
 
+/* The kind of tie i; SOLVE_TIE_KINDS: it adds nothing to rows of the block. */
+static uint32_t kind_of_tie(const struct flow_ties *ties, uint32_t i, const phys_vec *value)
+{
+    uint32_t own = 0, ghosts = 0;
+    for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
+        const bool here = ties->corner[i][k] < ties->n_rows;
+        own += here && ties->weight[i][k] != 0;
+        ghosts += !here;
+    }
+    if (!own || solve_is_nothing(value + i))
+        return SOLVE_TIE_KINDS;
+    if (ghosts)
+        return own;
+    return own == 1 ? SOLVE_TIE_ALONE : SOLVE_TIE_INNER;
+}
+
+/* Puts the rows of tie i first. Corners that it has not are the one before. */
+static void put_corners(const struct flow_ties *ties, uint32_t i, uint32_t *corner, double *weight)
+{
+    int n = 0;
+    for (int ghosts = 0; ghosts < 2; ghosts++)
+        for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
+            const uint32_t from = ties->corner[i][k];
+            if (ghosts ? from < ties->n_rows : from >= ties->n_rows || ties->weight[i][k] == 0)
+                continue;
+            corner[n] = from;
+            weight[n++] = ties->weight[i][k];
+        }
+    for (; n < SOLVE_TIE_CORNERS; n++) {
+        corner[n] = corner[n - 1];
+        weight[n] = 0;
+    }
+}
+
 void flow_ties_gather(const struct flow_ties *ties, phys_vec *value)
 {
     const struct acting to = find_acting(ties, value);
-    size_t n = 0;
-    for (uint32_t i = 0; i < ties->n; i++) {
-        if (solve_is_nothing(value + i))
-            continue;
-        to.value[n] = value[i];
-        memcpy(to.weight[n], ties->weight[i], sizeof to.weight[n]);
-        memcpy(to.corner[n], ties->corner[i], sizeof to.corner[n]);
-        n++;
-    }
+    uint32_t at[SOLVE_TIE_KINDS + 2] = {0}; /* one behind each kind */
     if (!ties->room.ties)
         return;
-    const size_t rest = ties->room.ties - n;
+    for (uint32_t i = 0; i < ties->n; i++)
+        at[1 + kind_of_tie(ties, i, value)]++;
+    for (int kind = 0; kind < SOLVE_TIE_KINDS; kind++)
+        at[kind + 1] += at[kind];
+    memset(to.start, 0, sizeof *value);
+    memcpy(to.start, at, (SOLVE_TIE_KINDS + 1) * sizeof *at);
+    for (uint32_t i = 0; i < ties->n; i++) {
+        const uint32_t kind = kind_of_tie(ties, i, value);
+        if (kind == SOLVE_TIE_KINDS)
+            continue;
+        const uint32_t n = at[kind]++;
+        to.value[n] = value[i];
+        put_corners(ties, i, to.corner[n], to.weight[n]);
+    }
+    const size_t n = to.start[SOLVE_TIE_KINDS], rest = ties->room.ties - n;
     memset(to.value + n, 0, rest * sizeof *to.value);
     memset(to.weight + n, 0, rest * sizeof *to.weight);
     memset(to.corner + n, 0, rest * sizeof *to.corner);
-    memset(to.n, 0, sizeof *value);
-    *to.n = n;
 }
 
 struct solve_ties flow_ties_solved(const struct flow_ties *ties, const phys_vec *value,
                                    const phys_vec *p_other)
 {
+    static const uint32_t none[SOLVE_TIE_KINDS + 1];
     const struct acting acting = find_acting(ties, value);
+    const uint32_t *start = ties->n ? acting.start : none;
     return (struct solve_ties){
-        .n = ties->n ? *acting.n : 0,
+        .n = start[SOLVE_TIE_KINDS],
+        .start = start,
         .corner = (const uint32_t(*)[SOLVE_TIE_CORNERS])acting.corner,
         .weight = (const double(*)[SOLVE_TIE_CORNERS])acting.weight,
         .value = acting.value,

@@ -104,6 +104,42 @@ UNIT_LOOP(product, 0, 6)
     free_all();
 }
 
+/* So many corners come first that are rows; the others are ghosts, or have no weight. */
+static void check_kind(const struct seen *s, uint32_t i, uint32_t kind)
+{
+    const uint32_t own = kind ? kind : 1;
+    ck_assert_double_ne(s->solved.weight[i][0], 0);
+    for (uint32_t k = 0; k < SOLVE_TIE_CORNERS; k++) {
+        const bool here = s->solved.corner[i][k] < s->ties.n_rows;
+        if (kind == SOLVE_TIE_ALONE && k > 0)
+            ck_assert_double_eq(s->solved.weight[i][k], 0);
+        else
+            ck_assert(here == (k < own));
+        ck_assert_uint_lt(s->solved.corner[i][k], s->ties.n_rows + s->ties.n_ghosts);
+    }
+}
+
+UNIT_LOOP(solved_ties_by_kind, 0, 6)
+{
+    uint32_t of_kind[SOLVE_TIE_KINDS] = {0};
+    repeats = _i > 2;
+    make_all((unsigned)_i + 1);
+    for (uint32_t b = 0; b < BLOCKS; b++) {
+        struct seen s;
+        see(b, SOLVE_SPRINGS, &s);
+        ck_assert_uint_eq(s.solved.start[0], 0);
+        ck_assert_uint_eq(s.solved.start[SOLVE_TIE_KINDS], s.solved.n);
+        for (uint32_t kind = 0; kind < SOLVE_TIE_KINDS; kind++)
+            for (uint32_t i = s.solved.start[kind]; i < s.solved.start[kind + 1]; i++) {
+                check_kind(&s, i, kind);
+                of_kind[kind]++;
+            }
+    }
+    for (uint32_t kind = 0; kind < SOLVE_TIE_INNER; kind++)
+        ck_assert_uint_gt(of_kind[kind], 0);
+    free_all();
+}
+
 UNIT_LOOP(local_preconditioners_have_the_diagonal, 0, 4)
 {
     static const phys_vec none[2 * ROWS];

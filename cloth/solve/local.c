@@ -2,7 +2,7 @@
  * IC(0) has for each inner entry its block of T, transposed. A row gives multiples of columns of
  * T', by its own three numbers, to later rows. Its sum from them runs over its entries first, over
  * lanes at the end. The same T stands on both sides of E, so M is exactly symmetric and as definite
- * as E. T is made in double and kept in float, in the first half of its memory. A solve reads T far
+ * as E. T is made in double and kept in float, in the first part of its memory. A solve reads T far
  * more often than it is made, and half the bytes take less time. */
 #include "cloth/solve/local.h"
 #include "cloth/solve/matrix3.h"
@@ -17,7 +17,7 @@
 #define LEAST_OF_MASS 1e-3
 
 struct rounded {
-    float c[3][4];
+    float c[SOLVE_NINE]; /* a read of four numbers may end behind the last */
 };
 
 struct factor {
@@ -253,17 +253,20 @@ PHYS_INLINE void over_relax(const struct solve_block *block, const struct solve_
     }
 }
 
-/* Works in place: each write is behind the reads. */
+/* Works in place: each write is behind the reads. Numbers that a read of four takes with its three
+ * are of the next three, or zero. */
 PHYS_INLINE void round_off(const struct solve_block *block, struct factor *f)
 {
-    for (size_t i = 0; i < block->row[block->n]; i++) {
+    const size_t n = block->row[block->n];
+    for (size_t i = 0; i < n; i++) {
         const struct solve_columns t = f->t[i];
         struct rounded rounded;
-        for (int k = 0; k < 3; k++)
-            for (int c = 0; c < 4; c++)
-                rounded.c[k][c] = (float)t.c[k][c];
+        for (int k = 0; k < SOLVE_NINE; k++)
+            rounded.c[k] = (float)t.c[k / 3][k % 3];
         memcpy(f->rounded + i, &rounded, sizeof rounded);
     }
+    if (n)
+        f->rounded[n].c[0] = 0;
 }
 
 PHYS_KERNEL_OF(int, solve_local_factor,
@@ -290,12 +293,13 @@ PHYS_KERNEL_OF(int, solve_local_factor,
 
 PHYS_INLINE void widen(const struct rounded *t, phys_vec *x, phys_vec *y, phys_vec *z)
 {
-    solve_widen(t->c[0], x);
-    solve_widen(t->c[1], y);
-    solve_widen(t->c[2], z);
+    solve_widen(t->c, x);
+    solve_widen(t->c + 3, y);
+    solve_widen(t->c + 6, z);
 }
 
-/* s = (I + T')^-1 q, then E^-1 of it; a row is final when all before it are. */
+/* s = (I + T')^-1 q, then E^-1 of it; a row is final when all before it are. Its lane 3 is rubbish
+ * until then. */
 PHYS_INLINE void forward(const struct solve_block *block, const struct factor *f, phys_vec *s)
 {
     for (size_t a = 0; a < block->n; a++) {

@@ -22,6 +22,8 @@ static void apply(enum solve_local kind, const phys_vec *q, phys_vec *s)
 {
     const double product = solve_local_apply(&sys.block[0].matrix, kind, factor, q, s);
     ck_assert_double_eq_tol(product, system_dot(&sys, q, s), 1e-12 * (1 + fabs(product)));
+    for (uint32_t a = 0; a < sys.n; a++)
+        ck_assert_double_eq(s[a][3], 0);
 }
 
 /* What is left of float in an incomplete factor. */

@@ -325,6 +325,5 @@ void solve_unpack(size_t n, const double *packed, const uint32_t *at, phys_vec *
 void solve_pack(size_t n, const uint32_t *at, const phys_vec *q, double *packed)
 {
     for (size_t i = 0; i < n; i++)
-        for (size_t c = 0; c < 3; c++)
-            packed[3 * i + c] = q[at[i]][c];
+        memcpy(packed + 3 * i, q + at[i], 3 * sizeof *packed);
 }

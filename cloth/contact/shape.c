@@ -49,6 +49,9 @@ void contact_axes(const double point[3], const double along[3], struct phys_pose
         key.rotate[0] = length + along[0];
         key.rotate[2] = -along[2];
         key.rotate[3] = along[1];
+    } else if (length > 0) { /* half a turn, about any axis across */
+        key.rotate[0] = 0;
+        key.rotate[3] = 1;
     }
     phys_pose_at(1, &key, (const double[3]){0}, 0, axes);
 }

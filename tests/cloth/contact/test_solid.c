@@ -240,6 +240,29 @@ UNIT_LOOP(apart, 0, N_SHAPES)
     ck_assert_int_gt(n, quick(MANY) / 8);
 }
 
+/* Also where the shortest turn to the normal is one of many. */
+UNIT_TEST(planes_along_the_axes)
+{
+    for (int k = 0; k < 6; k++) {
+        struct contact_shape shape = {.value = {0.1, 0.2, 0.3}};
+        struct contact_pose pose;
+        struct contact_solid solid;
+        struct contact_solid_point on;
+        struct contact_hit hit;
+        const phys_vec x[3] = {{0.5, 0.7, 0.9}, {0.5, 0.7, 0.9}, {0.5, 0.7, 0.9}};
+        shape.value[3 + k / 2] = k % 2 ? -1 : 1;
+        while (contact_kinds[shape.kind] != &contact_plane)
+            shape.kind++;
+        contact_pose_over(&shape, NULL, NULL, 0, 1, &pose);
+        contact_solid_make(&shape, &pose, &solid);
+        contact_solid_nearest(&solid, CONTACT_END, x, &on);
+        contact_closest(&shape, &pose, 1, x, &hit);
+        ck_assert_double_eq_tol(on.gap, hit.gap, 1e-12);
+        for (int c = 0; c < 3; c++)
+            ck_assert_double_eq_tol(on.normal[c], hit.normal[c], 1e-12);
+    }
+}
+
 /* No point of a surface goes farther in the step; without a turn all of them go as far. */
 UNIT_LOOP(way_of_the_shape, 0, N_SHAPES)
 {

@@ -27,12 +27,15 @@ int simulate_agree(const struct run *run, const struct cloth_error *error)
     return code;
 }
 
-/* The blocks have all they need of the meshes. */
+/* The blocks have all they need of the meshes; the summary names low triangles. */
 static void forget_meshes(void *context)
 {
     struct run *run = context;
-    for (uint32_t i = 0; i < run->model->n_cloths; i++)
-        mesh_free(&run->model->cloths[i].mesh);
+    for (uint32_t i = 0; i < run->model->n_cloths; i++) {
+        struct model_cloth *cloth = run->model->cloths + i;
+        flow_find_low(run->model, i, &cloth->low);
+        mesh_free(&cloth->mesh);
+    }
 }
 
 static void show_step(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations)

@@ -227,6 +227,10 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
 /* Vertices of all cloths together; 0 where a flow only joined and has not run. Local. */
 uint64_t flow_vertices(const struct flow *flow);
 
+/* The triangles of a cloth that are lower at rest than contacts reach; n 0 where nothing meets.
+ * Local. */
+void flow_find_low(const struct model *model, uint32_t cloth, struct mesh_low *low);
+
 /* The start of a run: 3 numbers a vertex, m, in the input's numbering. On rank 0, before the run.
  * Local. */
 void flow_start(const struct flow *flow, double *position);

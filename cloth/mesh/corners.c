@@ -146,6 +146,23 @@ double mesh_length(const struct mesh *mesh, const uint32_t triangle[2], uint32_t
     return triangle[1] == UINT32_MAX ? length[0] : (length[0] + length[1]) / 2;
 }
 
+void mesh_find_low(const struct mesh *mesh, double below, struct mesh_low *low)
+{
+    *low = (struct mesh_low){.height = below, .below = below};
+    for (uint32_t t = 0; t < mesh->n_triangles; t++) {
+        const uint32_t triangle[2] = {t, UINT32_MAX};
+        uint32_t corner[3];
+        double longest = 0;
+        mesh_corners(mesh, t, corner);
+        for (int k = 0; k < 3; k++)
+            longest = fmax(longest, mesh_length(mesh, triangle, corner[k], corner[(k + 1) % 3]));
+        const double height = longest > 0 ? 2 * mesh_triangle_area(mesh, t) / longest : 0;
+        low->n += height < below;
+        low->lowest = height < low->height ? t : low->lowest;
+        low->height = fmin(low->height, height);
+    }
+}
+
 void mesh_lay_beside(const double a[9], const double b[9], double x[3])
 {
     double edge[3], arm[3], other[3], packed[3];

@@ -155,6 +155,12 @@ uint32_t mesh_uv_number(const struct mesh *mesh, uint32_t t, uint32_t vertex);
 /* Its place there, m: a shape at rest from uv may have several places of a vertex. */
 const double *mesh_place(const struct mesh *mesh, uint32_t t, uint32_t vertex);
 double mesh_triangle_area(const struct mesh *mesh, uint32_t t);
+/* The triangles whose least altitude is below a height (m), and the first of the lowest of them. */
+struct mesh_low {
+    uint32_t n, lowest;
+    double height, below; /* m: of that one; the height asked for */
+};
+void mesh_find_low(const struct mesh *mesh, double below, struct mesh_low *low);
 /* The distance of two positions (n x 3), m, and the area of a triangle with these corners, m^2. */
 double mesh_distance(const double *position, uint32_t a, uint32_t b);
 double mesh_area(const double *position, const uint32_t corner[3]);

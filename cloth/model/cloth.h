@@ -206,6 +206,7 @@ struct model_cloth {
     double (*grain)[2];   /* cosine and sine of the angle from u towards v; */
     uint64_t *grain_mask; /* by vertex, which of these have it: mesh_region; NULL: none */
     double weld;          /* m: vertices that lie so near are one, by a weld; 0: none are */
+    struct mesh_low low;  /* triangles that are lower at rest than contacts reach */
     uint32_t n_unjoined;  /* vertices at another's place that are not joined with it */
     double mass_per_vertex; /* kg, replaces density * area where > 0 */
     double velocity[3];     /* at the start, m/s */

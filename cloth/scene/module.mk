@@ -45,7 +45,6 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/region.c \
 	cloth/scene/build/settings.c \
 	cloth/scene/build/seams.c \
-	cloth/scene/build/short.c \
 	cloth/scene/build/seams_file.c \
 	cloth/scene/build/sides.c \
 	cloth/scene/build/start.c \

@@ -16,10 +16,10 @@ static const struct {
              {.whole = scene_build_drape},         {.whole = scene_build_joints},
              {.whole = scene_build_welds},         {.each = scene_build_mesh_weld},
              {.each = scene_build_seams},          {.whole = scene_build_sewn},
-             {.each = scene_build_pieces},         {.each = scene_build_short_edges},
-             {.each = scene_build_folds},          {.each = scene_build_girths},
-             {.each = scene_build_warn_seams},     {.whole = scene_build_unusual},
-             {.whole = scene_build_settings},      {.whole = scene_build_needs}};
+             {.each = scene_build_pieces},         {.each = scene_build_folds},
+             {.each = scene_build_girths},         {.each = scene_build_warn_seams},
+             {.whole = scene_build_unusual},       {.whole = scene_build_settings},
+             {.whole = scene_build_needs}};
 
 static int read_tree(struct scene_tree *tree, uint32_t phase)
 {

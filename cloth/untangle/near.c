@@ -2,6 +2,9 @@
  * an inner cloth, the other goes to the outer side of it. */
 #include "cloth/untangle/state.h"
 
+#include "cloth/base/order.h"
+
+#include <stdlib.h>
 #include <string.h>
 
 struct looking {
@@ -50,10 +53,29 @@ static void push_apart(struct untangle *all, const struct corners *c,
     untangle_add(all, &push);
 }
 
+/* Edges are in the order of their ends. */
+static int near_compare_ends(const void *ends, const void *edge)
+{
+    return cloth_compare_numbers(ends, ((const struct untangle_edge *)edge)->end, 2);
+}
+
 static bool near_pair_meets(const struct untangle *all, const struct corners *c)
 {
     const uint32_t a = all->cloth[c->point[0]], b = all->cloth[c->point[3]];
     return untangle_meets(all, a, b) && !untangle_attached(all, 4, c->point, a > b ? a : b);
+}
+
+/* True if an edge joins the two features: the mesh has them near each other. */
+static bool near_are_joined(const struct untangle *all, const struct corners *c)
+{
+    bool joined = false;
+    for (uint32_t k = 0; k < 4 * c->first && !joined; k++) {
+        const uint32_t a = c->point[k / 4], b = c->point[k % 4];
+        const uint32_t ends[2] = {a < b ? a : b, a < b ? b : a};
+        joined = k % 4 >= c->first &&
+                 bsearch(ends, all->edge, all->n_edges, sizeof *all->edge, near_compare_ends);
+    }
+    return joined;
 }
 
 static void near_look_at(struct untangle *all, const struct corners *c)
@@ -66,7 +88,7 @@ static void near_look_at(struct untangle *all, const struct corners *c)
         tangled = tangled || all->tangled[c->point[k]];
     }
     contact_nearest_of(c->pair, x, &nearest);
-    if (tangled || nearest.gap >= all->open || !near_pair_meets(all, c))
+    if (tangled || nearest.gap >= all->open || !near_pair_meets(all, c) || near_are_joined(all, c))
         return;
     if (!all->count.near++)
         memcpy(all->near, c->point, sizeof all->near);

@@ -147,8 +147,7 @@ ok "one that is longer than an edge is refused" far
 # One vertex of the sheet lies 0.17 mm from another: its neighbours do not push each other apart, as they would over 2 mm.
 awk '$1 == "v" && $2 == 0.5 && $4 == 0.25 { $2 = 0.625 - 0.00017 } 1' one.obj > short.obj
 SHORT='cloths[0].mesh.file=short.obj'
-ok "one short edge is said" says "1 of 108 edges of cloth 'cloth1' is shorter at rest than contact.thickness, 0.002 m; the shortest, between vertices 14 and 33 (counted from 0), has 0.00017 m" \
-    halves.yaml --set "$SHORT" --set "$CERTIFIED"
+ok "triangles with a short edge are counted" says '  low triangles    2 of cloth1, triangle ' halves.yaml --set "$SHORT" --set "$CERTIFIED"
 rests() {
     run halves.yaml --set "$SHORT" --set "$CERTIFIED" --set 'cloths[0].pins=[]' --set 'gravity=[0, 0, 0]' \
         --set 'probes=[{name: p, vertices: [14, 33], values: [position]}]' || return
@@ -162,22 +161,6 @@ alone() { # --check-intersections finds none either
     grep -q 'intersections *none' said
 }
 ok "one that swings goes through nothing" alone
-thick() { # THICKNESS MESH SENTENCE
-    limited "$DUITE_CLOTH" halves.yaml --set "cloths[0].mesh.file=$2" --set "$CERTIFIED" --set "contact.thickness=$1" > said 2>&1
-    test $? = 2 || return
-    cat said
-    grep -qF "$3" said
-}
-ok "short edges of which too many hang together refuse the thickness" thick 0.126 short.obj "the edge between vertices 14 and 33 (counted from 0) is 0.00017 m long at rest, shorter than contact.thickness, 0.126 m, as "
-ribbon() { # CELLS: beside the sheet, 1.5 mm each
-    awk -v n="$1" '1; END { for (i = 0; i <= n; i++) print "v", 2 + i * 0.0015, 0, "0\nv", 2 + i * 0.0015, 0, 0.01
-        for (i = 0; i < n; i++) { a = 46 + 2 * i; print "f", a, a + 1, a + 3; print "f", a, a + 3, a + 2 } }' one.obj > ribbon.obj
-}
-ribbon 5
-ok "those of a short chain do not" says "10 of 129 edges of cloth 'cloth1' are shorter" halves.yaml --set 'cloths[0].mesh.file=ribbon.obj' --set "$CERTIFIED"
-ribbon 6
-ok "those of a longer one do" thick 0.002 ribbon.obj "is 0.0015 m long at rest, shorter than contact.thickness, 0.002 m, as "
-
 same() { # a mesh with all of these, in blocks, on one rank and on two
     set -- halves.yaml --set 'cloths[0].mesh={file: pieces.obj, weld: 1e-5}' --set "$CERTIFIED" --set 'cloths[0].rest=uv' --grain 9
     run "$@" && cp out/cloth.pc2 one.pc2 && ranks 2 "$DUITE_CLOTH" "$@" --quiet --output out --threads 2 && cmp out/cloth.pc2 one.pc2

@@ -149,6 +149,21 @@ static void print_what_ran(FILE *file, const struct summary *summary)
             model->h, report->steps_halved ? " at most" : "", report->simulated_seconds);
 }
 
+/* Features that are so near at rest do not push each other. */
+static void print_low(FILE *file, const struct model *model)
+{
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        const struct model_cloth *cloth = model->cloths + c;
+        if (cloth->low.n)
+            fprintf(file,
+                    "  low triangles    %" PRIu32 " of %.40s, triangle %" PRIu32
+                    " (counted from 0) by %.3g m: what is nearer at rest than %.3g m does not "
+                    "push\n",
+                    cloth->low.n, cloth->name, cloth->low.lowest, cloth->low.height,
+                    cloth->low.below);
+    }
+}
+
 static void print_events(FILE *file, const struct summary *summary)
 {
     const struct flow_report *report = summary->report;
@@ -158,6 +173,7 @@ static void print_events(FILE *file, const struct summary *summary)
     if (model->n_obstacles || model_seeks(model))
         fprintf(file, "  contact          %s%s\n", model_contact_name(model),
                 model->contact.assumed ? ", by default" : "");
+    print_low(file, model);
     if (!isnan(report->rest_seconds))
         fprintf(file, "  at rest          after %g s\n", report->rest_seconds);
     if (report->steps_halved)

@@ -15,6 +15,10 @@
  * slides over less has vertices and triangles that are nearer. */
 static const double RIDGE = 0.05;
 
+/* Part of the distance at rest to the nearest edge: kin that are nearer push. Cloth on its plane
+ * does not contract by as much. */
+static const double CLEAR = 0.5;
+
 /* The state of a query's visits. */
 struct meeting {
     const struct flow *flow;
@@ -25,9 +29,10 @@ struct meeting {
     const uint32_t *fan;      /* of the body (contact_body_opens) */
     const uint32_t *attached; /* by point of the first skin */
     const double *area[2];    /* by point of each skin; of a body NULL */
-    bool leaves_out;          /* see flow_leaves_out */
-    bool sweeps;              /* as the mode does (mode.h), */
-    double reach;             /* m: and reaches */
+    struct flow_skin_kin kin[2];
+    bool leaves_out; /* see flow_leaves_out */
+    bool sweeps;     /* as the mode does (mode.h), */
+    double reach;    /* m: and reaches */
     struct contact_skin skin[2];
     struct contact_side side[2]; /* of a block that meets itself: both */
     struct flow_near *near;
@@ -42,13 +47,15 @@ struct corners {
     uint32_t point[4];
     unsigned char side[4];
     phys_vec x[4], y[4];
-    unsigned held; /* bit k: corner k cannot be cut */
+    unsigned held;    /* bit k: corner k cannot be cut */
+    double thickness; /* m: that keeps them apart */
 };
 
 static void contact_meet_find_corners(const struct meeting *m,
                                       const struct contact_candidate *candidate, struct corners *to)
 {
     to->pair = contact_candidate_corners(m->skin, m->skin + 1, candidate, to->point, to->side);
+    to->thickness = m->model->contact.thickness;
     for (unsigned k = 0; k < 4; k++) {
         const struct contact_side *side = m->side + to->side[k];
         to->x[k] = side->x[to->point[k]];
@@ -115,6 +122,32 @@ static double contact_meet_area(const struct meeting *m, const struct corners *c
     return m->body ? area : 0.5 * area;
 }
 
+/* What is clear at rest around corner k: m if n others from one on are its kin, else INFINITY. */
+static double clear_of(const struct meeting *m, const struct corners *corners, int k, int from,
+                       uint32_t n)
+{
+    const struct flow_skin_kin *kin = m->kin + corners->side[k];
+    uint32_t joined[3];
+    for (uint32_t i = 0; i < n; i++)
+        joined[i] = m->skin[corners->side[from]].joined[corners->point[(uint32_t)from + i]];
+    return flow_kin_has(kin, corners->point[k], n, joined) ? kin->clear[corners->point[k]]
+                                                           : INFINITY;
+}
+
+/* The thickness of kin (kin.c), which are near at rest: they do not push there, nor where cloth
+ * bends, and their certificate asks for as much less. */
+static void contact_meet_thin(const struct meeting *m, struct corners *corners)
+{
+    double clear = INFINITY;
+    if (m->body || (!m->kin[0].n && !m->kin[1].n))
+        return;
+    if (corners->pair == CONTACT_VT)
+        clear = clear_of(m, corners, 0, 1, 3);
+    for (int k = 0; k < 4 && corners->pair == CONTACT_EE; k++)
+        clear = fmin(clear, clear_of(m, corners, k, k < 2 ? 2 : 0, 2));
+    corners->thickness = fmin(fmax(CLEAR * clear, CONTACT_MARGIN), corners->thickness);
+}
+
 /* Fills a contact, in zeroed memory. places: of the corners; they give the row's origin. */
 static void contact_meet_describe_pair(const struct meeting *m,
                                        const struct contact_candidate *candidate,
@@ -130,7 +163,7 @@ static void contact_meet_describe_pair(const struct meeting *m,
     to->at.n = m->body ? to->first : 4;
     to->row.normal = sign * nearest->normal;
     to->row.gap = nearest->gap;
-    to->row.thickness = m->model->contact.thickness;
+    to->row.thickness = corners->thickness;
     to->row.friction = friction_of(m, corners->pair, corners->point, corners->side);
     to->row.solid = m->body != NULL;
     for (int k = 0; k < 2; k++) {
@@ -223,12 +256,13 @@ static bool contact_meet_is_inside(const struct contact_nearest *nearest)
 static bool presses(const struct meeting *m, const struct contact_candidate *candidate,
                     const struct corners *corners, const struct contact_nearest *nearest)
 {
-    if (!(nearest->gap < m->reach))
+    const double part = corners->thickness / m->model->contact.thickness;
+    if (!(nearest->gap < part * m->reach))
         return false;
     if (m->body)
         return presses_body(m, corners, nearest);
     if (candidate->kind != CONTACT_EE)
-        return contact_meet_is_inside(nearest) || nearest->gap < m->model->contact.thickness;
+        return contact_meet_is_inside(nearest) || nearest->gap < corners->thickness;
     return contact_meet_is_inside(nearest) &&
            is_ridge(m, 0, candidate->of[0], &nearest->normal, 1) &&
            is_ridge(m, 1, candidate->of[1], &nearest->normal, -1);
@@ -271,8 +305,8 @@ static void fail_pair(struct meeting *m, const struct contact_candidate *candida
     near.fails = true;
     near.presses = true;
     near.contact.row.firm = contact_row_firm_for(&near.contact.row, gap_ahead(corners, &nearest));
-    (void)contact_cut(corners->pair, corners->x, corners->y, m->model->contact.thickness,
-                      corners->held, part);
+    (void)contact_cut(corners->pair, corners->x, corners->y, corners->thickness, corners->held,
+                      part);
     for (uint32_t k = 0; k < 4; k++)
         near.part[k] = part[(k + contact_meet_is_turned(m, corners)) % 4];
     append_pair(m, &near);
@@ -282,15 +316,18 @@ static enum contact_passing passing_of(const struct meeting *m, const struct cor
 {
     if (!m->sweeps)
         return CONTACT_PASSES;
-    return contact_pass(corners->pair, corners->x, corners->y, m->model->contact.thickness,
-                        m->reach);
+    return contact_pass(corners->pair, corners->x, corners->y, corners->thickness, m->reach);
 }
 
 static void look_at_pair(struct meeting *m, const struct contact_candidate *candidate,
                          struct corners *corners)
 {
     struct contact_nearest nearest;
-    const enum contact_passing passing = passing_of(m, corners);
+    enum contact_passing passing = passing_of(m, corners);
+    if (passing != CONTACT_PASSES_BY)
+        contact_meet_thin(m, corners);
+    if (passing == CONTACT_MAY_TOUCH && corners->thickness < m->model->contact.thickness)
+        passing = passing_of(m, corners);
     if (passing == CONTACT_MAY_TOUCH) {
         fail_pair(m, candidate, corners);
         return;
@@ -361,6 +398,7 @@ static void begin_meeting(const duite_call *call, const struct flow_meet_args *a
                               flow_leaves_out(flow->model, args->side[1] >= flow->tables.n_blocks),
                           .attached = own.attached,
                           .area = {own.area, own.area},
+                          .kin = {own.kin, own.kin},
                           .near = (struct flow_near *)(list + 1),
                           .room = args->room,
                           .counts = counts + (size_t)FLOW_COUNTS * args->number};
@@ -403,6 +441,7 @@ static int meet_body(const duite_call *call, const struct meet_fields *on)
     const struct flow_skin other = flow_skin_open(on->other_skin);
     m.skin[1] = other.skin;
     m.area[1] = other.area;
+    m.kin[1] = other.kin;
     m.side[1] = side_of_points(m.skin + 1, on->other_x, on->other_boxes);
     return duite_resize(call, FLOW_INDEX_OF(meet, near), query_meeting(&m, m.side + 1, on->near));
 }

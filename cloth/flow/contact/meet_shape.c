@@ -15,6 +15,7 @@
 /* Triangles, or vertices, that follow each other and are left out at once where a box around all of
  * them is out of reach. */
 enum { GROUP = 32 };
+enum { APPROACHES = 8 }; /* steps of a search, which seldom takes more than two */
 
 struct meeting {
     const struct flow *flow;
@@ -191,19 +192,42 @@ static void find_vertex(const struct meeting *m, enum contact_end end, const phy
     memcpy(on->weight, (const double[3]){1, 0, 0}, sizeof on->weight);
 }
 
-/* Lists a vertex at the step's end. A vertex that would come too near in the next step is a
- * contact, too. */
+/* True if a vertex comes nearer than a contact reaches within the next step, if it and the shape
+ * move on as in this step. The distance from a convex shape is a convex function of the way, so its
+ * tangent at a place leads to a place that is not behind the first near one. A vertex that passes
+ * beside the shape is no contact: the plane of its nearest point would hold it up. */
+static bool comes_near(const struct meeting *m, const phys_vec *x, const phys_vec *y,
+                       const struct contact_solid_point *on)
+{
+    const phys_vec way = *y - *x - m->h * on->velocity;
+    struct contact_solid_point at = *on;
+    double part = 0;
+    for (int i = 0; i < APPROACHES; i++) {
+        const double lacks = at.gap - m->model->contact.thickness;
+        const double rate = phys_dot(&at.normal, &way);
+        part -= lacks / rate;
+        if (!(rate < 0 && part < 1))
+            return false;
+        const phys_vec place = *y + part * way, triangle[3] = {place, place, place};
+        find_vertex(m, CONTACT_END, triangle, &at);
+        if (at.gap < m->reach)
+            return true;
+    }
+    return true;
+}
+
+/* Lists a vertex at the step's end if it is near, or will be. */
 static void list_vertex(struct meeting *m, uint32_t point, const phys_vec x[3], const phys_vec y[3],
                         struct flow_near *near)
 {
     struct contact_solid_point on;
     find_vertex(m, CONTACT_END, y, &on);
-    const double ahead = gap_of_place_ahead(m, x, y, &on);
-    if (!(on.gap < m->reach) && !(ahead < m->model->contact.thickness))
+    if (!(on.gap < m->reach) && !comes_near(m, x, y, &on))
         return;
     describe_place(m, 1, &point, y, &on, near);
     if (on.gap > m->model->contact.thickness)
-        near->contact.row.firm = contact_row_firm_for(&near->contact.row, ahead);
+        near->contact.row.firm =
+            contact_row_firm_for(&near->contact.row, gap_of_place_ahead(m, x, y, &on));
     append_place(m, near);
 }
 

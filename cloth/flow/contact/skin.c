@@ -3,6 +3,7 @@
  * moves as the mean of the points does, added up in their order. */
 #include "cloth/flow/contact/skin.h"
 
+#include "cloth/base/order.h"
 #include "cloth/flow/state/bodies.h"
 #include "cloth/flow/state/room.h"
 
@@ -14,7 +15,7 @@ struct contact_skin flow_skin_counts(const struct flow_table *table)
                                  .n_vertices = table->skin.n_vertices};
 }
 
-static size_t lay_skin(const struct contact_skin *skin, void *memory,
+static size_t lay_skin(const struct contact_skin *skin, uint32_t n_kin, void *memory,
                        struct flow_skin_arrays *arrays)
 {
     struct flow_room room = {.base = memory};
@@ -23,6 +24,9 @@ static size_t lay_skin(const struct contact_skin *skin, void *memory,
     arrays->at = flow_room_next(&room, skin->n_points * sizeof *arrays->at);
     arrays->attached = flow_room_next(&room, skin->n_points * sizeof *arrays->attached);
     arrays->area = flow_room_next(&room, skin->n_points * sizeof *arrays->area);
+    arrays->clear = flow_room_next(&room, skin->n_points * sizeof *arrays->clear);
+    arrays->kin_end = flow_room_next(&room, skin->n_points * sizeof *arrays->kin_end);
+    arrays->kin = flow_room_next(&room, n_kin * sizeof *arrays->kin);
     return room.used;
 }
 
@@ -30,14 +34,14 @@ size_t flow_skin_bytes(const struct flow_table *table)
 {
     const struct contact_skin skin = flow_skin_counts(table);
     struct flow_skin_arrays arrays;
-    return lay_skin(&skin, NULL, &arrays);
+    return lay_skin(&skin, table->skin.n_kin, NULL, &arrays);
 }
 
 struct flow_skin_arrays flow_skin_places(const struct flow_table *table, void *memory)
 {
     const struct contact_skin skin = flow_skin_counts(table);
     struct flow_skin_arrays arrays;
-    lay_skin(&skin, memory, &arrays);
+    lay_skin(&skin, table->skin.n_kin, memory, &arrays);
     return arrays;
 }
 
@@ -45,12 +49,28 @@ struct flow_skin flow_skin_open(const void *memory)
 {
     struct flow_skin skin = {.skin = contact_skin_open(memory)};
     struct flow_skin_arrays arrays;
-    lay_skin(&skin.skin, (void *)memory, &arrays); /* it is only read */
+    lay_skin(&skin.skin, 0, (void *)memory, &arrays); /* it is only read; kin are the last */
     skin.from = arrays.from;
     skin.at = arrays.at;
     skin.attached = arrays.attached;
     skin.area = arrays.area;
+    skin.kin =
+        (struct flow_skin_kin){.end = arrays.kin_end, .of = arrays.kin, .clear = arrays.clear};
+    skin.kin.n = skin.skin.n_points ? skin.kin.end[skin.skin.n_points - 1] : 0;
     return skin;
+}
+
+bool flow_kin_has(const struct flow_skin_kin *kin, uint32_t point, uint32_t n,
+                  const uint32_t *joined)
+{
+    const uint32_t first = kin->n && point ? kin->end[point - 1] : 0;
+    const uint32_t some = kin->n ? kin->end[point] - first : 0;
+    bool has = some > 0;
+    for (uint32_t k = 0; k < n && has; k++) {
+        const uint32_t at = cloth_first_from(kin->of + first, 1, some, joined[k]);
+        has = at < some && kin->of[first + at] == joined[k];
+    }
+    return has;
 }
 
 /* ---- In a step ---- */

@@ -4,6 +4,14 @@
 #include "cloth/contact/skin.h"
 #include "cloth/flow/state/tables.h"
 
+/* The kin of the points of a skin (struct flow_kin): numbers `joined`, ascending. */
+struct flow_skin_kin {
+    uint32_t n;          /* of all points; 0: no point has any, and the rest is undefined */
+    const uint32_t *end; /* n_points: where those of a point end and those of the next one begin */
+    const uint32_t *of;
+    const double *clear; /* n_points: m, as of struct flow_kin */
+};
+
 /* The skin of a block, the field `skin`: its contact_skin, with which the object begins, and the
  * places of its points. A triangle of the whole cloth belongs to the block of its corner with the
  * lowest place; ids are places. Points are in the order of their places, so the block's own rows
@@ -15,7 +23,12 @@ struct flow_skin {
     const uint32_t *at; /* n_points: place in its halo; row */
     const uint32_t *attached; /* n_points: the obstacle, from 1, that its pin follows, or 0 */
     const double *area;       /* n_points: of the cloth there at rest, m^2 */
+    struct flow_skin_kin kin;
 };
+
+/* True if all of n numbers `joined` are kin of a point. Local. */
+bool flow_kin_has(const struct flow_skin_kin *kin, uint32_t point, uint32_t n,
+                  const uint32_t *joined);
 
 /* Bytes of the object, which follow of the block's shape. */
 size_t flow_skin_bytes(const struct flow_table *table);
@@ -25,8 +38,8 @@ struct flow_skin flow_skin_open(const void *memory);
 
 /* Arrays that do not change in a run, to be written. from, at: as above. */
 struct flow_skin_arrays {
-    uint32_t *from, *at, *attached;
-    double *area;
+    uint32_t *from, *at, *attached, *kin_end, *kin;
+    double *area, *clear;
 };
 struct flow_skin_arrays flow_skin_places(const struct flow_table *table, void *memory);
 

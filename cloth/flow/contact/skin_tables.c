@@ -156,6 +156,26 @@ static void skin_tables_find_cloths(const struct flow_source *source, uint32_t n
     }
 }
 
+/* The kin of points, one after the other, and what is clear around each; arrays: NULL, to count.
+ * Returns how many they are. */
+static uint32_t skin_tables_list_kin(const struct flow_source *source, uint32_t n,
+                                     const uint32_t *place, const struct flow_skin_arrays *arrays)
+{
+    const struct flow_skins *skins = &source->skins;
+    uint32_t to = 0;
+    for (uint32_t i = 0; i < n && skins->kin.start; i++) {
+        const uint32_t root = skins->joined ? skins->joined[place[i]] : place[i];
+        const uint32_t first = skins->kin.start[root], some = skins->kin.start[root + 1] - first;
+        if (arrays) {
+            arrays->clear[i] = skins->kin.clear[root];
+            memcpy(arrays->kin + to, skins->kin.of + first, some * sizeof *arrays->kin);
+            arrays->kin_end[i] = to + some;
+        }
+        to += some;
+    }
+    return to;
+}
+
 static int count_skins(struct flow_source *source, struct cloth_error *error)
 {
     const struct flow_skins *skins = &source->skins;
@@ -171,6 +191,7 @@ static int count_skins(struct flow_source *source, struct cloth_error *error)
         struct flow_skin_size *size = &source->shape[b].skin;
         size->n_triangles = skins->start[b + 1] - skins->start[b];
         size->n_points = find_points(source, b, place);
+        size->n_kin = skin_tables_list_kin(source, size->n_points, place, NULL);
         skin_tables_find_cloths(source, size->n_points, place, size->cloth);
         for (uint32_t i = skins->start[b]; i < skins->start[b + 1]; i++) {
             size->n_vertices += (uint32_t)__builtin_popcount(skins->stands[i] & 7u);
@@ -235,6 +256,8 @@ int flow_skins_make(struct flow_source *source, struct cloth_error *error)
         code = skin_tables_list_triangles(source, n, error);
     if (!code)
         code = mark_features(source, n, error);
+    if (!code)
+        code = flow_kin_make(source, n, error);
     return code ? code : count_skins(source, error);
 }
 
@@ -246,6 +269,7 @@ void flow_skins_free(struct flow_skins *skins)
     free(skins->shared);
     free(skins->joined);
     free(skins->area);
+    flow_kin_free(&skins->kin);
     *skins = (struct flow_skins){0};
 }
 
@@ -352,6 +376,7 @@ int flow_source_skin(const struct flow_source *source, uint32_t block, void *mem
     find_points(source, block, making.place);
     skin_tables_fill_corners(&making, block);
     fill_points(&making, &arrays);
+    skin_tables_list_kin(source, t->skin.n_points, making.place, &arrays);
     const struct contact_skin_source from = {
         .n_points = t->skin.n_points,
         .n_triangles = t->skin.n_triangles,

@@ -195,8 +195,7 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
     *source = (struct flow_source){.model = model};
     const struct flow_welds *welds = &source->particles.welds;
     const bool seeks = model_seeks(model);
-    int code = seeks ? flow_thickness_check(model, error) : CLOTH_OK;
-    code = code ? code : flow_particles_make(&source->particles, model, error);
+    int code = flow_particles_make(&source->particles, model, error);
     code = code ? code : element_cloths_make(&source->elements, model, error);
     code = code ? code : flow_welds_check(welds, &source->elements, error);
     code = code ? code : flow_seams_make(&source->elements, welds, error);

@@ -291,6 +291,15 @@ struct flow_watched {
     struct cloth_pool memory;
 };
 
+/* What is so near to a place at rest, along the cloth, that it would be a contact (contact/kin.c).
+ * Places that pulled seams join are one of them: `joined` of struct flow_skins. */
+struct flow_kin {
+    uint32_t *start; /* by place, and one more; NULL: triangles are so high that there is none */
+    uint32_t *of;    /* corners of triangles that are so near, ascending from start[place] */
+    double *clear;   /* by place: the distance at rest to the nearest edge that does not end there,
+                      * m; INFINITY: there is none in reach */
+};
+
 /* The triangles of skins (contact/skin_tables.c), block after block: numbers among those of all
  * cloths. */
 struct flow_skins {
@@ -302,6 +311,7 @@ struct flow_skins {
     uint32_t
         *joined;  /* by place: one of those that pulled seams join it with; NULL: there are none */
     double *area; /* by place: a third of its triangles' areas at rest, m^2 */
+    struct flow_kin kin;
 };
 
 /* The sides of a block's springs, while its table is due. */
@@ -363,6 +373,11 @@ void flow_skins_free(struct flow_skins *skins);
 int flow_source_skin(const struct flow_source *source, uint32_t block, void *memory,
                      struct cloth_error *error);
 
+/* Finds the kin of all places, when the rest of the skins is there. Errors: CLOTH_E_INPUT where the
+ * mesh is far too fine for the thickness; CLOTH_E_MEMORY. Local. */
+int flow_kin_make(struct flow_source *source, uint32_t n_triangles, struct cloth_error *error);
+void flow_kin_free(struct flow_kin *kin);
+
 /* Finds the neighbours, and the numbers of rows in halos (source->halo), when blocks and springs
  * are there. Adds both to the shapes. Error: CLOTH_E_MEMORY. Local. */
 int flow_source_meet(struct flow_source *source, struct cloth_error *error);
@@ -388,10 +403,6 @@ int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
                     struct cloth_error *error);
 /* The longest step, s, in which an integrator does not let it grow; infinite for implicit ones. */
 double flow_limit_of(const struct flow_limit *limit, enum model_integrator integrator);
-
-/* Checks a model with certified contact: no triangle may have an edge that is shorter at rest than
- * the thickness. Error: CLOTH_E_INPUT. Local. */
-int flow_thickness_check(const struct model *model, struct cloth_error *error);
 
 /* The scale of residuals, kg m^2: the mass of all vertices that no pin holds times the square of
  * the mean rest length of stretchable edges; 0 without these. Local. */

@@ -19,6 +19,7 @@
 /* The counts of a block's skin (contact/skin.h). */
 struct flow_skin_size {
     uint32_t n_points, n_triangles, n_edges, n_vertices;
+    uint32_t n_kin;    /* of all points (flow_kin of run/source.h) */
     uint32_t cloth[2]; /* its points are of these cloths and some between them */
 };
 

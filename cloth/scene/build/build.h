@@ -37,11 +37,10 @@ scene_build_step scene_build_contact_idle;
 scene_build_step scene_build_probes, scene_build_hdf5, scene_build_drape;
 
 /* Joints and welds; those of mesh.weld; those of seams, and all vertices that seams make meet as
- * one; a warning of unjoined vertices at one place; edges that are shorter than contact.thickness;
- * folds of sewn cloths. */
+ * one; a warning of unjoined vertices at one place; folds of sewn cloths. */
 scene_build_step scene_build_joints, scene_build_welds, scene_build_sewn;
 scene_build_cloth_step scene_build_mesh_weld, scene_build_seams, scene_build_pieces;
-scene_build_cloth_step scene_build_short_edges, scene_build_folds;
+scene_build_cloth_step scene_build_folds;
 
 /* Warnings: sewn cloths that are too small for a body, where it starts at rest; seams of one cloth
  * that cross where it starts; values that are hardly ever meant; keys that do nothing, after all

@@ -562,6 +562,20 @@ int duite_get(duite *rt, duite_object object, void *values);
  * duite_get; DUITE_E_ARGUMENT also if there is no such rank. */
 int duite_get_at(duite *rt, duite_object object, int rank, void *values);
 
+/* The main program's own turn on an object, in the order of the forks, without a copy: on the
+ * object's home (duite_home) *data points to its value, which the program may read (DUITE_R),
+ * overwrite (DUITE_W, whose bytes are unspecified at first) or change (DUITE_RW) until it releases
+ * the object; on other ranks *data is NULL. Returns on the home when the value is there; later
+ * forks on the object wait for the release. Several objects may be acquired, if none of them waits
+ * for another. Meanwhile tasks may be forked, but calls that wait (duite_get, duite_wait,
+ * duite_stop and their like) are DUITE_E_STATE. A poisoned value returns its code on the home
+ * alone, with *data NULL; the object is to be released all the same. A value whose size changes has
+ * its maximum after DUITE_W. Collective. Errors: that of the failed task, DUITE_E_OBJECT,
+ * DUITE_E_ARGUMENT (another mode, nowhere to put the data), DUITE_E_STATE (acquired already, or not
+ * acquired), DUITE_E_MEMORY. */
+int duite_acquire(duite *rt, duite_object object, duite_mode mode, void **data);
+int duite_release(duite *rt, duite_object object);
+
 /* Tells mappings about the object: its share of work, and the bytes it exchanges with n existing
  * neighbours (edge_weights NULL: 1 each). An edge may be given from either end; weights given twice
  * add up. A second hint replaces the weight and adds edges. Hints count until the object's home is

@@ -7,7 +7,7 @@ dist_man_MANS += runtime/duite.3
 man_MANS += $(RUNTIME_PAGES)
 # A page for each function, macro and type of the headers; tests/documents.sh compares.
 RUNTIME_PAGES = \
-	runtime/man/duite_abandon.3 runtime/man/DUITE_ARGS.3 runtime/man/duite_balancer.3 runtime/man/duite_balancer_find.3 \
+	runtime/man/duite_abandon.3 runtime/man/duite_acquire.3 runtime/man/duite_release.3 runtime/man/DUITE_ARGS.3 runtime/man/duite_balancer.3 runtime/man/duite_balancer_find.3 \
 	runtime/man/duite_balancer_names.3 runtime/man/duite_blocks.3 runtime/man/duite_body.3 runtime/man/duite_build.3 \
 	runtime/man/duite_call.3 runtime/man/duite_code.3 runtime/man/duite_code_text.3 runtime/man/duite_colocate.3 \
 	runtime/man/duite_contribute.3 runtime/man/duite_cores.3 runtime/man/duite_count.3 runtime/man/duite_count_all.3 runtime/man/duite_count_sized.3 \

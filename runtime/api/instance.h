@@ -39,6 +39,7 @@ struct duite {
     char message[1024]; /* of `remembered` */
     struct recorded_graph *recorded; /* by slot, from 1 on */
     size_t n_recorded, recorded_capacity;
+    struct api_turn *turns;       /* objects that the program has acquired, the last one first */
     struct plan_record *building; /* the one that build forks into, or NULL */
     uint64_t graphs_recorded;
     struct instance_migration {
@@ -68,6 +69,17 @@ int api_agree_on_code(MPI_Comm mpi, int code);
  * all succeed, or all fail. Errors: those of the ranks; DUITE_E_DIFFERENT, which names the
  * difference and the ranks. */
 int api_agree_at_start(duite *rt, const duite_options *options, int code);
+
+/* ---- acquire.c ---- */
+
+/* The program's kernels with those of the runtime; to be freed. NULL without memory. */
+const duite_kernel **api_add_kernels(const duite_kernel *const *kernels);
+
+/* Releases all that the program has acquired. */
+void api_release_all(duite *rt);
+
+/* DUITE_E_STATE if the program has acquired an object, since `call` may then wait for itself. */
+int api_check_turns(const duite *rt, const char *call);
 
 /* ---- options.c ---- */
 

@@ -83,8 +83,11 @@ static int instance_start_graph(duite *rt, const duite_options *options)
     rt->window = options->window;
     static const duite_kernel *const none[] = {NULL};
     int code = api_check_options_rest(options);
-    int started = task_graph_start(&rt->graph, rank, n, code ? none : options->kernels,
-                                   code ? NULL : options->laws);
+    const duite_kernel **kernels = api_add_kernels(code ? none : options->kernels);
+    int started = !kernels
+                      ? base_no_memory("the list of kernels")
+                      : task_graph_start(&rt->graph, rank, n, kernels, code ? NULL : options->laws);
+    base_free(kernels);
     if (!code)
         code = started;
     if (!code && options->check)
@@ -203,6 +206,7 @@ void api_give_up(duite *rt)
 {
     if (atomic_exchange(&rt->graph.given_up, 1))
         return;
+    api_release_all(rt);
     if (rt->comm && rt->graph.broken)
         comm_break(rt->comm, rt->graph.broken, duite_message());
     if (rt->comm)
@@ -300,6 +304,8 @@ int duite_stop(duite **out)
     duite *rt = *out;
     if (!work_may_fork(rt->pool))
         return base_error(DUITE_E_STATE, "duite_stop is for the main thread, outside of bodies");
+    if (rt->turns && !api_is_broken(rt))
+        return api_check_turns(rt, "duite_stop");
     if (rt->building || rt->mpi_held)
         return base_error(DUITE_E_STATE, "duite_stop: not %s",
                           rt->building ? "while a graph is recorded"

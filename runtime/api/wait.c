@@ -108,6 +108,8 @@ static int get_and_recall(duite *rt, duite_object object, int rank, void *values
                           const char *call)
 {
     int code = api_enter(rt, call);
+    if (!code)
+        code = api_check_turns(rt, call);
     if (code)
         return code;
     const uint64_t from = rt->trace ? base_ticks() : 0;
@@ -163,7 +165,9 @@ static struct comm_word wait_last_word(const duite *rt)
 static int wait_for_own_tasks(duite *rt, const char *call)
 {
     work_tick(rt->pool);
-    int code = wait_enter(rt, "duite_wait", call);
+    int code = api_check_turns(rt, call);
+    if (!code)
+        code = wait_enter(rt, "duite_wait", call);
     if (code)
         return code;
     comm_waits(rt->comm, true);

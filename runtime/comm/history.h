@@ -35,6 +35,7 @@ enum comm_call_kind {
     ROW(GET_COUNT, "duite_get_count")                                                              \
     ROW(WAIT, "duite_wait")                                                                        \
     ROW(STOP, "duite_stop")                                                                        \
+    ROW(ACQUIRE, "duite_acquire")                                                                  \
     ROW(COUNT_ALL, "duite_count_all")
 #define COMM_FUNCTION_VALUE(value, name) COMM_CALLED_##value,
 enum comm_function { COMM_FUNCTIONS(COMM_FUNCTION_VALUE) COMM_N_CALLED };

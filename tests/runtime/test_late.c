@@ -21,7 +21,7 @@ static const duite_kernel ADD = {
 /* What it calls. `found` is cleared by what is missing. */
 struct late {
     bool found;
-    __typeof__(&duite_options_default) options_default;
+    __typeof__(&duite_options_set) options_set;
     __typeof__(&duite_start) start;
     __typeof__(&duite_new) new;
     __typeof__(&duite_fork) fork;
@@ -41,7 +41,7 @@ static void late_find(struct late *late, void *library, const char *name, void *
 static struct late late_load(void *library)
 {
     struct late late = {.found = true};
-    late_find(&late, library, "duite_options_default", &late.options_default);
+    late_find(&late, library, "duite_options_set", &late.options_set);
     late_find(&late, library, "duite_start", &late.start);
     late_find(&late, library, "duite_new", &late.new);
     late_find(&late, library, "duite_fork", &late.fork);
@@ -58,7 +58,8 @@ UNIT_TEST(runs)
     ck_assert_msg(library != NULL, "%s", library ? "" : dlerror());
     const struct late late = late_load(library);
     ck_assert(late.found);
-    duite_options options = late.options_default();
+    duite_options options;
+    ck_assert_int_eq(late.options_set(&options, sizeof options), DUITE_OK);
     options.kernels = kernels;
     options.threads = 2;
     duite *rt;

@@ -125,7 +125,7 @@ UNIT_TEST(types_and_sizes)
 
     refused(duite_new(rt, (duite_type)0, 1, &object), DUITE_E_ARGUMENT);
     ck_assert(object.slot == 0 && object.generation == 0);
-    refused(duite_new(rt, (duite_type)6, 1, &object), DUITE_E_ARGUMENT);
+    refused(duite_new(rt, (duite_type)(DUITE_CF64 + 1), 1, &object), DUITE_E_ARGUMENT);
     refused(duite_new(rt, DUITE_F64, 0, &object), DUITE_E_ARGUMENT);
     refused(duite_new(rt, DUITE_F64, SIZE_MAX / 8 + 2, &object), DUITE_E_ARGUMENT);
     refused(duite_new(rt, DUITE_BYTE, SIZE_MAX, &object), DUITE_E_ARGUMENT);

@@ -102,11 +102,11 @@ static void refused_by(const duite_kernel *kernel, size_t n, const duite_object 
 UNIT_TEST(another_type)
 {
     static const duite_kernel *const KERNELS[] = {&BY_DOUBLES, &BY_BYTES, &BY_SUM, NULL};
-    duite_object object[DUITE_F64 + 1], read;
+    duite_object object[DUITE_CF64 + 1], read;
 
     ck_assert_int_eq(start(KERNELS, (const duite_law *[]){&DOUBLES, &BYTES, NULL}), DUITE_OK);
     duite_new(rt, DUITE_I32, 1, &read);
-    for (duite_type type = DUITE_BYTE; type <= DUITE_F64; type++) {
+    for (duite_type type = DUITE_BYTE; type <= DUITE_CF64; type++) {
         ck_assert_int_eq(duite_new(rt, type, 1, &object[type]), DUITE_OK);
         const duite_object two[] = {read, object[type]};
 
@@ -125,7 +125,7 @@ UNIT_TEST(another_type)
             refused_by(&BY_SUM, 1, &object[type],
                        "law sum is for numbers, and object 2.1 has bytes");
     }
-    for (duite_type type = DUITE_BYTE; type <= DUITE_F64; type++)
+    for (duite_type type = DUITE_BYTE; type <= DUITE_CF64; type++)
         duite_free(rt, object[type]);
     duite_free(rt, read);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);

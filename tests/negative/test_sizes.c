@@ -118,7 +118,7 @@ UNIT_TEST(making)
     makes(DUITE_I32, 11, 10, DUITE_E_ARGUMENT, "11 elements are more than 10 at most");
     makes(DUITE_I32, 0, 0, DUITE_E_ARGUMENT, "at least one element");
     makes(DUITE_F64, 1, SIZE_MAX / 2, DUITE_E_ARGUMENT, "are more than");
-    makes((duite_type)9, 1, 2, DUITE_E_ARGUMENT, "no element type");
+    makes((duite_type)(DUITE_CF64 + 1), 1, 2, DUITE_E_ARGUMENT, "no element type");
     refused(duite_new_sized(rt, DUITE_I32, 1, 1, NULL), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_new_sized(NULL, DUITE_I32, 1, 1, NULL), DUITE_E_ARGUMENT);
 }

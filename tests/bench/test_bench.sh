@@ -151,7 +151,7 @@ exits 2 "an unknown option" tasks --fast
 exits 2 "a number that is none" says "--repeats many" tasks --repeats many
 exits 2 "an unknown scheduler" says "there is no scheduler" tasks --scheduler none
 exits 2 "no bench" says "which bench" "$bench"
-readme() { BENCH=$bench sh "${srcdir:-.}/bench/readme" --list; }
+readme() { BENCH=$bench sh "${srcdir:-.}/bench/readme.sh" --list; }
 ok "each row of the table in README has its case" readme
 ok "help" says "first and third quartile" "$bench" --help
 exits 1 "a file that cannot be written" says "cannot be written" tasks --only wake --json "$scratch/none/json"

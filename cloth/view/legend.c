@@ -41,7 +41,8 @@ double view_letters_width(cairo_t *cairo, const char *text)
     return extents.x_advance;
 }
 
-void view_letters_to(cairo_t *cairo, double x, double y, const char *text)
+/* Writes up to x. */
+static void view_letters_to(cairo_t *cairo, double x, double y, const char *text)
 {
     view_letters_from(cairo, x - view_letters_width(cairo, text), y, text);
 }

@@ -28,9 +28,8 @@ void view_legend_paint(const struct view_legend *legend, struct _cairo *cairo, i
                        int height);
 /* Letters of a size, pixels: white on a dark rim, so that they are read on any ground. */
 void view_letters(struct _cairo *cairo, double size);
-/* Writes from x on, or up to it; y: the base line. */
+/* Writes from x on; y: the base line. */
 void view_letters_from(struct _cairo *cairo, double x, double y, const char *text);
-void view_letters_to(struct _cairo *cairo, double x, double y, const char *text);
 /* Pixels that a text is wide. */
 double view_letters_width(struct _cairo *cairo, const char *text);
 

@@ -8,8 +8,8 @@
  *   struct flow_saved     the main program's state
  *   arrays of it          of ties: rooms, first, other, place; of meetings: struct flow_saved_side;
  *                         of each block how many contacts it keeps at most
- *   of each block         the objects of FLOW_EACH_SAVED, in that order: a uint64_t with how many
- *                         bytes, then these, up to a multiple of 8
+ *   of each block         its fields that are state, in the order of their table: a uint64_t with
+ *                         how many bytes, then these, up to a multiple of 8
  *   at last               those of the run, alike
  *
  * Blocks do not depend on ranks, so a checkpoint does not either. */
@@ -59,7 +59,7 @@ bool flow_saved_are_contacts(const struct flow *flow, uint32_t block, const unsi
 uint64_t flow_saved_layout(const struct model *model);
 
 /* Puts the objects of a block that a checkpoint has into `refs`, in their order; block n_blocks:
- * those of the run. Returns how many. There is room for FLOW_FIELDS_OF_ALL + 1. Local. */
+ * those of the run. Returns how many. There is room for FLOW_FIELDS_OF_ALL. Local. */
 size_t flow_saved_objects(const struct flow_state *state, uint32_t block, duite_object *refs);
 
 /* Bytes of a number of an object. */

@@ -207,7 +207,7 @@ static void skip(const struct flow_state *state, size_t n, struct load_args *arg
 static void load_all(struct flow_state *state)
 {
     const uint32_t n_blocks = state->flow->tables.n_blocks;
-    duite_object refs[FLOW_MAX_PARAMETERS + FLOW_FIELDS_OF_ALL + 1];
+    duite_object refs[FLOW_MAX_PARAMETERS + FLOW_FIELDS_OF_ALL];
     duite_object *rest = refs + FLOW_MAX_PARAMETERS;
     struct load_args args = {.at = state->head.resumed_bytes};
     for (uint32_t b = 0; b <= n_blocks && !state->code; b++) {

@@ -130,7 +130,7 @@ static void begin_saving(struct flow_state *state, bool finished)
 int flow_save(struct flow_state *state, bool finished)
 {
     const uint32_t n_blocks = state->flow->tables.n_blocks;
-    duite_object refs[FLOW_MAX_PARAMETERS + FLOW_FIELDS_OF_ALL + 1];
+    duite_object refs[FLOW_MAX_PARAMETERS + FLOW_FIELDS_OF_ALL];
     duite_object *rest = refs + FLOW_MAX_PARAMETERS;
     int64_t token;
     if (!state->output || !state->output->save)

@@ -171,9 +171,10 @@ double curve_turning(const struct curve *curve)
     return sum;
 }
 
-/* Half the integral of x dy - y dx along the curve: of a Bezier curve Gauss and Legendre's rule is
+/* Half the integral of x dy - y dx along the curve, m^2: those of a counterclockwise loop are its
+ * area. Of a Bezier curve Gauss and Legendre's rule is
  * exact, an arc has its circle's segment beside the chord. */
-double curve_area(const struct curve *curve)
+static double curve_area(const struct curve *curve)
 {
     const double *a = curve->point[0], *b = curve->point[3];
     double sum = 0;

@@ -27,9 +27,6 @@ void curve_at_length(const struct curve *curve, double part, double place[2]);
 /* How much it turns in all, radians; by CURVE_PARTS chords. */
 double curve_turning(const struct curve *curve);
 
-/* Half the integral of x dy - y dx along it, m^2: those of a counterclockwise loop are its area. */
-double curve_area(const struct curve *curve);
-
 /* A closed loop of places that is divided into edges: edge e goes from place start[e] to place
  * start[e + 1], the last one to the first place. */
 struct meet_loop {

@@ -89,7 +89,7 @@ static int read_edge(const struct pattern_reader *reader, struct garment_panel *
     return read_curve(reader, panel, edge, value[EDGE_CURVATURE]);
 }
 
-int pattern_read_edges(struct pattern_reader *reader, struct garment_panel *panel, int node)
+static int pattern_read_edges(struct pattern_reader *reader, struct garment_panel *panel, int node)
 {
     int code = pattern_list(reader, node, "edges", 0, EDGES);
     if (code)

@@ -51,7 +51,6 @@ int pattern_word(const struct pattern_reader *reader, int node, const char *what
 
 /* The parts of the file. */
 int pattern_read_panels(struct pattern_reader *reader, int node);
-int pattern_read_edges(struct pattern_reader *reader, struct garment_panel *panel, int node);
 
 /* The name of a panel from a node, as patterns keep it: to be freed; NULL after an error. */
 char *pattern_name(const struct pattern_reader *reader, int node);

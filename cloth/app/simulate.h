@@ -19,7 +19,7 @@ enum {
  * becomes an error of the write, instead of ending the process. Local. */
 void simulate_block_signals(void);
 
-/* Lets SIGUSR1 and SIGTERM, on any rank, end a run from now on. It finishes its step, writes a
+/* Lets SIGUSR1 and SIGTERM, on any rank, end a run from now on. It ends its step, writes a
  * checkpoint if asked for and a frame of the state after the step, and stops. While files are read
  * and the scene is built the process ends at once. Returns 0, or -1: no thread. Local. */
 int simulate_catch_signals(void);

@@ -77,6 +77,7 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/contact/skin.c \
     cloth/flow/contact/skin.h \
     cloth/flow/contact/skin_tables.c \
+    cloth/flow/contact/stop.c \
     cloth/flow/contact/touch.c \
     cloth/flow/integrators/explicit.c \
     cloth/flow/integrators/implicit.c \

@@ -7,6 +7,7 @@
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/mode.h"
 #include "cloth/flow/contact/skin.h"
+#include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/run/step.h"
 #include "cloth/flow/state/room.h"
@@ -230,7 +231,9 @@ static int begin_certified(struct flow_state *state)
     state->contact.attempt++;
     state->contact.cut_momentum = 0;
     state->contact.iterations = state->contact.restarts = 0;
-    const int code = flow_skins_keep(state);
+    int code = flow_contact_stop_keep(state);
+    if (!code)
+        code = flow_skins_keep(state);
     return code ? code : flow_contact_tie(state);
 }
 
@@ -263,7 +266,8 @@ static int cut_failing(struct flow_state *state, struct flow_seen *seen)
     for (int round = 0; round < MAX_CUTS && seen->fails && !code; round++) {
         struct flow_cut cut;
         code = flow_contact_cut(state, &cut);
-        if (code || !cut.rows)
+        state->contact.stopped = cut.stops;
+        if (code || !cut.rows || cut.stops)
             break;
         report->contact_cuts += cut.rows;
         state->contact.cut_momentum += cut.momentum;
@@ -275,7 +279,8 @@ static int cut_failing(struct flow_state *state, struct flow_seen *seen)
         code = look_at_step(state, true, false, seen);
     }
     state->contact.failed = state->contact.failed || seen->fails;
-    return !code && seen->fails ? note_failing(state, seen->fails) : code;
+    return !code && seen->fails && !state->contact.stopped ? note_failing(state, seen->fails)
+                                                           : code;
 }
 
 /* True if the step's solve succeeded. */
@@ -292,6 +297,7 @@ static int settle_certified(struct flow_state *state)
     int code = DUITE_OK;
     for (int solve = 1; !code; solve++) {
         code = duite_get(state->rt, state->run.status[parity], status);
+        flow_implicit_status(state, status);
         if (code || !is_solved(status))
             return code;
         code = look_at_step(state, solve > 1, !flow_attempt_is_last(state), &seen);
@@ -301,6 +307,9 @@ static int settle_certified(struct flow_state *state)
         }
         if (code || solve == MAX_SOLVES || !((double)seen.fails > FEW * (double)seen.contacts))
             break;
+        state->contact.stopped = status[FLOW_STOP] > 0;
+        if (state->contact.stopped)
+            return DUITE_OK;
         code = make_again(state, status);
     }
     if (!code && seen.fails)
@@ -308,7 +317,8 @@ static int settle_certified(struct flow_state *state)
     if (seen.contacts > state->report->contacts)
         state->report->contacts = seen.contacts;
     state->contact.near = seen.contacts;
-    return code || state->contact.failed ? code : flow_contact_accept(state);
+    return code || state->contact.failed || state->contact.stopped ? code
+                                                                   : flow_contact_accept(state);
 }
 
 static void add_solves(const struct flow_state *state, double status[FLOW_STATUS])

@@ -11,7 +11,7 @@
  * the task of two sides: it certifies pairs that may touch and lists near ones. touch.c makes the
  * contacts of a block from these lists; they are state. index.c lists contacts by the blocks of
  * their corners. rows.c brings contacts to the blocks that have their corners, and into the system
- * of the step. cut.c cuts ways.
+ * of the step. cut.c cuts ways. stop.c gives a step up.
  *
  * A side is a block of cloth or an obstacle. Sides have numbers: blocks, then obstacles. */
 
@@ -165,6 +165,7 @@ int flow_contact_tie(struct flow_state *state);
 struct flow_cut {
     uint64_t rows, halved; /* that were cut; by more than half of a way that counts */
     uint64_t run;          /* most steps in a row that one of them was cut in, with this one */
+    bool stops;            /* a rank is asked to stop */
     double momentum;       /* kg m/s: that the cloth lost or gained */
 };
 int flow_contact_cut(struct flow_state *state, struct flow_cut *cut);

@@ -65,6 +65,7 @@ static int cut_body(const duite_call *call, const struct cut_fields *on)
     double *part = malloc((table.n + 1) * sizeof *part);
     if (!part)
         return duite_fail(call, FLOW_NO_MEMORY, "out of memory for the ways of a block");
+    on->cut_counts[FLOW_CUT_STOP] += flow_stop_is_asked(flow_of(call));
     for (uint32_t i = 0; i < table.n; i++)
         part[i] = 1;
     contact_cut_find_parts(on, part);
@@ -105,8 +106,11 @@ int flow_contact_cut(struct flow_state *state, struct flow_cut *cut)
     const double *p = counts + FLOW_CUT_MOMENTUM;
     if (!code)
         code = duite_get(state->rt, state->run.cut_longest, &longest);
-    *cut = (struct flow_cut){(uint64_t)counts[FLOW_CUT_ROWS], (uint64_t)counts[FLOW_CUT_HALVED],
-                             (uint64_t)longest, sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2])};
+    *cut = (struct flow_cut){.rows = (uint64_t)counts[FLOW_CUT_ROWS],
+                             .halved = (uint64_t)counts[FLOW_CUT_HALVED],
+                             .run = (uint64_t)longest,
+                             .stops = counts[FLOW_CUT_STOP] > 0,
+                             .momentum = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2])};
     return code;
 }
 

@@ -65,6 +65,11 @@ int flow_contact_settle(struct flow_state *state);
 void flow_contact_status(const struct flow_state *state, double status[FLOW_STATUS]);
 int flow_contact_settled(struct flow_state *state, const double status[FLOW_STATUS], bool accepted);
 
+/* A stop inside a step: keeps what the step will change beside x and v; puts all back as its begin
+ * had it. Collective. (stop.c) */
+int flow_contact_stop_keep(struct flow_state *state);
+int flow_contact_stop_restore(struct flow_state *state);
+
 /* Bounds the fastest vibration of contacts that are springs at a vertex of mean mass: its square is
  * at most this times k / m, its damping this times c / m. Two layers that press on each other, each
  * vertex on a triangle, reach 4. */

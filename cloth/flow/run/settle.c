@@ -166,6 +166,15 @@ static int accept_step(struct flow_state *state, const double status[FLOW_STATUS
     return flow_frames(state, attempt.begin);
 }
 
+/* A stop gives the step up: the last one accepted is the last of the run. */
+static int stop_step(struct flow_state *state, const double status[FLOW_STATUS])
+{
+    state->attempt.forked = false;
+    state->stopping = true;
+    flow_noted(state, flow_contact_settled(state, status, false));
+    return flow_noted(state, flow_contact_stop_restore(state));
+}
+
 /* Waits for the step that was forked whole and accepts or refuses it. */
 static int settle_step(struct flow_state *state)
 {
@@ -173,6 +182,8 @@ static int settle_step(struct flow_state *state)
     double status[FLOW_STATUS];
     if (await_step(state, status, &verdict))
         return state->code;
+    if (state->contact.stopped)
+        return stop_step(state, status);
     const bool refused = flow_verdict_refuses(&verdict), second = flow_implicit_is_second(state);
     const bool gained =
         !refused && flow_energy_gained(state, is_disturbed(state, status)) && can_lose(state);
@@ -182,6 +193,7 @@ static int settle_step(struct flow_state *state)
         return state->code;
     if (!refused && !gained)
         return accept_step(state, status, &verdict);
+    state->stopping = state->stopping || status[FLOW_STOP] > 0;
     state->settled_forces = false;
     state->guessed = 0; /* dv is of a step that is not made */
     return refused ? refuse_step(state, status, &verdict) : retake_step(state, second);

@@ -4,11 +4,15 @@
 
 #include "cloth/physics/particle.h"
 
-/* This rank is asked to stop. */
+bool flow_stop_is_asked(const struct flow *flow)
+{
+    const struct flow_progress *progress = flow->progress;
+    return progress && progress->stop && progress->stop(progress->context);
+}
+
 static void status_note_stop(const duite_call *call, double *status)
 {
-    const struct flow_progress *progress = flow_of(call)->progress;
-    if (progress && progress->stop && progress->stop(progress->context))
+    if (flow_stop_is_asked(flow_of(call)))
         status[FLOW_STOP] = 1;
 }
 

@@ -31,6 +31,8 @@ bool flow_step_is_driven(const struct model *model);
 int flow_step(struct flow_state *state);
 /* All steps from the start on, with their frames; ends early if a stop was agreed. */
 int flow_steps(struct flow_state *state);
+/* True if this rank is asked to stop. Local. */
+bool flow_stop_is_asked(const struct flow *flow);
 /* Forks the tasks that note in the step's status if a rank is asked to stop. */
 int flow_status_fork(struct flow_state *state);
 

@@ -50,6 +50,10 @@ enum {
     /* before a step that may be given up */                                                       \
     X(kept_x,       ONE,     phys_vec,      4, rows,          kept,         work)                  \
     X(kept_v,       ONE,     phys_vec,      4, rows,          kept,         work)                  \
+    /* the same, for a stop inside the step (contact/stop.c) */                                    \
+    X(kept_dv,      ONE,     phys_vec,      4, rows,          keeps_guess,  work)                  \
+    X(kept_last_x,  ONE,     phys_vec,      4, rows,          keeps_last,   work)                  \
+    X(kept_last_v,  ONE,     phys_vec,      4, rows,          keeps_last,   work)                  \
     /* contact: skins (skin.h); before a step, and x of skins before and after                     \
      * it, and their boxes */                                                                      \
     X(skin,         ONE,     unsigned char, 1, skin_bytes,    meets,        derived)               \

@@ -87,9 +87,15 @@ enum {
 };
 /* Numbers of a box: low and high corner. */
 enum { FLOW_ROOT = 6 };
-/* Counts of cuts: rows; rows that lose more than half; the change of their momentum, three numbers,
- * kg m/s. */
-enum { FLOW_CUT_ROWS, FLOW_CUT_HALVED, FLOW_CUT_MOMENTUM, FLOW_CUT_COUNTS = FLOW_CUT_MOMENTUM + 3 };
+/* Counts of cuts: rows; rows that lose more than half; blocks whose rank is asked to stop; the
+ * change of the momentum of rows, three numbers, kg m/s. */
+enum {
+    FLOW_CUT_ROWS,
+    FLOW_CUT_HALVED,
+    FLOW_CUT_STOP,
+    FLOW_CUT_MOMENTUM,
+    FLOW_CUT_COUNTS = FLOW_CUT_MOMENTUM + 3
+};
 /* Energy that contacts hold, and the part of it that they were lent in the step. */
 enum { FLOW_HELD_ALL, FLOW_HELD_LENT, FLOW_HELD };
 /* Indices into the broadcast of rank 0, I64 x 2. */
@@ -216,7 +222,9 @@ struct flow_contact_state {
     uint32_t attempt, accepted; /* the step under way, of all that were begun, from 1 on; the last
                                  * one that was accepted; 0: none */
     double cut_momentum;        /* kg m/s: changed by cuts in the step */
-    bool failed; /* no cut ends the step: it is to be made again with half the length */
+    bool failed;  /* no cut ends the step: it is to be made again with half the length */
+    bool stopped; /* the step is given up for a stop, as if it had not begun; its begin had */
+    uint32_t guessed, smooth;    /* these (struct flow_lasting) */
     double iterations, restarts; /* of the solves of this step but the last */
 };
 

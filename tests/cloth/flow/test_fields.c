@@ -96,7 +96,7 @@ UNIT_TEST(every_field_has_a_run)
         "filter",     "probe_force",   "probe_values",       "pieces",
         "groups",     "body_skins",    "body_fans",          "body_points",
         "body_boxes", "contact_force", "kept_contact_force", "obstacle_force",
-        "maps"};
+        "maps",       "kept_last_x",   "kept_last_v"};
     bool exists[FLOW_FIELDS_OF_ALL] = {false};
     for (int kind = 0; kind < KINDS; kind++) {
         struct session s;

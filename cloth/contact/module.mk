@@ -24,6 +24,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/contact/skin_flat.c \
 	cloth/contact/skin_loops.c \
 	cloth/contact/skin_make.c \
+	cloth/contact/skin_moved.c \
 	cloth/contact/skin_query.c \
 	cloth/contact/skin_refit.c \
 	cloth/contact/skin_slab.c \

@@ -5,6 +5,7 @@
 #include "cloth/contact/pair.h"
 #include "cloth/physics/vec.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -74,9 +75,16 @@ int contact_skin_make(const struct contact_skin_source *from, void *table,
 struct contact_skin contact_skin_open(const void *table);
 
 /* Makes the boxes of a step in which points move straight from x to y (m, finite, by point). They
- * are in a frame that moves by `way` (m), such as the skin's mean motion. Writes every byte. */
+ * are in a frame that moves by `way` (m), such as the skin's mean motion. */
 void contact_refit(const struct contact_skin *skin, const phys_vec *x, const phys_vec *y,
                    const phys_vec *way, void *boxes);
+
+/* Which points moved since the boxes before: n_points bytes, 1 or 0, which contact_refit leaves
+ * alone. contact_moved_mark counts them, then marks points beside them, and the parts of the skin
+ * that have marked points. (skin_moved.c) */
+unsigned char *contact_moved_points(const struct contact_skin *skin, const void *boxes);
+void contact_moved_mark(const struct contact_skin *skin, void *boxes);
+uint32_t contact_moved_n(const void *boxes);
 
 /* The box around x and y of all points, in the room, m; low > high: there are no points. */
 void contact_boxes_root(const void *boxes, double low[3], double high[3]);
@@ -106,6 +114,11 @@ typedef void contact_visit(void *to, uint32_t n, const struct contact_candidate 
  * within it, of the kinds CONTACT_VT and CONTACT_EE. */
 void contact_query(const struct contact_side *a, const struct contact_side *b, double reach,
                    contact_visit *visit, void *to);
+
+/* The same of pairs with a marked point (contact_moved_mark); also visits others of their leaves.
+ * rests: b has none, whatever its boxes say. */
+void contact_query_moved(const struct contact_side *a, const struct contact_side *b, bool rests,
+                         double reach, contact_visit *visit, void *to);
 
 /* The four points of a candidate of two skins, in the order of enum contact_pair, which is
  * returned. side[k]: 0 or 1, which of the two skins point[k] is of. */

@@ -105,6 +105,17 @@ static uint32_t id_on(const struct contact_patch *patch, uint32_t i)
     return skin->id[skin->along[patch->loop->first + i]];
 }
 
+/* Ids of a border, and some others: most points of another border are not on it, which one look
+ * tells. */
+struct marks {
+    bool is[1024];
+};
+
+static bool *mark_of(struct marks *marks, uint32_t id)
+{
+    return marks->is + id % (sizeof marks->is / sizeof *marks->is);
+}
+
 /* Finds the line that the borders of a and b share. *from_a, *from_b: the points where it begins on
  * a and ends on b. Returns how many points it has; 0: they share no line, or more. */
 static uint32_t shared_line(const struct contact_patch *a, const struct contact_patch *b,
@@ -113,11 +124,14 @@ static uint32_t shared_line(const struct contact_patch *a, const struct contact_
     const uint32_t n_a = a->loop->n, n_b = b->loop->n;
     uint32_t id[MOST + 4], begins = 0, n = 0, before = UINT32_MAX;
     uint32_t at_a = 0, at_b = 0;
-    for (uint32_t i = 0; i < n_b; i++)
+    struct marks of_b = {{0}};
+    for (uint32_t i = 0; i < n_b; i++) {
         id[i] = id_on(b, i);
+        *mark_of(&of_b, id[i]) = true;
+    }
     for (uint32_t i = 0; i <= n_a; i++) { /* the last one again, as it precedes the first */
         const uint32_t here = id_on(a, i < n_a ? i : 0);
-        uint32_t k = 0;
+        uint32_t k = *mark_of(&of_b, here) ? 0 : n_b;
         while (k < n_b && id[k] != here)
             k++;
         const bool goes_on = k < n_b && before != UINT32_MAX && (k + 1) % n_b == before;

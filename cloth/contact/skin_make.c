@@ -77,15 +77,15 @@ size_t contact_skin_bytes(const struct contact_skin *skin)
 /* A leaf may have one group of features of each kind that is not full. */
 void contact_boxes_lay(const struct contact_skin *skin, struct contact_boxes_head *head)
 {
-    const uint32_t n_nodes = count_nodes(skin->n_triangles);
+    const uint32_t n_nodes = skin->n_nodes ? skin->n_nodes : count_nodes(skin->n_triangles);
     const uint64_t n_groups = 3 * (uint64_t)leaves_of(n_nodes) + contact_groups(skin->n_triangles) +
                               contact_groups(skin->n_vertices) + contact_groups(skin->n_edges);
     *head = (struct contact_boxes_head){.nodes = skin_make_whole_lines(sizeof *head)};
     head->slopes = head->nodes + n_nodes * sizeof(struct contact_boxes);
     head->groups = head->slopes + n_nodes * sizeof(struct contact_slopes);
     head->points = head->groups + n_groups * sizeof(struct contact_boxes);
-    head->bytes =
-        skin_make_whole_lines(head->points + skin->n_points * sizeof(struct contact_point_box));
+    head->moved = head->points + skin->n_points * sizeof(struct contact_point_box);
+    head->bytes = skin_make_whole_lines(head->moved + n_nodes + skin->n_points);
 }
 
 size_t contact_boxes_bytes(const struct contact_skin *skin)

@@ -20,7 +20,9 @@ struct query {
     const struct contact_boxes *node[2], *group[2];
     contact_lanes below[3], above[3]; /* m: the widening of boxes of the first */
     bool self;
-    struct contact_slab slab; /* of the first leaf that was met last */
+    bool again;                    /* only pairs of parts of which one moved */
+    const unsigned char *moved[2]; /* then by node: bit k: child k did; NULL: none did */
+    struct contact_slab slab;      /* of the first leaf that was met last */
     contact_visit *visit;
     void *to;
     uint32_t n;
@@ -80,6 +82,14 @@ PHYS_INLINE unsigned meeting(const struct contact_boxes *wide, const struct cont
     is &= (wide->low[1] <= boxes->high[1]) & (wide->high[1] >= boxes->low[1]);
     is &= (wide->low[2] <= boxes->high[2]) & (wide->high[2] >= boxes->low[2]);
     return bits_of(&is);
+}
+
+/* True if one of two parts has a feature that moved. */
+PHYS_INLINE bool has_moved(const struct query *query, struct part a, struct part b)
+{
+    const unsigned char *const *moved = query->moved;
+    return !query->again || (moved[0][a.node] >> a.lane & 1) ||
+           (moved[1] && (moved[1][b.node] >> b.lane & 1));
 }
 
 /* ---- Flat parts ---- */
@@ -314,6 +324,8 @@ static void meet(struct query *query, struct part a, struct part b)
     const uint32_t of_a = query->skin[0]->child[a.node][a.lane];
     const uint32_t of_b = query->skin[1]->child[b.node][b.lane];
     const bool descend_a = !is_leaf(of_a), descend_b = !is_leaf(of_b);
+    if (!has_moved(query, a, b))
+        return;
     if (!descend_a && !descend_b) {
         meet_leaves(query, a, b);
         return;
@@ -335,17 +347,18 @@ static void meet_self(struct query *query, uint32_t node)
 {
     for (uint32_t i = 0; i < 4; i++) {
         const uint32_t child = query->skin[0]->child[node][i];
+        const struct part part = {node, i};
         struct contact_boxes wide;
-        if (!is_leaf(child)) {
-            if (!part_is_flat(query, (struct part){node, i}))
+        if (has_moved(query, part, part)) {
+            if (is_leaf(child))
+                meet_leaf_self(query, part);
+            else if (!part_is_flat(query, part))
                 meet_self(query, child);
-        } else {
-            meet_leaf_self(query, (struct part){node, i});
         }
         widen(query, query->node[0] + node, i, &wide);
         unsigned bits = meeting(&wide, query->node[0] + node) & ~1u << i;
         for (; bits; bits &= bits - 1)
-            meet(query, (struct part){node, i}, (struct part){node, (uint32_t)__builtin_ctz(bits)});
+            meet(query, part, (struct part){node, (uint32_t)__builtin_ctz(bits)});
     }
 }
 
@@ -375,34 +388,57 @@ static void set_reach(struct query *query, const struct contact_side *a,
     }
 }
 
+static const unsigned char *moved_of(const struct contact_side *side)
+{
+    const struct contact_boxes_head *head = side->boxes;
+    return (const unsigned char *)side->boxes + head->moved;
+}
+
+static void query_run(struct query *query, const struct contact_side *a,
+                      const struct contact_side *b, double reach, contact_visit *visit, void *to)
+{
+    const struct part whole = {ALL, 0};
+    query->side[0] = a;
+    query->side[1] = b;
+    query->reach = reach;
+    query->skin[0] = a->skin;
+    query->skin[1] = b->skin;
+    query->node[0] = contact_boxes_nodes(a->boxes);
+    query->node[1] = contact_boxes_nodes(b->boxes);
+    query->group[0] = contact_boxes_groups(a->boxes);
+    query->group[1] = contact_boxes_groups(b->boxes);
+    query->self = a->skin == b->skin;
+    query->visit = visit;
+    query->to = to;
+    query->n = 0;
+    query->slab.node = ALL;
+    query->slab.is = false;
+    query->slab.most = contact_slab_most(a, b, reach);
+    set_reach(query, a, b, reach);
+    if (query->self && !part_is_flat(query, whole))
+        meet_self(query, 0);
+    if (!query->self && !parts_are_flat(query, whole, whole))
+        meet_roots(query);
+    if (query->n)
+        visit(to, query->n, query->candidate);
+}
+
 void contact_query(const struct contact_side *a, const struct contact_side *b, double reach,
                    contact_visit *visit, void *to)
 {
-    const struct part whole = {ALL, 0};
     struct query query;
-    query.side[0] = a;
-    query.side[1] = b;
-    query.reach = reach;
-    query.skin[0] = a->skin;
-    query.skin[1] = b->skin;
-    query.node[0] = contact_boxes_nodes(a->boxes);
-    query.node[1] = contact_boxes_nodes(b->boxes);
-    query.group[0] = contact_boxes_groups(a->boxes);
-    query.group[1] = contact_boxes_groups(b->boxes);
-    query.self = a->skin == b->skin;
-    query.visit = visit;
-    query.to = to;
-    query.n = 0;
-    query.slab.node = ALL;
-    query.slab.is = false;
-    query.slab.most = contact_slab_most(a, b, reach);
-    set_reach(&query, a, b, reach);
-    if (query.self && !part_is_flat(&query, whole))
-        meet_self(&query, 0);
-    if (!query.self && !parts_are_flat(&query, whole, whole))
-        meet_roots(&query);
-    if (query.n)
-        visit(to, query.n, query.candidate);
+    query.again = false;
+    query_run(&query, a, b, reach, visit, to);
+}
+
+void contact_query_moved(const struct contact_side *a, const struct contact_side *b, bool rests,
+                         double reach, contact_visit *visit, void *to)
+{
+    struct query query;
+    query.again = true;
+    query.moved[0] = moved_of(a);
+    query.moved[1] = rests ? NULL : moved_of(b);
+    query_run(&query, a, b, reach, visit, to);
 }
 
 enum contact_pair contact_candidate_corners(const struct contact_skin *a,

@@ -339,16 +339,16 @@ PHYS_INLINE void refit_points(const struct refit *refit, const phys_vec *way,
         head->way[c] = (*way)[c];
 }
 
-/* There is room for more groups than there are, and behind the points. */
+/* There is room for more groups than there are, and behind all. */
 PHYS_INLINE void clear_rest(const struct contact_skin *skin, const struct contact_boxes_head *head,
                             char *at)
 {
     const struct contact_leaf *last = skin->leaf + skin->n_leaves - 1;
     const uint64_t n_groups = contact_edge_group(last) + contact_groups(last->n_edges);
     const uint64_t end = head->groups + n_groups * sizeof(struct contact_boxes);
-    const uint64_t of_points = head->points + skin->n_points * sizeof(struct contact_point_box);
+    const uint64_t behind = head->moved + skin->n_nodes + skin->n_points;
     memset(at + end, 0, head->points - end);
-    memset(at + of_points, 0, head->bytes - of_points);
+    memset(at + behind, 0, head->bytes - behind);
 }
 
 /* Children have higher numbers than their node. */

@@ -66,6 +66,9 @@ struct contact_boxes_head {
     double low[3], high[3]; /* m, in the room */
     double way[3];          /* m, of the frame */
     uint64_t bytes, nodes, slopes, groups, points;
+    uint64_t
+        moved; /* n_nodes bytes: bit k: child k has a feature that moved; then those of points */
+    uint32_t n_moved;
 };
 void contact_boxes_lay(const struct contact_skin *skin, struct contact_boxes_head *head);
 

@@ -58,6 +58,8 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/contact/contact.h \
     cloth/flow/contact/cut.c \
     cloth/flow/contact/cut_run.h \
+    cloth/flow/contact/find.c \
+    cloth/flow/contact/find.h \
     cloth/flow/contact/force.c \
     cloth/flow/contact/index.c \
     cloth/flow/contact/image.c \

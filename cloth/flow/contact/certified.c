@@ -187,10 +187,10 @@ static int note_failing(struct flow_state *state, uint64_t fails)
 static int look_at_step(struct flow_state *state, bool again, bool shorter, struct flow_seen *seen)
 {
     struct flow_report *report = state->report;
-    const int code = flow_contact_look(state, shorter, seen);
+    const int code = flow_contact_look(state, again, shorter, seen);
     report->contact_pairs += seen->passes;
-    report->contact_queries += state->contact.meetings.n;
-    report->contact_queries_again += again ? state->contact.meetings.n : 0;
+    report->contact_queries += seen->queries;
+    report->contact_queries_again += again ? seen->queries : 0;
     return code;
 }
 

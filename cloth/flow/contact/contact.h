@@ -8,10 +8,10 @@
 
 /* Certified contact of a step, as its main program drives it. In reading order: certified.c is the
  * step: solve, look, solve again or cut. pairs.c finds which sides are near each other. meet.c is
- * the task of two sides: it certifies pairs that may touch and lists near ones. touch.c makes the
- * contacts of a block from these lists; they are state. index.c lists contacts by the blocks of
- * their corners. rows.c brings contacts to the blocks that have their corners, and into the system
- * of the step. cut.c cuts ways. stop.c gives a step up.
+ * the task of two sides: it certifies pairs that may touch and lists near ones (find.c). touch.c
+ * makes the contacts of a block from these lists; they are state. index.c lists contacts by the
+ * blocks of their corners. rows.c brings contacts to the blocks that have their corners, and into
+ * the system of the step. cut.c cuts ways. stop.c gives a step up.
  *
  * A side is a block of cloth or an obstacle. Sides have numbers: blocks, then obstacles. */
 
@@ -109,6 +109,7 @@ struct flow_meet_args {
     };
     uint32_t number; /* among all meetings */
     uint32_t room;   /* for so many items in its list */
+    bool again;      /* the list is that of a look before: only what moved is looked at */
     double from, to; /* s: of the step */
 };
 
@@ -122,14 +123,16 @@ static inline duite_object *flow_contact_rest(const struct flow_state *state)
     return state->contact.refs + FLOW_MAX_PARAMETERS;
 }
 
-/* Counts of one look at the step. */
+/* Counts of one look at the step. passes, queries: of this look alone. */
 struct flow_seen {
     uint64_t fails, passes, contacts;
-    bool hopeless; /* more pairs fail than a solve can hold: lists are not complete */
+    uint64_t queries; /* sides that were looked at */
+    bool hopeless;    /* more pairs fail than a solve can hold: lists are not complete */
 };
 /* Looks at the way from kept_x to x: all pairs are certified, the near ones are listed. (pairs.c)
- * shorter: a shorter step can be made where it is hopeless. */
-int flow_contact_look(struct flow_state *state, bool shorter, struct flow_seen *seen);
+ * again: the last look was at this step, and kept_x is the same. shorter: a shorter step can be
+ * made where it is hopeless. */
+int flow_contact_look(struct flow_state *state, bool again, bool shorter, struct flow_seen *seen);
 /* Makes the meetings of a checkpoint. (pairs.c) */
 struct flow_saved_side;
 int flow_contact_meet_again(struct flow_state *state, uint32_t n,

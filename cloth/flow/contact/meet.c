@@ -1,9 +1,13 @@
 /* Two skins meet: every pair of their features that may come near each other in the step is
  * certified. Those that are near at its end are listed, and those whose certificate fails. A block
  * may meet itself, another block or a body. The order of the list is that of the query, so it is
- * the same for every mapping. */
+ * the same for every mapping.
+ *
+ * All that a look finds of a pair follows from the ways of its points. Another look at the step
+ * keeps items of the list whose points have the same bits, and queries only what moved: all other
+ * pairs are certified already. */
 #include "cloth/flow/contact/body.h"
-#include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/find.h"
 #include "cloth/flow/contact/mode.h"
 #include "cloth/flow/contact/skin.h"
 
@@ -24,21 +28,19 @@ struct meeting {
     const struct flow *flow;
     const struct model *model;
     const struct flow_meet_args *args;
-    const struct contact_shape *obstacle; /* the body that it is with; NULL: a block */
-    const struct contact_body *body;
-    const uint32_t *fan;      /* of the body (contact_body_opens) */
-    const uint32_t *attached; /* by point of the first skin */
-    const double *area[2];    /* by point of each skin; of a body NULL */
+    const struct contact_body *body; /* that it is with; NULL: a block */
+    const uint32_t *fan;             /* of the body (contact_body_opens) */
+    const uint32_t *attached;        /* by point of the first skin */
+    const double *area[2];           /* by point of each skin; of a body NULL */
     struct flow_skin_kin kin[2];
-    bool leaves_out; /* see flow_leaves_out */
-    bool sweeps;     /* as the mode does (mode.h), */
-    double reach;    /* m: and reaches */
+    bool leaves_out;               /* see flow_leaves_out */
+    bool sweeps;                   /* as the mode does (mode.h), */
+    double reach;                  /* m: and reaches */
+    const unsigned char *moved[2]; /* by point of each skin; NULL: it rests */
     struct contact_skin skin[2];
     struct contact_side side[2]; /* of a block that meets itself: both */
-    struct flow_near *near;
-    size_t n, room; /* found; there is room for */
-    size_t passes;  /* pairs that are certified */
-    double *counts;
+    struct flow_findings findings;
+    size_t passes; /* pairs that are certified */
 };
 
 /* The corners of two features, and their positions. */
@@ -77,6 +79,29 @@ static uint32_t contact_meet_side_of(const struct meeting *m, const uint32_t poi
 {
     return m->body && side[from] ? m->flow->n_cloths + (m->args->side[1] - m->flow->tables.n_blocks)
                                  : flow_cloth_of(m->skin + side[from], n, point + from);
+}
+
+/* True if a point moved since the last look at the step. */
+static bool point_moved(const struct meeting *m, int side, uint32_t point)
+{
+    return m->moved[side] && m->moved[side][point];
+}
+
+static bool candidate_moved(const struct meeting *m, const struct corners *corners)
+{
+    bool moved = false;
+    for (int k = 0; k < 4; k++)
+        moved = moved || point_moved(m, corners->side[k], corners->point[k]);
+    return moved;
+}
+
+static bool contact_moved(const struct meeting *m, const struct flow_contact *contact)
+{
+    bool moved = false;
+    for (uint32_t k = 0; k < 4; k++)
+        moved = moved || point_moved(m, contact->side[k >= contact->first] != m->args->side[0],
+                                     contact->point[k]);
+    return moved;
 }
 
 /* The friction coefficient of two features. */
@@ -180,16 +205,6 @@ static void contact_meet_describe_pair(const struct meeting *m,
     to->row.hard = m->model->contact.pressure * contact_meet_area(m, corners, to);
 }
 
-static void append_pair(struct meeting *m, const struct flow_near *near)
-{
-    const bool first = near->contact.side[0] == m->args->side[0];
-    if (m->n < m->room)
-        m->near[m->n] = *near;
-    m->n++;
-    m->counts[FLOW_COUNT_FAILS] += near->fails;
-    m->counts[first ? FLOW_COUNT_FIRST : FLOW_COUNT_SECOND]++;
-}
-
 /* True if a surface has a ridge at an edge, towards the other feature. On a flat or hollow surface
  * vertices and triangles are nearer than the edge, and their contacts are enough. A flat triangle
  * counts at a border of the cloth. One triangle decides for an edge between two skins. sign: 1 if
@@ -278,7 +293,7 @@ static void list_pair(struct meeting *m, const struct contact_candidate *candida
     contact_meet_describe_pair(m, candidate, corners, corners->y, nearest, &near.contact);
     for (uint32_t k = 0; k < 4; k++)
         near.part[k] = 1;
-    append_pair(m, &near);
+    flow_findings_add(&m->findings, &near);
 }
 
 /* The gap at the step's end, along the normal of its begin. */
@@ -309,7 +324,7 @@ static void fail_pair(struct meeting *m, const struct contact_candidate *candida
                       part);
     for (uint32_t k = 0; k < 4; k++)
         near.part[k] = part[(k + contact_meet_is_turned(m, corners)) % 4];
-    append_pair(m, &near);
+    flow_findings_add(&m->findings, &near);
 }
 
 static enum contact_passing passing_of(const struct meeting *m, const struct corners *corners)
@@ -366,26 +381,33 @@ static void visit_pairs(void *to, uint32_t n, const struct contact_candidate *ca
         const uint32_t some = n - i < AT_ONCE ? n - i : AT_ONCE;
         for (uint32_t k = 0; k < some; k++)
             contact_meet_find_corners(m, candidate + i + k, corners + k);
-        for (uint32_t k = 0; k < some; k++)
-            if (!m->leaves_out || !contact_meet_is_left_out(m, candidate + i + k))
+        for (uint32_t k = 0; k < some; k++) {
+            const bool seen = m->args->again && !candidate_moved(m, corners + k);
+            if (!seen && (!m->leaves_out || !contact_meet_is_left_out(m, candidate + i + k)))
                 look_at_pair(m, candidate + i + k, corners + k);
+        }
     }
 }
 
 /* ---- The tasks ---- */
 
-static struct contact_side side_of_points(const struct contact_skin *skin, const phys_vec *points,
-                                          const unsigned char *boxes)
+/* Side k is a block of that skin. */
+static void open_side(struct meeting *m, int k, const struct flow_skin *skin,
+                      const phys_vec *points, const unsigned char *boxes)
 {
-    return (struct contact_side){
-        .skin = skin, .boxes = boxes, .x = points, .y = points + skin->n_points};
+    m->skin[k] = skin->skin;
+    m->area[k] = skin->area;
+    m->kin[k] = skin->kin;
+    m->moved[k] = contact_moved_points(m->skin + k, boxes);
+    m->side[k] = (struct contact_side){
+        .skin = m->skin + k, .boxes = boxes, .x = points, .y = points + skin->skin.n_points};
 }
 
-/* Opens the first side, and what all meetings have. */
-static void begin_meeting(const duite_call *call, const struct flow_meet_args *args,
+/* Opens the first side, and what all meetings have. near: the list's parameter. */
+static void begin_meeting(const duite_call *call, size_t near, struct flow_list *list,
+                          double *counts, const struct flow_meet_args *args,
                           const unsigned char *skin, const phys_vec *points,
-                          const unsigned char *boxes, double *counts, struct flow_list *list,
-                          struct meeting *m)
+                          const unsigned char *boxes, struct meeting *m)
 {
     const struct flow *flow = flow_of(call);
     const struct flow_skin own = flow_skin_open(skin);
@@ -396,70 +418,70 @@ static void begin_meeting(const duite_call *call, const struct flow_meet_args *a
                           .reach = flow_contact_reach(flow->model),
                           .leaves_out =
                               flow_leaves_out(flow->model, args->side[1] >= flow->tables.n_blocks),
-                          .attached = own.attached,
-                          .area = {own.area, own.area},
-                          .kin = {own.kin, own.kin},
-                          .near = (struct flow_near *)(list + 1),
-                          .room = args->room,
-                          .counts = counts + (size_t)FLOW_COUNTS * args->number};
-    m->skin[0] = own.skin;
-    m->side[0] = side_of_points(m->skin, points, boxes);
+                          .attached = own.attached};
+    open_side(m, 0, &own, points, boxes);
+    flow_findings_open(call, near, list, args, counts, &m->findings);
 }
 
-/* Fills the list; returns its bytes. other: the second side. */
-static size_t query_meeting(struct meeting *m, const struct contact_side *other,
-                            struct flow_list *list)
+/* Keeps items of the list that did not move, in their order. */
+static void keep_items(struct meeting *m)
 {
-    const uint32_t *side = m->args->side;
-    contact_query(m->side, other, m->reach, visit_pairs, m);
-    m->counts[FLOW_COUNT_ALL] = (double)m->n;
-    m->counts[FLOW_COUNT_PASSES] = (double)m->passes;
-    *list = (struct flow_list){.n = m->n < m->room ? m->n : m->room, .side = {side[0], side[1]}};
-    return flow_list_bytes(list->n, sizeof *m->near);
+    for (size_t i = 0; i < m->findings.before; i++)
+        if (!contact_moved(m, &m->findings.near[i].contact))
+            flow_findings_add(&m->findings, m->findings.near + i);
+}
+
+/* Fills the list; returns what the body does. other: the second side. */
+static int query_meeting(struct meeting *m, const struct contact_side *other)
+{
+    keep_items(m);
+    if (m->args->again)
+        contact_query_moved(m->side, other, !m->moved[1], m->reach, visit_pairs, m);
+    else
+        contact_query(m->side, other, m->reach, visit_pairs, m);
+    return flow_findings_close(&m->findings, m->passes);
 }
 
 FLOW_KERNEL(meet_self, FLOW_COLLIDE, struct flow_meet_args,
-            (GIVEN_W(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes)))
+            (GIVEN_RW(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes)))
 static int meet_self_body(const duite_call *call, const struct meet_self_fields *on)
 {
     struct meeting m;
-    begin_meeting(call, on->args, on->skin, on->skin_x, on->skin_boxes, on->meeting_counts,
-                  on->near, &m);
+    begin_meeting(call, FLOW_INDEX_OF(meet_self, near), on->near, on->meeting_counts, on->args,
+                  on->skin, on->skin_x, on->skin_boxes, &m);
     m.skin[1] = m.skin[0];
+    m.area[1] = m.area[0];
+    m.kin[1] = m.kin[0];
+    m.moved[1] = m.moved[0];
     m.side[1] = m.side[0];
-    return duite_resize(call, FLOW_INDEX_OF(meet_self, near), query_meeting(&m, m.side, on->near));
+    return query_meeting(&m, m.side);
 }
 
 FLOW_KERNEL(meet, FLOW_COLLIDE, struct flow_meet_args,
-            (GIVEN_W(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes),
+            (GIVEN_RW(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes),
              GIVEN_R(other_skin), GIVEN_R(other_x), GIVEN_R(other_boxes)))
 static int meet_body(const duite_call *call, const struct meet_fields *on)
 {
     struct meeting m;
-    begin_meeting(call, on->args, on->skin, on->skin_x, on->skin_boxes, on->meeting_counts,
-                  on->near, &m);
+    begin_meeting(call, FLOW_INDEX_OF(meet, near), on->near, on->meeting_counts, on->args, on->skin,
+                  on->skin_x, on->skin_boxes, &m);
     const struct flow_skin other = flow_skin_open(on->other_skin);
-    m.skin[1] = other.skin;
-    m.area[1] = other.area;
-    m.kin[1] = other.kin;
-    m.side[1] = side_of_points(m.skin + 1, on->other_x, on->other_boxes);
-    return duite_resize(call, FLOW_INDEX_OF(meet, near), query_meeting(&m, m.side + 1, on->near));
+    open_side(&m, 1, &other, on->other_x, on->other_boxes);
+    return query_meeting(&m, m.side + 1);
 }
 
 FLOW_KERNEL(meet_figure, FLOW_COLLIDE, struct flow_meet_args,
-            (GIVEN_W(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes), R(body_skins),
+            (GIVEN_RW(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes), R(body_skins),
              R(body_points), R(body_boxes), R(body_fans)))
 static int meet_figure_body(const duite_call *call, const struct meet_figure_fields *on)
 {
     struct meeting m;
-    begin_meeting(call, on->args, on->skin, on->skin_x, on->skin_boxes, on->meeting_counts,
-                  on->near, &m);
+    begin_meeting(call, FLOW_INDEX_OF(meet_figure, near), on->near, on->meeting_counts, on->args,
+                  on->skin, on->skin_x, on->skin_boxes, &m);
     const uint32_t number = on->args->side[1] - m.flow->tables.n_blocks;
-    m.obstacle = m.model->obstacles + number;
-    m.body = contact_bodies_at(&m.model->bodies, m.obstacle->body);
+    m.body = contact_bodies_at(&m.model->bodies, m.model->obstacles[number].body);
     m.fan = on->body_fans + flow_body_place(m.model, number).vertex;
     flow_body_open(m.model, number, on->body_skins, on->body_points, on->body_boxes, m.skin + 1,
                    m.side + 1);
-    return duite_resize(call, FLOW_INDEX_OF(meet_figure, near),
-                        query_meeting(&m, m.side + 1, on->near));
+    return query_meeting(&m, m.side + 1);
 }

@@ -4,7 +4,7 @@
  * that are nearer to it than their corners, such as the middle of a triangle on a corner of a
  * box. */
 #include "cloth/flow/contact/body.h"
-#include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/find.h"
 #include "cloth/flow/contact/mode.h"
 #include "cloth/flow/contact/skin.h"
 
@@ -24,29 +24,19 @@ struct meeting {
     const struct contact_shape *shape;
     struct contact_pose pose;
     struct contact_solid solid;
-    double way;               /* m: that points of the shape go in the step at most */
-    bool sweeps;              /* as the mode does (mode.h), */
-    double reach;             /* m: and reaches */
-    uint32_t obstacle;        /* behind all cloths */
-    const uint32_t *attached; /* by point of the skin */
-    const double *area;       /* likewise */
+    double way;                 /* m: that points of the shape go in the step at most */
+    bool sweeps;                /* as the mode does (mode.h), */
+    double reach;               /* m: and reaches */
+    const unsigned char *moved; /* by point */
+    uint32_t obstacle;          /* behind all cloths */
+    const uint32_t *attached;   /* by point of the skin */
+    const double *area;         /* likewise */
     struct contact_skin skin;
     const phys_vec *x, *y; /* by point */
     double h;              /* s: of the step */
-    struct flow_near *near;
-    size_t n, room; /* found; there is room for */
-    size_t passes;  /* triangles in reach that are certified */
-    double *counts;
+    struct flow_findings findings;
+    size_t passes; /* triangles in reach that are certified */
 };
-
-static void append_place(struct meeting *m, const struct flow_near *near)
-{
-    if (m->n < m->room)
-        m->near[m->n] = *near;
-    m->n++;
-    m->counts[FLOW_COUNT_FAILS] += near->fails;
-    m->counts[FLOW_COUNT_FIRST]++;
-}
 
 /* The friction coefficient of the shape and the cloth of n points. */
 static double friction_at(const struct meeting *m, uint32_t n, const uint32_t *point)
@@ -147,7 +137,7 @@ static void fail_triangle(struct meeting *m, uint32_t triangle, const phys_vec x
     near.presses = !fails_alone(m, x, y);
     near.contact.feature[0] = triangle;
     near.contact.feature[1] = FLOW_ON_TRIANGLE;
-    append_place(m, &near);
+    flow_findings_add(&m->findings, &near);
 }
 
 static void list_triangle(struct meeting *m, uint32_t triangle, const phys_vec y[3])
@@ -165,7 +155,7 @@ static void list_triangle(struct meeting *m, uint32_t triangle, const phys_vec y
     near.contact.feature[1] = FLOW_ON_TRIANGLE;
     if (!m->sweeps)
         near.contact.row.slip = (m->args->from - m->args->to) * on.velocity;
-    append_place(m, &near);
+    flow_findings_add(&m->findings, &near);
 }
 
 static void look_at_triangle(struct meeting *m, uint32_t triangle)
@@ -228,7 +218,7 @@ static void list_vertex(struct meeting *m, uint32_t point, const phys_vec x[3], 
     if (on.gap > m->model->contact.thickness)
         near->contact.row.firm =
             contact_row_firm_for(&near->contact.row, gap_of_place_ahead(m, x, y, &on));
-    append_place(m, near);
+    flow_findings_add(&m->findings, near);
 }
 
 static void meet_shape_look_at_vertex(struct meeting *m, uint32_t vertex)
@@ -248,7 +238,7 @@ static void meet_shape_look_at_vertex(struct meeting *m, uint32_t vertex)
     find_vertex(m, CONTACT_BEGIN, x, &on);
     fail_place(m, 1, &point, x, y, &on, &near);
     near.presses = true;
-    append_place(m, &near);
+    flow_findings_add(&m->findings, &near);
 }
 
 /* ---- Contact that is not certified ---- */
@@ -266,7 +256,7 @@ static void list_place(struct meeting *m, uint32_t vertex, const struct contact_
     near.contact.feature[0] = vertex;
     near.contact.feature[1] = FLOW_ON_VERTEX;
     near.contact.row.slip = (m->args->from - m->args->to) * hit->velocity;
-    append_place(m, &near);
+    flow_findings_add(&m->findings, &near);
 }
 
 /* Vertices are put out of obstacles. Those that follow each other are near to each other, so many
@@ -310,17 +300,30 @@ static bool are_apart(const struct meeting *m, uint32_t n, const uint32_t *point
                                (const double[3]){high[0], high[1], high[2]}, m->reach + m->way);
 }
 
-/* Looks at all triangles, or vertices, that may be in reach. n_corners: points of each. */
+/* True for features of n points that the last look at the step has seen as they are. */
+static bool was_seen(const struct meeting *m, uint32_t n, const uint32_t *point)
+{
+    bool moved = !m->args->again;
+    for (uint32_t k = 0; k < n; k++)
+        moved = moved || m->moved[point[k]];
+    return !moved;
+}
+
+/* Looks at all triangles, or vertices, that may be in reach, if they were not seen. n_corners:
+ * points of each. */
 static void look_at_near(struct meeting *m, uint32_t n, uint32_t n_corners, const uint32_t *point,
                          void (*look)(struct meeting *m, uint32_t number))
 {
     for (uint32_t i = 0; i < n; i += GROUP) {
         const uint32_t some = n - i < GROUP ? n - i : GROUP;
-        if (are_apart(m, n_corners * some, point + (size_t)n_corners * i))
+        const uint32_t *first = point + (size_t)n_corners * i;
+        if (was_seen(m, n_corners * some, first) || are_apart(m, n_corners * some, first))
             continue;
-        for (uint32_t k = i; k < i + some; k++)
-            if (!are_left_out(m, n_corners, point + (size_t)n_corners * k))
-                look(m, k);
+        for (uint32_t k = 0; k < some; k++) {
+            const uint32_t *at = first + n_corners * k;
+            if (!was_seen(m, n_corners, at) && !are_left_out(m, n_corners, at))
+                look(m, i + k);
+        }
     }
 }
 
@@ -345,17 +348,25 @@ static void meet_shape_look_at(struct meeting *m)
     look_at_near(m, m->skin.n_vertices, 1, m->skin.vertex, meet_shape_look_at_vertex);
 }
 
+/* Keeps items of the list that did not move, as in meet.c. */
+static void keep_places(struct meeting *m)
+{
+    const struct flow_near *near = m->findings.near;
+    for (size_t i = 0; i < m->findings.before; i++)
+        if (was_seen(m, near[i].contact.at.n, near[i].contact.point))
+            flow_findings_add(&m->findings, near + i);
+}
+
 /* ---- The task ---- */
 
 FLOW_KERNEL(meet_shape, FLOW_COLLIDE, struct flow_meet_args,
-            (GIVEN_W(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes)))
+            (GIVEN_RW(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes)))
 static int meet_shape_body(const duite_call *call, const struct meet_shape_fields *on)
 {
     const struct flow_meet_args *args = on->args;
     const struct flow *flow = flow_of(call);
     const struct contact_shape *shape =
         flow->model->obstacles + (args->side[1] - flow->tables.n_blocks);
-    struct flow_list *list = on->near;
     struct meeting m = {.flow = flow,
                         .model = flow->model,
                         .sweeps = flow_contact_mode(flow->model)->sweeps,
@@ -363,10 +374,9 @@ static int meet_shape_body(const duite_call *call, const struct meet_shape_field
                         .args = args,
                         .obstacle = flow->n_cloths + (args->side[1] - flow->tables.n_blocks),
                         .shape = shape,
-                        .h = args->to - args->from,
-                        .near = (struct flow_near *)(list + 1),
-                        .room = args->room,
-                        .counts = on->meeting_counts + (size_t)FLOW_COUNTS * args->number};
+                        .h = args->to - args->from};
+    flow_findings_open(call, FLOW_INDEX_OF(meet_shape, near), on->near, args, on->meeting_counts,
+                       &m.findings);
     contact_pose_over(shape, flow->model->keys, &flow->model->bodies, args->from, args->to,
                       &m.pose);
     contact_solid_make(shape, &m.pose, &m.solid);
@@ -377,16 +387,13 @@ static int meet_shape_body(const duite_call *call, const struct meet_shape_field
     m.area = skin.area;
     m.x = on->skin_x;
     m.y = m.x + m.skin.n_points;
+    m.moved = contact_moved_points(&m.skin, on->skin_boxes);
+    keep_places(&m);
     if (m.sweeps)
         meet_shape_look_at(&m);
     else
         look_at_places(&m);
-    m.counts[FLOW_COUNT_ALL] = (double)m.n;
-    m.counts[FLOW_COUNT_PASSES] = (double)m.passes;
-    *list = (struct flow_list){.n = m.n < m.room ? m.n : m.room,
-                               .side = {args->side[0], args->side[1]}};
-    return duite_resize(call, FLOW_INDEX_OF(meet_shape, near),
-                        flow_list_bytes(list->n, sizeof *m.near));
+    return flow_findings_close(&m.findings, m.passes);
 }
 
 /* ---- Where a contact is ---- */

@@ -36,6 +36,7 @@ void flow_contact_free(struct flow_state *state)
     free(contact->refs);
     free(contact->meetings.all);
     free(contact->meetings.count);
+    free(contact->meetings.counted);
     *contact = (struct flow_contact_state){0};
 }
 
@@ -48,10 +49,13 @@ int flow_contact_room(struct flow_state *state, uint32_t n)
         return DUITE_OK;
     free(meetings->all);
     free(meetings->count);
+    free(meetings->counted);
     free(contact->refs);
     meetings->room = n + n / 2;
     meetings->all = cloth_alloc(meetings->room, sizeof *meetings->all, trouble);
     meetings->count = cloth_alloc(meetings->room, FLOW_COUNTS * sizeof *meetings->count, trouble);
+    meetings->counted =
+        cloth_alloc(meetings->room, FLOW_COUNTS * sizeof *meetings->counted, trouble);
     contact->refs = cloth_alloc(2 * (size_t)meetings->room + FLOW_MAX_PARAMETERS,
                                 sizeof *contact->refs, trouble);
     return flow_memory_agree(state);

@@ -30,6 +30,7 @@ static int root_body(const duite_call *call, const struct root_fields *on)
 {
     (void)call;
     contact_boxes_root(on->skin_boxes, on->root, on->root + 3);
+    on->root[FLOW_ROOT_MOVED] = contact_moved_n(on->skin_boxes);
     return 0;
 }
 
@@ -249,6 +250,7 @@ static int fork_meeting(struct flow_state *state, uint32_t number)
     const struct flow_meet_args args = {.side = {side[0], side[1]},
                                         .number = number,
                                         .room = meeting->room,
+                                        .again = meeting->looks == FLOW_LOOKS_AGAIN,
                                         .from = step.time - step.h,
                                         .to = step.time};
     const struct flow_objects *other = state->block + (side[1] < n_blocks ? side[1] : 0);
@@ -266,17 +268,43 @@ static int fork_meeting(struct flow_state *state, uint32_t number)
     return flow_fork_with(state, kernel, &args, &with);
 }
 
-/* Forks all meetings and gets their counts. */
-static int fork_meetings(struct flow_state *state)
+/* Chooses the meetings of a round. again: those with a side that moved are looked at again. */
+static void choose_meetings(struct flow_state *state, bool again)
+{
+    struct flow_meetings *meetings = &state->contact.meetings;
+    for (uint32_t i = 0; i < meetings->n; i++) {
+        struct flow_meeting *meeting = meetings->all + i;
+        bool moved = false;
+        for (int k = 0; k < 2; k++)
+            moved = moved ||
+                    state->contact.root[FLOW_ROOT * (size_t)meeting->side[k] + FLOW_ROOT_MOVED] > 0;
+        meeting->looks = !again ? FLOW_LOOKS : moved ? FLOW_LOOKS_AGAIN : FLOW_LOOKS_NOT;
+    }
+}
+
+/* Forks the meetings of a round and gets their counts. */
+static int fork_meetings(struct flow_state *state, struct flow_seen *seen)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
     int code = duite_set(state->rt, state->run.meeting_counts, NULL);
     for (uint32_t i = 0; i < meetings->n && !code; i++)
-        code = fork_meeting(state, i);
-    return code ? code : duite_get(state->rt, state->run.meeting_counts, meetings->count);
+        if (meetings->all[i].looks != FLOW_LOOKS_NOT)
+            code = fork_meeting(state, i);
+    if (!code)
+        code = duite_get(state->rt, state->run.meeting_counts, meetings->counted);
+    for (uint32_t i = 0; i < meetings->n && !code; i++) {
+        const double *counted = meetings->counted + FLOW_COUNTS * (size_t)i;
+        if (meetings->all[i].looks == FLOW_LOOKS_NOT)
+            continue;
+        memcpy(meetings->count + FLOW_COUNTS * (size_t)i, counted, FLOW_COUNTS * sizeof *counted);
+        seen->passes += (uint64_t)counted[FLOW_COUNT_PASSES];
+        seen->queries++;
+    }
+    return code;
 }
 
-/* Makes full lists again with room for all their items. Returns true if any was full. */
+/* Makes full lists again with room for all their items: the meetings of the next round. Returns
+ * true if any was full. */
 static bool make_longer(struct flow_state *state)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
@@ -284,8 +312,10 @@ static bool make_longer(struct flow_state *state)
     for (uint32_t i = 0; i < meetings->n; i++) {
         struct flow_meeting *meeting = meetings->all + i;
         const uint32_t found = (uint32_t)meetings->count[FLOW_COUNTS * (size_t)i + FLOW_COUNT_ALL];
+        meeting->looks = FLOW_LOOKS_NOT;
         if (found <= meeting->room)
             continue;
+        meeting->looks = FLOW_LOOKS;
         while (meeting->room < found)
             meeting->room *= 2;
         duite_free(state->rt, meeting->near);
@@ -301,11 +331,9 @@ static void pairs_sum_up(struct flow_state *state, struct flow_seen *seen)
     const struct flow_meetings *meetings = &state->contact.meetings;
     uint32_t *found = state->contact.found;
     memset(found, 0, state->flow->tables.n_blocks * sizeof *found);
-    *seen = (struct flow_seen){0};
     for (uint32_t i = 0; i < meetings->n; i++) {
         const double *count = meetings->count + FLOW_COUNTS * (size_t)i;
         seen->fails += (uint64_t)count[FLOW_COUNT_FAILS];
-        seen->passes += (uint64_t)count[FLOW_COUNT_PASSES];
         seen->contacts += (uint64_t)count[FLOW_COUNT_ALL];
         found[meetings->all[i].side[0]] += (uint32_t)count[FLOW_COUNT_FIRST];
         if (count[FLOW_COUNT_SECOND] > 0)
@@ -348,21 +376,23 @@ static void place_shapes(struct flow_state *state)
     }
 }
 
-int flow_contact_look(struct flow_state *state, bool shorter, struct flow_seen *seen)
+int flow_contact_look(struct flow_state *state, bool again, bool shorter, struct flow_seen *seen)
 {
-    bool hopeless = false;
-    int code = flow_contact_mode(state->flow->model)->sweeps ? flow_skins_refit(state)
+    bool met = state->contact.meetings.all != NULL;
+    int code = flow_contact_mode(state->flow->model)->sweeps ? flow_skins_refit(state, again)
                                                              : flow_skins_place(state);
+    *seen = (struct flow_seen){0};
     if (!code)
         code = get_root_boxes(state);
     place_shapes(state);
-    if (!code && (!state->contact.meetings.all || !all_meet(state)))
+    met = met && !code && all_meet(state);
+    if (!code && !met)
         code = make_meetings(state);
+    choose_meetings(state, again && met);
     do {
-        code = code ? code : fork_meetings(state);
-        hopeless = !code && shorter && pairs_is_hopeless(state);
-    } while (!code && !hopeless && make_longer(state));
+        code = code ? code : fork_meetings(state, seen);
+        seen->hopeless = !code && shorter && pairs_is_hopeless(state);
+    } while (!code && !seen->hopeless && make_longer(state));
     pairs_sum_up(state, seen);
-    seen->hopeless = hopeless;
     return code;
 }

@@ -59,7 +59,7 @@ static int begin_repulsion(struct flow_state *state)
     const struct flow_step_args step = flow_attempt_args(state);
     struct flow_seen seen;
     contact_bodies_move(&state->flow->model->bodies, step.time - step.h, step.time);
-    int code = flow_contact_look(state, false, &seen);
+    int code = flow_contact_look(state, false, false, &seen);
     if (code)
         return code;
     note_pushed(state, &seen);

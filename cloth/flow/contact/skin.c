@@ -89,13 +89,16 @@ int flow_skins_keep(struct flow_state *state)
     return flow_fork_each(state, &flow_kernel_keep_halo, &args);
 }
 
-/* Gathers the rows of the points. */
+/* Gathers the rows of the points. moved, by point: they have other bits now; NULL: nobody asks. */
 static void gather_points(const struct flow_skin *skin, uint32_t n_neighbours, const phys_vec *own,
-                          const duite_param *halo, phys_vec *to)
+                          const duite_param *halo, phys_vec *to, unsigned char *moved)
 {
     for (uint32_t i = 0; i < skin->skin.n_points; i++) {
         const uint32_t s = skin->from[i];
-        to[i] = s == n_neighbours ? own[skin->at[i]] : flow_rows_of(halo, s)[skin->at[i]];
+        const phys_vec *from = s == n_neighbours ? own : flow_rows_of(halo, s);
+        if (moved)
+            moved[i] = memcmp(to + i, from + skin->at[i], sizeof *to) != 0;
+        to[i] = from[skin->at[i]];
     }
 }
 
@@ -107,19 +110,28 @@ static void mean_way(uint32_t n, const phys_vec *x, const phys_vec *y, phys_vec 
     *way = n ? sum / n : sum;
 }
 
-FLOW_KERNEL(skin_refit, FLOW_COLLIDE, struct flow_block_args,
-            (R(skin), R(kept_x), R(x), W(skin_x), W(skin_boxes), NEIGHBOURS(kept_halo_x),
+struct refit_args {
+    uint32_t block;
+    bool again;
+};
+
+FLOW_KERNEL(skin_refit, FLOW_COLLIDE, struct refit_args,
+            (R(skin), R(kept_x), R(x), RW(skin_x), W(skin_boxes), NEIGHBOURS(kept_halo_x),
              NEIGHBOURS(halo_x)))
 static int skin_refit_body(const duite_call *call, const struct skin_refit_fields *on)
 {
     const uint32_t n_neighbours = flow_shape_of(call)->n_neighbours;
     const struct flow_skin skin = flow_skin_open(on->skin);
     const uint32_t n = skin.skin.n_points;
+    unsigned char *moved = contact_moved_points(&skin.skin, on->skin_boxes);
     phys_vec *y = on->skin_x + n, way;
-    gather_points(&skin, n_neighbours, on->kept_x, on->kept_halo_x, on->skin_x);
-    gather_points(&skin, n_neighbours, on->x, on->halo_x, y);
+    gather_points(&skin, n_neighbours, on->kept_x, on->kept_halo_x, on->skin_x, NULL);
+    gather_points(&skin, n_neighbours, on->x, on->halo_x, y, on->args->again ? moved : NULL);
+    if (!on->args->again)
+        memset(moved, 1, n);
     mean_way(n, on->skin_x, y, &way);
     contact_refit(&skin.skin, on->skin_x, y, &way, on->skin_boxes);
+    contact_moved_mark(&skin.skin, on->skin_boxes);
     return 0;
 }
 
@@ -131,7 +143,7 @@ static int skin_place_body(const duite_call *call, const struct skin_place_field
     const struct flow_skin skin = flow_skin_open(on->skin);
     const uint32_t n = skin.skin.n_points;
     const phys_vec nowhere = {0};
-    gather_points(&skin, flow_shape_of(call)->n_neighbours, on->x, on->halo_x, on->skin_x);
+    gather_points(&skin, flow_shape_of(call)->n_neighbours, on->x, on->halo_x, on->skin_x, NULL);
     memcpy(on->skin_x + n, on->skin_x, n * sizeof *on->skin_x);
     contact_refit(&skin.skin, on->skin_x, on->skin_x, &nowhere, on->skin_boxes);
     return 0;
@@ -143,8 +155,8 @@ int flow_skins_place(struct flow_state *state)
     return flow_fork_each(state, &flow_kernel_skin_place, &args);
 }
 
-int flow_skins_refit(struct flow_state *state)
+int flow_skins_refit(struct flow_state *state, bool again)
 {
-    struct flow_block_args args;
+    struct refit_args args = {.again = again};
     return flow_fork_each(state, &flow_kernel_skin_refit, &args);
 }

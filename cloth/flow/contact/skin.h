@@ -58,7 +58,8 @@ int flow_skins_keep(struct flow_state *state);
 int flow_skins_place(struct flow_state *state);
 
 /* Forks the tasks that make `skin_x`, first kept_x and then x of each block's skin points, and
- * `skin_boxes`, the boxes of the way between (contact_refit). */
-int flow_skins_refit(struct flow_state *state);
+ * `skin_boxes`, the boxes of the way between (contact_refit). again: skin_x is that of the last
+ * look at the same step; points that have other bits since then are marked as moved. */
+int flow_skins_refit(struct flow_state *state, bool again);
 
 #endif

@@ -33,7 +33,7 @@
  *                if it exists in the run; a member tied_field. IF_MADE(tie_table) comes before it
  *     KEEPERS    reads this field of each block that may keep contacts with corners in this one,
  *                ascending; the last parameter, and a member n_field says how many
- *     GIVEN_R GIVEN_W GIVEN_SUM    an object of FLOW_OBJECTS, which the fork gives by its name
+ *     GIVEN_R GIVEN_W GIVEN_RW GIVEN_SUM  an object of FLOW_OBJECTS, which the fork gives
  *     REST_R REST_W                reads, or overwrites, all further ones that the fork gives; the
  *                                  last parameter, and a member n_object says how many
  *
@@ -157,6 +157,7 @@ struct flow_kernel {
 #define FLOW_WORD_KEEPERS(field)    REST, 0, 0, const, DUITE_R, , FLOW_OF_KEEPERS, field
 #define FLOW_WORD_GIVEN_R(object)   FIXED, 1, 1, const, DUITE_R, NULL, FLOW_OF_FORK, object
 #define FLOW_WORD_GIVEN_W(object)   FIXED, 1, 1, , DUITE_W, NULL, FLOW_OF_FORK, object
+#define FLOW_WORD_GIVEN_RW(object)  FIXED, 1, 1, , DUITE_RW, NULL, FLOW_OF_FORK, object
 #define FLOW_WORD_GIVEN_SUM(object) FIXED, 1, 1, , DUITE_CW, &duite_sum, FLOW_OF_FORK, object
 #define FLOW_WORD_REST_R(object)    REST, 0, 0, const, DUITE_R, , FLOW_REST_OF_FORK, object
 #define FLOW_WORD_REST_W(object)    REST, 0, 0, const, DUITE_W, , FLOW_REST_OF_FORK, object

@@ -85,8 +85,8 @@ enum {
     FLOW_COUNT_SECOND,
     FLOW_COUNTS
 };
-/* Numbers of a box: low and high corner. */
-enum { FLOW_ROOT = 6 };
+/* Numbers of a box: low and high corner; how many points moved since the look before. */
+enum { FLOW_ROOT = 7, FLOW_ROOT_MOVED = 6 };
 /* Counts of cuts: rows; rows that lose more than half; blocks whose rank is asked to stop; the
  * change of the momentum of rows, three numbers, kg m/s. */
 enum {
@@ -173,12 +173,14 @@ struct flow_meeting {
     uint32_t side[2];  /* ascending, or the same */
     uint32_t room;     /* its list has room for so many items */
     duite_object near; /* its list */
+    enum flow_looks { FLOW_LOOKS_NOT, FLOW_LOOKS_AGAIN, FLOW_LOOKS } looks; /* in this round */
 };
 /* All of them, by their sides. */
 struct flow_meetings {
     uint32_t n, room;
     struct flow_meeting *all;
-    double *count; /* the field meeting_counts at the last look */
+    double *counted; /* the field meeting_counts in this round, and */
+    double *count;   /* when each was looked at last */
 };
 
 /* The lists of a block's contacts, of the fields `contacts` and the two behind it: each has room

@@ -202,7 +202,10 @@ static inline void make_skin(struct skin *skin, uint32_t part)
     ck_assert_uint_eq(skin->skin.n_edges, sizes.n_edges);
 }
 
-/* Makes the boxes, in a frame as a run has it: the mean way of the points. */
+/* Makes the boxes, in a frame as a run has it: the mean way of the points. Marks those that moved:
+ * vertices by their number in the sheet. */
+static unsigned char vertex_moved[N];
+
 static inline void refit(struct skin *skin)
 {
     phys_vec way = {0};
@@ -211,8 +214,10 @@ static inline void refit(struct skin *skin)
         skin->x[i] = x[skin->point[i]];
         skin->y[i] = y[skin->point[i]];
         way += (skin->y[i] - skin->x[i]) / n;
+        contact_moved_points(&skin->skin, skin->boxes)[i] = vertex_moved[skin->point[i]];
     }
     contact_refit(&skin->skin, skin->x, skin->y, &way, skin->boxes);
+    contact_moved_mark(&skin->skin, skin->boxes);
 }
 
 static inline void make(int shape, uint32_t n_parts)

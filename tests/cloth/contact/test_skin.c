@@ -8,6 +8,7 @@
 
 static unsigned char vertices_seen[N][TRIANGLES], edges_seen[EDGES][EDGES];
 static uint32_t n_seen;
+static bool again; /* only what moved is met */
 static uint64_t order;
 
 struct meeting {
@@ -65,7 +66,10 @@ static void query_all(double reach)
                                            meeting.a->y};
             const struct contact_side b = {&meeting.b->skin, meeting.b->boxes, meeting.b->x,
                                            meeting.b->y};
-            contact_query(&a, &b, reach, see, &meeting);
+            if (again)
+                contact_query_moved(&a, &b, false, reach, see, &meeting);
+            else
+                contact_query(&a, &b, reach, see, &meeting);
         }
 }
 
@@ -162,6 +166,59 @@ UNIT_LOOP(meets_all, 0, 3 * SHAPES)
         if (shape == 2 || shape == 3 || shape >= 5)
             ck_assert_uint_gt(near, N / 4);
     }
+}
+
+/* Marks what moved and, where it is known, the vertices beside. */
+static void find_marked(bool beside, bool *marked)
+{
+    for (uint32_t v = 0; v < N; v++)
+        marked[v] = vertex_moved[v];
+    if (!beside)
+        return;
+    for (uint32_t t = 0; t < TRIANGLES; t++)
+        for (int k = 0; k < 9; k++)
+            marked[corner[t][k / 3]] |= vertex_moved[corner[t][k % 3]];
+}
+
+/* How many pairs of marked vertices were seen. */
+static uint32_t count_marked(const bool *marked)
+{
+    uint32_t n = 0;
+    for (uint32_t t = 0; t < TRIANGLES; t++)
+        for (uint32_t v = 0; v < N; v++) {
+            const bool is = marked[corner[t][0]] || marked[corner[t][1]] || marked[corner[t][2]];
+            n += vertices_seen[v][t] && (is || marked[v]);
+        }
+    for (uint32_t e = 0; e < n_edges; e++)
+        for (uint32_t f = e; f < n_edges; f++)
+            n += edges_seen[e][f] && (marked[edge[e][0]] || marked[edge[e][1]] ||
+                                      marked[edge[f][0]] || marked[edge[f][1]]);
+    return n;
+}
+
+/* A query of what moved visits all pairs that a whole one visits of marked vertices, and few
+ * others: none where nothing moved. In one part, what is beside a vertex is known. */
+UNIT_LOOP(meets_what_moved, 0, 2)
+{
+    bool marked[N];
+    random_seed = 6;
+    for (uint32_t v = 5; v < N; v += N / 3)
+        vertex_moved[v] = 1;
+    make(5, _i ? PARTS : 1);
+    find_marked(!_i, marked);
+    query_all(6e-3);
+    const uint32_t all = n_seen, n = count_marked(marked);
+    again = true;
+    query_all(6e-3);
+    ck_assert_uint_gt(n, 20);
+    ck_assert_uint_eq(count_marked(marked), n);
+    ck_assert_uint_lt(n_seen, all / 2);
+    memset(vertex_moved, 0, sizeof vertex_moved);
+    for (uint32_t p = 0; p < PARTS; p++)
+        refit(skins + p);
+    query_all(6e-3);
+    ck_assert_uint_eq(n_seen, 0);
+    again = false;
 }
 
 /* Boxes that do not know where a vertex goes, and some that are too small. */

@@ -16,6 +16,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/contact/meet.c cloth/contact/meet.h \
 	cloth/contact/pair.c cloth/contact/pair.h \
 	cloth/contact/plane.c \
+	cloth/contact/push.h \
 	cloth/contact/repulse.h \
 	cloth/contact/row.h \
 	cloth/contact/soup.c cloth/contact/soup.h \

@@ -40,6 +40,7 @@ struct flow_report {
     uint64_t contacts;               /* certified contact: the most at a time; */
     uint64_t contact_pairs;          /* pairs of features that were certified, in every look; */
     uint64_t contact_solves;         /* solves of steps beyond their first; */
+    uint64_t contact_pushes;         /* how often a vertex was pushed out of another's way; */
     uint64_t contact_cuts;           /* how often a vertex's way was cut; */
     uint64_t contact_cut_run;        /* most steps in a row, of those made, that cut one vertex; */
     uint64_t contact_queries;        /* how often two sides were looked at, and */
@@ -49,10 +50,11 @@ struct flow_report {
     uint64_t contact_pinches;        /* pairs without room: they are compressed (contact/row.h), or
                                       * nothing kept them apart, so that a step was halved; */
     char contact_pinch[240];         /* the first of them; on rank 0, else empty */
-    double contact_cut_momentum;     /* kg m/s: changed by cuts, summed over the steps made */
-    uint64_t steps_retaken; /* how often one by BDF2 gained energy and was made again by implicit
-                               Euler */
-    uint64_t frames;        /* with those before the run */
+    double
+        contact_cut_momentum; /* kg m/s: changed by pushes and cuts, summed over the steps made */
+    uint64_t steps_retaken;   /* how often one by BDF2 gained energy and was made again by implicit
+                                 Euler */
+    uint64_t frames;          /* with those before the run */
     uint64_t cg_iterations_total, cg_iterations_max; /* iterations: of the steps made */
     double shortest_step;                            /* s */
     double simulated_seconds, wall_seconds;          /* wall: from the first step on */

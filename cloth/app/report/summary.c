@@ -174,6 +174,7 @@ static void add_contact(struct output_report *json, const struct summary *summar
     output_report_integer(json, "contact_solves", report->contact_solves);
     output_report_number(json, "contact_solves_mean",
                          model_promise(summary->model).apart ? summary_solves_mean(report) : NAN);
+    output_report_integer(json, "contact_pushes", report->contact_pushes);
     output_report_integer(json, "contact_cuts", report->contact_cuts);
     output_report_number(json, "contact_cut_momentum", report->contact_cut_momentum);
     output_report_integer(json, "contact_cut_run", report->contact_cut_run);

@@ -108,6 +108,7 @@ static void add_counts(struct flow_report *to, const struct flow_report *of)
         to->halved_by[i] += of->halved_by[i];
     to->contact_pairs += of->contact_pairs;
     to->contact_solves += of->contact_solves;
+    to->contact_pushes += of->contact_pushes;
     to->contact_cuts += of->contact_cuts;
     to->contact_queries += of->contact_queries;
     to->contact_queries_again += of->contact_queries_again;

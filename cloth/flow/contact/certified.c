@@ -1,8 +1,8 @@
 /* A step with certified contact. Its solve knows the contacts that the step begins with. Then all
  * pairs of features are certified on their way through the step. Those that fail become contacts,
  * and the step is solved again from where it began. Pairs that still fail after a few solves are
- * cut, so every pair of an accepted state is certified. Decisions use only counts that are equal on
- * all ranks. */
+ * pushed apart or cut, so every pair of an accepted state is certified. Decisions use only counts
+ * that are equal on all ranks. */
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/mode.h"
@@ -13,20 +13,24 @@
 #include "cloth/flow/state/room.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Solves of a step, and rounds of cuts after them. Cuts shorten ways only, so rounds end; where
- * eight do not, halves of the step need fewer. */
-enum { MAX_SOLVES = 5, MAX_CUTS = 8 };
-/* Halve the step if more rows than this share of the contacts lose half of their way: what is left
- * shows then. */
+/* Solves of a step, and rounds of pushes and of cuts after them. Cuts shorten ways only, so rounds
+ * end; where eight do not, halves of the step need fewer. */
+enum { MAX_SOLVES = 5, MAX_PUSHES = 4, MAX_CUTS = 8 };
+/* Halve the step if more rows than this share of the contacts, and than this number, lose half of
+ * their way: what is left shows then. A ring that cloth is pulled through has few contacts. */
 static const double TOO_MANY = 0.01;
-/* Cut at once if failing pairs are at most this share of the contacts. Ten times as many bring no
- * fewer solves beside the culling of pairs. */
+enum { NOT_MANY = 8 };
+/* Solve no more if failing pairs are at most this share of the contacts. Ten times as many bring no
+ * fewer solves beside the culling of pairs. Each further solve must be worth four times as many:
+ * the last few pairs fail again and again, and pushes part them as well. */
 static const double FEW = 0.001;
+enum { IMPATIENCE = 2 }; /* doublings of this share a solve */
 
 /* Thicknesses: rows that hardly open (row.h) are contacts, too. */
 static const double REACH = 1.3;
@@ -258,29 +262,50 @@ static int make_again(struct flow_state *state, const double status[FLOW_STATUS]
     return code ? code : flow_step_again(state);
 }
 
-/* Cuts until no pair fails, or no row can be cut: another look would then find the same. */
+/* Notes rows that were moved. Returns false if too many lost half of their way: the step is given
+ * up. */
+static bool note_cut(struct flow_state *state, bool push, const struct flow_cut *cut,
+                     uint64_t contacts)
+{
+    struct flow_contact_state *now = &state->contact;
+    *(push ? &state->report->contact_pushes : &state->report->contact_cuts) += cut->rows;
+    now->cut_momentum += cut->momentum;
+    now->cut += cut->rows;
+    if (cut->run > now->cut_run)
+        now->cut_run = cut->run;
+    const double most = fmax(TOO_MANY * (double)contacts, NOT_MANY);
+    now->failed = !flow_attempt_is_last(state) && (double)cut->halved > most;
+    return !now->failed;
+}
+
+/* Pushes pairs apart, then cuts until no pair fails, or no row can be cut: another look would then
+ * find the same. */
 static int cut_failing(struct flow_state *state, struct flow_seen *seen)
 {
-    struct flow_report *report = state->report;
-    int code = DUITE_OK;
-    for (int round = 0; round < MAX_CUTS && seen->fails && !code; round++) {
+    for (int round = 0; round < MAX_PUSHES + MAX_CUTS && seen->fails; round++) {
+        const bool push = round < MAX_PUSHES;
         struct flow_cut cut;
-        code = flow_contact_cut(state, &cut);
+        int code = flow_contact_cut(state, push, &cut);
         state->contact.stopped = cut.stops;
-        if (code || !cut.rows || cut.stops)
+        if (!code && !cut.rows && push && !cut.stops)
+            continue;
+        if (!code && (!cut.rows || cut.stops))
             break;
-        report->contact_cuts += cut.rows;
-        state->contact.cut_momentum += cut.momentum;
-        state->contact.cut += cut.rows;
-        if (cut.run > state->contact.cut_run)
-            state->contact.cut_run = cut.run;
-        if (!flow_attempt_is_last(state) && (double)cut.halved > TOO_MANY * (double)seen->contacts)
-            state->contact.failed = true;
-        code = look_at_step(state, true, false, seen);
+        if (!code && !note_cut(state, push, &cut, seen->contacts))
+            return DUITE_OK;
+        code = code ? code : look_at_step(state, true, false, seen);
+        if (code)
+            return code;
     }
-    state->contact.failed = state->contact.failed || seen->fails;
-    return !code && seen->fails && !state->contact.stopped ? note_failing(state, seen->fails)
-                                                           : code;
+    state->contact.failed = seen->fails;
+    return seen->fails && !state->contact.stopped ? note_failing(state, seen->fails) : DUITE_OK;
+}
+
+/* True if the pairs that fail after so many solves are worth another one. */
+static bool is_worth_solving(const struct flow_seen *seen, int solves)
+{
+    const double few = ldexp(FEW, IMPATIENCE * (solves - 1));
+    return solves < MAX_SOLVES && (double)seen->fails > few * (double)seen->contacts;
 }
 
 /* True if the step's solve succeeded. */
@@ -305,7 +330,7 @@ static int settle_certified(struct flow_state *state)
             state->contact.failed = true;
             return DUITE_OK;
         }
-        if (code || solve == MAX_SOLVES || !((double)seen.fails > FEW * (double)seen.contacts))
+        if (code || !is_worth_solving(&seen, solve))
             break;
         state->contact.stopped = status[FLOW_STOP] > 0;
         if (state->contact.stopped)

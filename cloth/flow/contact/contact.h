@@ -35,7 +35,8 @@ enum { FLOW_CONTACT_SHAPE = 8, FLOW_ON_VERTEX = 0, FLOW_ON_TRIANGLE };
 struct flow_near {
     struct flow_contact contact;
     bool fails, presses; /* of those that fail: it is to be a contact of the next solve */
-    double part[4];      /* then: how far each corner may go */
+    double part[4];      /* then: how far each corner may go, */
+    double push[4];      /* and what would part them, m, along the row's normal */
 };
 
 /* A list in an object of bytes that changes its size: the head, then the items. */
@@ -164,14 +165,14 @@ int flow_contact_again(struct flow_state *state);
 int flow_contact_accept(struct flow_state *state);
 /* Forks the tasks that make ties of the contacts, for the next solve. (rows.c) */
 int flow_contact_tie(struct flow_state *state);
-/* Cuts the ways of the corners of pairs that fail. (cut.c) */
+/* Pushes the corners of pairs that fail, or cuts their ways. (cut.c) */
 struct flow_cut {
-    uint64_t rows, halved; /* that were cut; by more than half of a way that counts */
+    uint64_t rows, halved; /* that were moved; by more than half of a way that counts */
     uint64_t run;          /* most steps in a row that one of them was cut in, with this one */
     bool stops;            /* a rank is asked to stop */
     double momentum;       /* kg m/s: that the cloth lost or gained */
 };
-int flow_contact_cut(struct flow_state *state, struct flow_cut *cut);
+int flow_contact_cut(struct flow_state *state, bool push, struct flow_cut *cut);
 int flow_contact_cut_none(struct flow_state *state); /* no row was cut yet */
 
 /* Sets the normal and gap of row's origin at the end of a step between two times (s), for a contact

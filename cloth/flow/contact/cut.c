@@ -1,16 +1,19 @@
-/* Ways are cut where solving again does not help: each corner of a pair that fails goes only as far
- * as divides the pair. The shortest way counts among several pairs, so their order does not matter.
- * A cut row gets the velocity of its remaining way. The steps in a row that cut it are counted, but
- * for steps that are given up. */
+/* Ways are changed where solving again does not help. First each pair that fails is pushed apart,
+ * by the least that its certificate takes: that loses nothing but the approach, and no momentum
+ * between cloths. What still fails after some rounds is cut: each corner goes only as far as
+ * divides the pair. The shortest way counts among several pairs, so their order does not matter.
+ * A row that was moved gets the velocity of its way. The steps in a row that cut it are counted,
+ * but for steps that are given up. */
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/cut_run.h"
 #include "cloth/flow/run/step.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* A row counts as halved if it goes less than this part of its way, and what it loses is more than
- * this part of the thickness: shorter losses do not show. */
+/* A row counts as halved if it loses more than this part of its way, and that is more than this
+ * part of the thickness: shorter losses do not show. */
 static const double HALF = 0.5, COUNTS = 0.1;
 
 struct cut_args {
@@ -20,6 +23,94 @@ struct cut_args {
     };
     uint32_t attempt, accepted; /* as in struct flow_contact_state */
 };
+
+/* ---- Moving a row ---- */
+
+struct moving {
+    const struct flow_step_args *step;
+    double counts_from; /* m: as halved */
+    const phys_vec *from;
+    phys_vec *x, *v;
+    double *counts;
+};
+
+static struct moving moving_of(const struct cut_args *args, double counts_from,
+                               const phys_vec *from, phys_vec *x, phys_vec *v, double *counts)
+{
+    return (struct moving){&args->step, counts_from, from, x, v, counts};
+}
+
+/* Moves a row to where its way ends now. */
+static void move_row(const struct moving *m, uint32_t i, double mass, const phys_vec *to)
+{
+    const phys_vec way = m->x[i] - m->from[i], lost = m->x[i] - *to;
+    const double loses = sqrt(phys_dot(&lost, &lost));
+    const phys_vec before = m->v[i];
+    m->x[i] = *to;
+    m->v[i] = (1 / m->step->h) * (m->x[i] - m->from[i]);
+    const phys_vec change = mass * (m->v[i] - before);
+    m->counts[FLOW_CUT_ROWS]++;
+    for (int c = 0; c < 3; c++)
+        m->counts[FLOW_CUT_MOMENTUM + c] += change[c];
+    m->counts[FLOW_CUT_HALVED] +=
+        loses > HALF * sqrt(phys_dot(&way, &way)) && loses > m->counts_from;
+}
+
+/* ---- Pushes ---- */
+
+FLOW_KERNEL(push, FLOW_COLLIDE, struct cut_args,
+            (R(table), R(kept_x), RW(x), RW(v), W(halo_x), W(halo_v), SUM(cut_counts),
+             REST_R(meetings)))
+
+/* Adds the push of a corner to that of its row. A row of several pairs goes as far along the normal
+ * of each as that asks for. */
+static void add_push(const struct flow_near *near, uint32_t k, phys_vec *push)
+{
+    const double sign = near->push[k] < 0 ? -1 : 1;
+    const phys_vec normal = sign * near->contact.row.normal;
+    const double lacks = sign * near->push[k] - phys_dot(push, &normal);
+    *push += fmax(lacks, 0) * normal;
+}
+
+static void find_pushes(const struct push_fields *on, phys_vec *push)
+{
+    const uint32_t block = on->args->block;
+    for (size_t at = 0; at < on->n_meetings; at++) {
+        const struct flow_list *list = on->meetings[at].data;
+        const struct flow_near *near = (const struct flow_near *)(list + 1);
+        for (uint64_t i = 0; i < list->n; i++) {
+            const struct flow_tie_corners *corners = &near[i].contact.at;
+            for (uint32_t k = 0; near[i].fails && k < corners->n; k++)
+                if (corners->block[k] == block && near[i].push[k] != 0)
+                    add_push(near + i, k, push + corners->row[k]);
+        }
+    }
+}
+
+static int push_body(const duite_call *call, const struct push_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table);
+    const double thickness = flow_of(call)->model->contact.thickness;
+    const struct moving moving =
+        moving_of(on->args, COUNTS * thickness, on->kept_x, on->x, on->v, on->cut_counts);
+    phys_vec *push = aligned_alloc(sizeof *push, (table.n + 1) * sizeof *push);
+    if (!push)
+        return duite_fail(call, FLOW_NO_MEMORY, "out of memory for the pushes of a block");
+    on->cut_counts[FLOW_CUT_STOP] += flow_stop_is_asked(flow_of(call));
+    memset(push, 0, (table.n + 1) * sizeof *push);
+    find_pushes(on, push);
+    for (uint32_t i = 0; i < table.n; i++) {
+        const phys_vec to = on->x[i] + push[i];
+        if (phys_dot(push + i, push + i) > 0)
+            move_row(&moving, i, table.mass[i], &to);
+    }
+    flow_write_halo(&table, on->x, on->halo_x);
+    flow_write_halo(&table, on->v, on->halo_v);
+    free(push);
+    return 0;
+}
+
+/* ---- Cuts ---- */
 
 FLOW_KERNEL(cut, FLOW_COLLIDE, struct cut_args,
             (R(table), R(kept_x), RW(x), RW(v), RW(cut_runs), W(halo_x), W(halo_v), SUM(cut_counts),
@@ -41,27 +132,14 @@ static void contact_cut_find_parts(const struct cut_fields *on, double *part)
     }
 }
 
-/* Moves a row by the same sum as certificates use. */
-static void cut_row(const struct flow_step_args *step, double part, double thickness, double mass,
-                    const phys_vec *from, phys_vec *x, phys_vec *v, double *counts)
-{
-    const phys_vec before = *v, way = *x - *from;
-    const double length = sqrt(phys_dot(&way, &way));
-    *x = *from + part * way;
-    *v = (1 / step->h) * (*x - *from);
-    const phys_vec change = mass * (*v - before);
-    counts[FLOW_CUT_ROWS]++;
-    for (int c = 0; c < 3; c++)
-        counts[FLOW_CUT_MOMENTUM + c] += change[c];
-    counts[FLOW_CUT_HALVED] += part < HALF && (1 - part) * length > COUNTS * thickness;
-}
-
 static int cut_body(const duite_call *call, const struct cut_fields *on)
 {
     const struct cut_args *args = on->args;
     const struct flow_table table = flow_table_in(call, on->table);
     const double thickness = flow_of(call)->model->contact.thickness;
     struct flow_cut_run *runs = (struct flow_cut_run *)(void *)on->cut_runs;
+    const struct moving moving =
+        moving_of(args, COUNTS * thickness, on->kept_x, on->x, on->v, on->cut_counts);
     double *part = malloc((table.n + 1) * sizeof *part);
     if (!part)
         return duite_fail(call, FLOW_NO_MEMORY, "out of memory for the ways of a block");
@@ -72,8 +150,9 @@ static int cut_body(const duite_call *call, const struct cut_fields *on)
     for (uint32_t i = 0; i < table.n; i++) {
         if (part[i] >= 1)
             continue;
-        cut_row(&args->step, part[i] > 0 ? part[i] : 0, thickness, table.mass[i], on->kept_x + i,
-                on->x + i, on->v + i, on->cut_counts);
+        /* by the same sum as certificates use */
+        const phys_vec to = on->kept_x[i] + fmax(part[i], 0) * (on->x[i] - on->kept_x[i]);
+        move_row(&moving, i, table.mass[i], &to);
         *on->cut_longest =
             fmax(*on->cut_longest, flow_cut_again(runs + i, args->attempt, args->accepted));
     }
@@ -83,14 +162,17 @@ static int cut_body(const duite_call *call, const struct cut_fields *on)
     return 0;
 }
 
-static int fork_cut(struct flow_state *state, const struct cut_args *args)
+/* ---- Forks ---- */
+
+static int fork_cut(struct flow_state *state, const struct flow_kernel *kernel,
+                    const struct cut_args *args)
 {
     duite_object *rest = flow_contact_rest(state);
     const struct flow_with with = {.n = flow_contact_lists(state, args->block, rest), .rest = rest};
-    return flow_fork_with(state, &flow_kernel_cut, args, &with);
+    return flow_fork_with(state, kernel, args, &with);
 }
 
-int flow_contact_cut(struct flow_state *state, struct flow_cut *cut)
+int flow_contact_cut(struct flow_state *state, bool push, struct flow_cut *cut)
 {
     struct cut_args args = {.step = flow_attempt_args(state),
                             .attempt = state->contact.attempt,
@@ -100,7 +182,7 @@ int flow_contact_cut(struct flow_state *state, struct flow_cut *cut)
     if (!code)
         code = duite_set(state->rt, state->run.cut_longest, NULL);
     for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++)
-        code = fork_cut(state, &args);
+        code = fork_cut(state, push ? &flow_kernel_push : &flow_kernel_cut, &args);
     if (!code)
         code = duite_get(state->rt, state->run.cut_counts, counts);
     const double *p = counts + FLOW_CUT_MOMENTUM;

@@ -8,6 +8,7 @@
 #include "cloth/flow/contact/mode.h"
 #include "cloth/flow/contact/skin.h"
 
+#include "cloth/contact/push.h"
 #include "cloth/contact/solid.h"
 
 #include <math.h>
@@ -110,6 +111,23 @@ static bool fails_alone(const struct meeting *m, const phys_vec x[3], const phys
     return fails;
 }
 
+/* Finds the pushes that bring corners out of the plane of the shape's nearest point, which moves
+ * with it. */
+static void push_place(const struct meeting *m, uint32_t n, const phys_vec x[3],
+                       const phys_vec y[3], const struct contact_solid_point *on,
+                       struct flow_near *near)
+{
+    const double apart = contact_push_gap(on->gap, m->model->contact.thickness);
+    phys_vec place = m->h * on->velocity;
+    for (int k = 0; k < 3; k++)
+        place += on->weight[k] * x[k];
+    for (uint32_t k = 0; k < n; k++) {
+        const phys_vec from = y[k] - place;
+        const double gap = on->gap + phys_dot(&on->normal, &from);
+        near->push[k] = near->contact.at.held >> k & 1 ? 0 : fmax(apart - gap, 0);
+    }
+}
+
 /* on: at the step's begin. The parts stay 1 if no cut helps, as in meet.c. */
 static void fail_place(struct meeting *m, uint32_t n, const uint32_t *point, const phys_vec x[3],
                        const phys_vec y[3], const struct contact_solid_point *on,
@@ -124,6 +142,7 @@ static void fail_place(struct meeting *m, uint32_t n, const uint32_t *point, con
                             part);
     for (uint32_t k = 0; k < n; k++)
         near->part[k] = part[k];
+    push_place(m, n, x, y, on, near);
 }
 
 static void fail_triangle(struct meeting *m, uint32_t triangle, const phys_vec x[3],

@@ -3,16 +3,24 @@
 
 #include <math.h>
 
+/* Of a pile whose full steps fail for good, a step in 32 halves is then solved in vain. */
+enum { MOST_PATIENCE = 16 };
+
 void flow_grid_begin(struct flow_grid *grid, uint64_t n_steps)
 {
     *grid = (struct flow_grid){
-        .end = n_steps * FLOW_TICKS, .length = FLOW_TICKS, .least_done = FLOW_TICKS};
+        .end = n_steps * FLOW_TICKS, .length = FLOW_TICKS, .least_done = FLOW_TICKS, .patience = 1};
 }
 
-bool flow_grid_halve(struct flow_grid *grid)
+bool flow_grid_halve(struct flow_grid *grid, bool learns)
 {
     if (grid->length == 1)
         return false;
+    if (grid->grown && learns) {
+        grid->patience = grid->patience < MOST_PATIENCE ? 2 * grid->patience : MOST_PATIENCE;
+        grid->later = grid->now + (uint64_t)grid->patience * grid->length;
+    }
+    grid->grown = false;
     grid->length /= 2;
     grid->refused++;
     return true;
@@ -23,8 +31,11 @@ void flow_grid_accept(struct flow_grid *grid, bool calm)
     grid->now += grid->length;
     if (grid->length < grid->least_done)
         grid->least_done = grid->length;
+    if (grid->grown && grid->patience > 1)
+        grid->patience /= 2;
     const uint32_t twice = 2 * grid->length;
-    if (calm && twice <= FLOW_TICKS && grid->now % twice == 0)
+    grid->grown = calm && twice <= FLOW_TICKS && grid->now % twice == 0 && grid->now >= grid->later;
+    if (grid->grown)
         grid->length = twice;
 }
 

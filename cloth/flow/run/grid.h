@@ -11,15 +11,20 @@ enum { FLOW_TICKS = 1024 };
 
 struct flow_grid {
     uint64_t now, end;   /* ticks; end: a multiple of FLOW_TICKS, at most 2^42 */
-    uint32_t length;     /* of the step to come: a power of two */
     uint64_t refused;    /* steps that were begun again with half the length */
+    uint64_t later;      /* tick: steps grow from there on */
+    uint32_t length;     /* of the step to come: a power of two */
     uint32_t least_done; /* the shortest step that was made */
+    uint32_t patience;   /* lengths of a step that had grown and failed, until it is tried again:
+                          * twice as many each time, half as many after one that went well */
+    uint32_t grown;      /* not zero: the step to come is longer than the last one accepted */
 };
 
 void flow_grid_begin(struct flow_grid *grid, uint64_t n_steps);
 
-/* Halves the next step after a refused one. Returns false if that had one tick. */
-bool flow_grid_halve(struct flow_grid *grid);
+/* Halves the next step after a refused one. Returns false if that had one tick. learns: where this
+ * one had grown, steps stay short for a while. */
+bool flow_grid_halve(struct flow_grid *grid, bool learns);
 
 /* After a step that was accepted; calm: the next one may have twice the length, if the grid lets
  * it. */

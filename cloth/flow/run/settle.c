@@ -74,7 +74,7 @@ static int give_up_step(struct flow_state *state, const struct flow_verdict *ver
 /* The next step has half the length. Returns false if that is less than a tick. */
 static bool halve_step(struct flow_state *state, enum flow_cause cause)
 {
-    const bool halved = flow_grid_halve(&state->grid);
+    const bool halved = flow_grid_halve(&state->grid, cause == FLOW_CAUSE_CONTACT);
     state->report->halved_by[cause] += halved;
     return halved;
 }

@@ -28,9 +28,9 @@ UNIT_TEST(halved_to_a_tick)
     flow_grid_begin(&grid, 4294967294);
     for (uint32_t length = FLOW_TICKS; length > 1; length /= 2) {
         ck_assert_uint_eq(grid.length, length);
-        ck_assert(flow_grid_halve(&grid));
+        ck_assert(flow_grid_halve(&grid, false));
     }
-    ck_assert(!flow_grid_halve(&grid));
+    ck_assert(!flow_grid_halve(&grid, false));
     ck_assert_uint_eq(grid.length, 1);
     ck_assert_uint_eq(grid.refused, 10);
     ck_assert_uint_eq(grid.least_done, FLOW_TICKS); /* none was made */
@@ -47,7 +47,7 @@ UNIT_TEST(steps_begin_at_multiples_of_their_length)
         ck_assert_uint_eq(grid.now % grid.length, 0);
         ck_assert_uint_le(grid.now + grid.length, grid.end);
         random = random * 1664525 + 1013904223;
-        if ((random >> 24) % 3 == 0 && flow_grid_halve(&grid))
+        if ((random >> 24) % 3 == 0 && flow_grid_halve(&grid, false))
             continue;
         flow_grid_accept(&grid, (random >> 16) % 4 > 0);
         longer += grid.length > before;
@@ -61,7 +61,7 @@ UNIT_TEST(grown_only_when_calm)
 {
     struct flow_grid grid;
     flow_grid_begin(&grid, 2);
-    flow_grid_halve(&grid);
+    flow_grid_halve(&grid, false);
     flow_grid_accept(&grid, true); /* at 512: 1024 does not begin there */
     ck_assert_uint_eq(grid.length, 512);
     flow_grid_accept(&grid, false);
@@ -70,6 +70,31 @@ UNIT_TEST(grown_only_when_calm)
     flow_grid_accept(&grid, true);
     ck_assert_uint_eq(grid.length, FLOW_TICKS);
     ck_assert_uint_eq(grid.least_done, 512);
+}
+
+/* How many steps of half the length are made until the longer one is tried again. */
+static int halves_until_grown(struct flow_grid *grid)
+{
+    int n = 0;
+    ck_assert(flow_grid_halve(grid, true));
+    for (const uint32_t length = grid->length; grid->length == length; n++)
+        flow_grid_accept(grid, true);
+    return n;
+}
+
+UNIT_TEST(a_length_that_fails_is_tried_ever_later)
+{
+    struct flow_grid grid;
+    flow_grid_begin(&grid, 1000);
+    ck_assert_int_eq(halves_until_grown(&grid), 2); /* it was not grown */
+    ck_assert_int_eq(halves_until_grown(&grid), 4);
+    ck_assert_int_eq(halves_until_grown(&grid), 8);
+    ck_assert_int_eq(halves_until_grown(&grid), 16);
+    ck_assert_int_eq(halves_until_grown(&grid), 32);
+    ck_assert_int_eq(halves_until_grown(&grid), 32);
+    flow_grid_accept(&grid, true); /* went well */
+    ck_assert_int_eq(halves_until_grown(&grid), 2);
+    ck_assert_int_eq(halves_until_grown(&grid), 32);
 }
 
 UNIT_TEST(what_is_refused)

@@ -25,7 +25,7 @@ enum { MAX_SOLVES = 5, MAX_PUSHES = 4, MAX_CUTS = 8 };
 /* Halve the step if more rows than this share of the contacts, and than this number, lose half of
  * their way: what is left shows then. A ring that cloth is pulled through has few contacts. */
 static const double TOO_MANY = 0.01;
-enum { NOT_MANY = 8 };
+enum { NOT_MANY = 4 };
 /* Solve no more if failing pairs are at most this share of the contacts. Ten times as many bring no
  * fewer solves beside the culling of pairs. Each further solve must be worth four times as many:
  * the last few pairs fail again and again, and pushes part them as well. */

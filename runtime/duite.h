@@ -304,7 +304,8 @@ int duite_event_new(const duite_call *call, duite_event *event);
 /* The event has happened. code: 0, or that of a failure, with which the task fails, as if its body
  * had returned it. Once for each event, from any thread of its rank, also before the body is over.
  * An event that is never completed keeps duite_wait and duite_stop waiting; the report of a
- * standstill names it. Local. Errors: DUITE_E_ARGUMENT (no runtime), DUITE_E_OBJECT (completed
+ * standstill names it. The main thread completes none while it waits, as it may in a fork, too
+ * (options.window). Local. Errors: DUITE_E_ARGUMENT (no runtime), DUITE_E_OBJECT (completed
  * already, or never made). */
 int duite_complete(duite *rt, duite_event event, int code);
 
@@ -567,8 +568,9 @@ int duite_get_at(duite *rt, duite_object object, int rank, void *values);
  * overwrite (DUITE_W, whose bytes are unspecified at first) or change (DUITE_RW) until it releases
  * the object; on other ranks *data is NULL. Returns on the home when the value is there; later
  * forks on the object wait for the release. Several objects may be acquired, if none of them waits
- * for another. Meanwhile tasks may be forked, but calls that wait (duite_get, duite_wait,
- * duite_stop and their like) are DUITE_E_STATE. A poisoned value returns its code on the home
+ * for another. Meanwhile tasks may be forked, but replays and calls that wait (duite_get,
+ * duite_wait, duite_stop and their like) are DUITE_E_STATE. A failure of MPI or a lost rank ends
+ * all turns. A poisoned value returns its code on the home
  * alone, with *data NULL; the object is to be released all the same. A value whose size changes has
  * its maximum after DUITE_W. Collective. Errors: that of the failed task, DUITE_E_OBJECT,
  * DUITE_E_ARGUMENT (another mode, nowhere to put the data), DUITE_E_STATE (acquired already, or not

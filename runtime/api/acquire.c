@@ -1,6 +1,10 @@
 /* The main program's turn on an object: a task of a kernel of the runtime's own, whose body hands
  * out its data and which an event holds until the program releases the object. So the turn has its
- * place in the order like any task. All ranks keep the same list of turns; the data are on one. */
+ * place in the order like any task. All ranks keep the same list of turns; the data are on one.
+ *
+ * A turn is held by the list, by its task until that is over, and by the call that makes it. When
+ * communication breaks, all turns leave the list: a task that begins afterwards, or was about to,
+ * finds `released` and ends by itself. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/error.h"
@@ -10,19 +14,48 @@
 struct api_turn {
     struct api_turn *next;
     duite_object object;
-    duite_event event; /* {0, 0}: the task is elsewhere, or over */
+    duite_event event; /* written before `begun` */
     void *data;
-    _Atomic int begun;
+    const struct data_failure *failure; /* of its task, written before `over` */
+    _Atomic int holders, begun, over, released;
 };
+
+static void turn_drop(struct api_turn *turn)
+{
+    if (atomic_fetch_sub_explicit(&turn->holders, 1, memory_order_acq_rel) == 1)
+        base_free(turn);
+}
+
+/* The task and the program may both find that the other one is done: then one of them is late, and
+ * its event is gone. */
+static void turn_complete(struct task_graph *graph, struct api_turn *turn)
+{
+    if (atomic_load(&turn->begun) && atomic_load(&turn->released))
+        task_complete(graph, turn->event, DUITE_OK);
+}
 
 static int acquire_body(const duite_call *call)
 {
     struct api_turn *turn = *(struct api_turn *const *)call->args;
     const int code = duite_event_new(call, &turn->event);
-    turn->data = code ? NULL : call->param[0].data;
-    atomic_store_explicit(&turn->begun, 1, memory_order_release);
+    if (code)
+        return code;
+    turn->data = call->param[0].data;
+    atomic_store(&turn->begun, 1);
+    turn_complete(call->own->graph, turn);
     queue_notify(call->own->graph->pool);
-    return code;
+    return DUITE_OK;
+}
+
+/* The task is over, with or without its body. */
+static void acquire_over(struct task_graph *graph, const void *args,
+                         const struct data_failure *failure)
+{
+    struct api_turn *turn = *(struct api_turn *const *)args;
+    turn->failure = failure;
+    atomic_store(&turn->over, 1);
+    queue_notify(graph->pool);
+    turn_drop(turn);
 }
 
 #define TURN(mode_, name_)                                                                         \
@@ -34,6 +67,12 @@ static const duite_kernel turn_kernels[] = {TURN(DUITE_R, "duite_acquire r"),
                                             TURN(DUITE_W, "duite_acquire w"),
                                             TURN(DUITE_RW, "duite_acquire rw")};
 enum { TURNS = sizeof turn_kernels / sizeof *turn_kernels };
+
+void api_watch_turns(struct task_graph *graph)
+{
+    graph->own_kernels = graph->n_kernels < TURNS ? graph->n_kernels : graph->n_kernels - TURNS;
+    graph->own_over = acquire_over;
+}
 
 const duite_kernel **api_add_kernels(const duite_kernel *const *kernels)
 {
@@ -61,13 +100,14 @@ static struct api_turn **turn_find(duite *rt, duite_object object)
     return turn;
 }
 
+/* The list holds it no more, and the program has it no more. */
 static void turn_end(duite *rt, struct api_turn **place)
 {
     struct api_turn *turn = *place;
-    if (turn->event.slot)
-        task_complete(&rt->graph, turn->event, DUITE_OK);
     *place = turn->next;
-    base_free(turn);
+    atomic_store(&turn->released, 1);
+    turn_complete(&rt->graph, turn);
+    turn_drop(turn);
 }
 
 void api_release_all(duite *rt)
@@ -87,40 +127,42 @@ int api_check_turns(const duite *rt, const char *call)
                       call, turn->object.slot, turn->object.generation);
 }
 
-/* Its task is over without a turn, if all tasks are. */
-struct turn_wait {
-    const duite *rt;
-    const struct api_turn *turn;
-};
+/* ---- Their begin ---- */
+
 static bool turn_is_settled(void *context)
 {
-    const struct turn_wait *wait = context;
-    return atomic_load_explicit(&wait->turn->begun, memory_order_acquire) ||
-           work_is_drained(wait->rt->pool);
+    struct api_turn *turn = context;
+    return atomic_load(&turn->begun) || atomic_load(&turn->over);
 }
 
-/* The value is there and whole, for a turn that reads it: the task then runs. */
-static int turn_wait_for_value(duite *rt, duite_object object, duite_mode mode, int home)
+/* On the object's home: works until the turn begins, or its task is over without it. */
+static int turn_wait(duite *rt, struct api_turn *turn)
 {
-    size_t count;
-    return mode == DUITE_W ? DUITE_OK : api_get(rt, object, home, NULL, &count, "duite_acquire");
+    work_until(rt->pool, &(struct work_why){"duite_acquire", "its turn on an object", NULL},
+               turn_is_settled, turn);
+    if (atomic_load(&turn->begun))
+        return DUITE_OK;
+    if (atomic_load(&turn->over))
+        return task_failure_error(&rt->graph, turn->failure);
+    return comm_error(rt->comm);
 }
 
+/* The turn is new, and held once. It stays in the list if its task was forked. */
 static int turn_begin(duite *rt, struct api_turn *turn, duite_mode mode)
 {
-    const duite_kernel *kernel = &turn_kernels[mode - DUITE_R];
     const int home = duite_home(rt, turn->object);
-    const int poisoned = home < 0 ? DUITE_OK : turn_wait_for_value(rt, turn->object, mode, home);
-    if (rt->graph.broken || comm_is_broken(rt->comm))
-        return poisoned;
-    const int code = duite_fork(rt, kernel, &turn, 1, &turn->object);
-    if (code || poisoned || home != rt->graph.rank)
-        return code ? code : poisoned;
-    work_until(rt->pool, &(struct work_why){"duite_acquire", "its turn on an object", NULL},
-               turn_is_settled, &(struct turn_wait){rt, turn});
-    if (turn->begun)
-        return DUITE_OK;
-    return comm_is_broken(rt->comm) ? comm_error(rt->comm) : base_no_memory("a turn on an object");
+    const bool here = home == rt->graph.rank;
+    turn->holders = here ? 3 : 2;
+    turn->next = rt->turns;
+    rt->turns = turn;
+    const int code = duite_fork(rt, &turn_kernels[mode - DUITE_R], &turn, 1, &turn->object);
+    if (!code)
+        return here ? turn_wait(rt, turn) : DUITE_OK;
+    if (here)
+        turn_drop(turn); /* its task never was */
+    if (rt->turns == turn)
+        turn_end(rt, &rt->turns);
+    return code;
 }
 
 int duite_acquire(duite *rt, duite_object object, duite_mode mode, void **data)
@@ -142,12 +184,10 @@ int duite_acquire(duite *rt, duite_object object, duite_mode mode, void **data)
     if (!turn)
         return api_remember(rt, base_no_memory("a turn on an object"));
     turn->object = object;
-    turn->next = rt->turns;
-    rt->turns = turn;
     code = turn_begin(rt, turn, mode);
-    *data = turn->data;
-    if (code == DUITE_E_OBJECT) /* on all ranks: nothing was forked */
-        turn_end(rt, &rt->turns);
+    if (!code && rt->turns == turn)
+        *data = turn->data;
+    turn_drop(turn);
     return code;
 }
 

@@ -306,7 +306,10 @@ static int replay_rounds_while(duite *rt, struct plan_record *record, duite_obje
 static int graph_replay(duite *rt, duite_graph graph, const duite_object *flag, uint64_t rounds)
 {
     struct recorded_graph *found;
-    int code = graph_enter(rt, flag ? "duite_replay_while" : "duite_replay", graph, &found);
+    const char *call = flag ? "duite_replay_while" : "duite_replay";
+    int code = graph_enter(rt, call, graph, &found);
+    if (!code)
+        code = api_remember(rt, api_check_turns(rt, call));
     if (code)
         return code;
     task_mix(&rt->graph, graph.slot);
@@ -342,6 +345,8 @@ static bool replay_is_over(void *context)
 int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds)
 {
     int code = api_enter(rt, "duite_graph_rounds");
+    if (!code)
+        code = api_check_turns(rt, "duite_graph_rounds");
     if (code)
         return code;
     const struct recorded_graph *found = graph_find(rt, graph);

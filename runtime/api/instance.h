@@ -74,6 +74,8 @@ int api_agree_at_start(duite *rt, const duite_options *options, int code);
 
 /* The program's kernels with those of the runtime; to be freed. NULL without memory. */
 const duite_kernel **api_add_kernels(const duite_kernel *const *kernels);
+/* The graph has them: their tasks tell their end from now on. */
+void api_watch_turns(struct task_graph *graph);
 
 /* Releases all that the program has acquired. */
 void api_release_all(duite *rt);

@@ -88,6 +88,7 @@ static int instance_start_graph(duite *rt, const duite_options *options)
                       ? base_no_memory("the list of kernels")
                       : task_graph_start(&rt->graph, rank, n, kernels, code ? NULL : options->laws);
     base_free(kernels);
+    api_watch_turns(&rt->graph);
     if (!code)
         code = started;
     if (!code && options->check)
@@ -199,7 +200,8 @@ static bool instance_has_nothing_left(void *context)
     const duite *rt = leftovers->rt;
     if (!work_unfinished(rt->pool) && !offload_count(&rt->graph))
         return true;
-    return comm_is_lost(rt->comm) && work_stands_still(rt->pool, &leftovers->still);
+    return comm_is_lost(rt->comm) && !task_events_pending((struct task_graph *)&rt->graph) &&
+           work_stands_still(rt->pool, &leftovers->still);
 }
 
 void api_give_up(duite *rt)

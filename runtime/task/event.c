@@ -47,6 +47,8 @@ void task_held_over(struct task_graph *graph, struct worker *worker, struct task
     const struct data_failure *failure = atomic_load(held_failure(task));
     if (failure)
         task_poison_outputs(task, failure);
+    if (task->kernel >= graph->own_kernels)
+        graph->own_over(graph, task_rest(task, task->n), failure);
     task_finish(graph, worker, task);
 }
 
@@ -144,7 +146,15 @@ int task_complete(struct task_graph *graph, duite_event event, int code)
                       event.generation, event.slot ? "completed already" : "never made");
 }
 
-unsigned task_events_look(struct task_graph *graph, task_event_seen *seen, void *context)
+uint32_t task_events_pending(struct task_graph *graph)
+{
+    pthread_mutex_lock(&graph->lock);
+    const uint32_t n = graph->events.pending;
+    pthread_mutex_unlock(&graph->lock);
+    return n;
+}
+
+void task_events_look(struct task_graph *graph, task_event_seen *seen, void *context)
 {
     const struct task_events *events = &graph->events;
     pthread_mutex_lock(&graph->lock); /* no task with an event ends meanwhile */
@@ -152,7 +162,5 @@ unsigned task_events_look(struct task_graph *graph, task_event_seen *seen, void 
         if (events->event[slot].generation % 2)
             seen(context, events->event[slot].task,
                  (duite_event){slot, events->event[slot].generation});
-    const unsigned n = events->pending;
     pthread_mutex_unlock(&graph->lock);
-    return n;
 }

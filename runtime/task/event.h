@@ -29,9 +29,10 @@ int task_complete(struct task_graph *graph, duite_event event, int code);
 /* Waits until no thread is in task_complete any more. All tasks are over. */
 void task_events_settle(struct task_graph *graph);
 
-/* Shows all events that are not completed. Returns how many there are. Any thread. */
+/* How many events are not completed; shows them all. Any thread. */
+uint32_t task_events_pending(struct task_graph *graph);
 typedef void task_event_seen(void *context, const struct task *task, duite_event event);
-unsigned task_events_look(struct task_graph *graph, task_event_seen *seen, void *context);
+void task_events_look(struct task_graph *graph, task_event_seen *seen, void *context);
 
 #pragma GCC visibility pop
 

@@ -57,6 +57,7 @@ enum task_state {
 };
 
 struct task_scope;
+struct task_graph;
 
 /* One parameter of a task: a quarter of a cache line. The version, the sum or, if it is postponed,
  * the task's scope says the rest about the object. */
@@ -203,6 +204,10 @@ typedef int task_check_body(struct queue_pool *pool, const duite_kernel *kernel,
 /* The task of another rank with this top scope is over, with all its descendants. */
 typedef void task_top_over(struct task_scope *top, struct worker *worker);
 
+/* A HELD task of the runtime's own is over; failure: NULL, or why its results are poisoned. */
+typedef void task_own_over(struct task_graph *graph, const void *args,
+                           const struct data_failure *failure);
+
 /* Events of this rank by slot. */
 struct task_events {
     struct task_event *event;
@@ -250,6 +255,8 @@ struct task_graph {
     pthread_mutex_t lock; /* of the rest, and of the failures of scopes */
     struct task_failure *failures;
     struct task_events events;
+    uint32_t own_kernels; /* the first kernel of the runtime's own */
+    task_own_over *own_over;
     struct data_sum *unclosed; /* sums of ended tasks, kept for want of memory */
 };
 

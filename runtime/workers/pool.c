@@ -196,8 +196,8 @@ const char *work_endless(const struct work_pool *pool)
 
 void work_note_task(struct worker *worker, const struct task *task, const struct work_ran *ran)
 {
-    if (task_has_body(task) && !ran->body)
-        return; /* poison kept it from running */
+    if (task->state == TASK_ENDED || (task_has_body(task) && !ran->body))
+        return; /* its body ran before, or poison kept it from running */
     bool nested;
     struct trace_event event = {.begin = ran->start,
                                 .took = ran->took,

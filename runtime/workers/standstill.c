@@ -272,7 +272,8 @@ static void report_channel(void *context, const struct comm_channel *channel)
 static void report_event(void *context, const struct task *task, duite_event event)
 {
     struct report *report = context;
-    report_line(report, "%s ends when the program completes event %u.%u (duite_complete)",
+    report_line(report,
+                "%s ends when the program completes event %u.%u (duite_complete; duite_release)",
                 report_words(report, task).text, event.slot, event.generation);
 }
 

@@ -113,6 +113,12 @@ static void poisoned(void)
     duite_free(rt, object);
 }
 
+static int nothing(duite *runtime, void *context)
+{
+    (void)runtime, (void)context;
+    return 0;
+}
+
 /* Each is refused by its code, and nothing is lost. */
 static void refused(void)
 {
@@ -139,9 +145,16 @@ static void refused(void)
                  duite_get_count(rt, other, &count) == DUITE_E_STATE &&
                  duite_wait(rt) == DUITE_E_STATE && duite_stop(&rt) == DUITE_E_STATE && rt,
              "waits before the release");
+    duite_graph graph = DUITE_NO_GRAPH;
+    uint64_t rounds;
+    tap_case(!duite_graph_new(rt, nothing, NULL, &graph) &&
+                 duite_replay(rt, graph, 1) == DUITE_E_STATE &&
+                 duite_graph_rounds(rt, graph, &rounds) == DUITE_E_STATE &&
+                 !duite_graph_free(rt, graph),
+             "replays before the release");
     tap_case(strstr(duite_message(), "duite_release") != NULL, "which name what to do");
     tap_case(duite_acquire(rt, object, DUITE_R, &data) == DUITE_E_STATE, "an object twice");
-    tap_case(!duite_release(rt, object) && duite_wait(rt) == DUITE_E_STATE &&
+    tap_case(!duite_release(rt, object) && duite_wait(rt) == DUITE_E_STATE && !duite_wait(rt) &&
                  !duite_get(rt, object, &value) && value == 8,
              "and the turn went on");
     duite_free(rt, object);

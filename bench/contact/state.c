@@ -111,7 +111,7 @@ int contact_state_look(struct serve_request *request, contact_state_reader *read
     for (uint64_t i = 0; i < times && !code; i++) {
         struct flow_seen seen = {0};
         const double begin = serve_seconds();
-        code = flow_contact_look(&session.run, false, &seen);
+        code = flow_contact_look(&session.run, false, false, &seen);
         if (!code && rows)
             code = flow_contact_tie(&session.run);
         code = tasks_code(code ? code : duite_wait(session.rt));

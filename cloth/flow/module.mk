@@ -65,7 +65,7 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/contact/image.c \
     cloth/flow/contact/image.h \
     cloth/flow/contact/kin.c \
-    cloth/flow/contact/meet.c \
+    cloth/flow/contact/meet.c cloth/flow/contact/meet_pair.c cloth/flow/contact/meeting.h \
     cloth/flow/contact/meet_shape.c \
     cloth/flow/contact/memory.c \
     cloth/flow/contact/mode.h \

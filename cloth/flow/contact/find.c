@@ -11,7 +11,8 @@ void flow_findings_open(const duite_call *call, size_t i, struct flow_list *list
                                  .near = (struct flow_near *)(list + 1),
                                  .before = args->again ? list->n : 0,
                                  .args = args,
-                                 .counts = counts + (size_t)FLOW_COUNTS * args->number};
+                                 .counts =
+                                     counts + FLOW_COUNTS * (args->number % FLOW_MEETING_GROUP)};
 }
 
 static bool make_room(const struct flow_findings *findings)

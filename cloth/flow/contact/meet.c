@@ -58,7 +58,7 @@ static int query_meeting(struct meeting *m, const struct contact_side *other)
 }
 
 FLOW_KERNEL(meet_self, FLOW_COLLIDE, struct flow_meet_args,
-            (GIVEN_RW(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes)))
+            (GIVEN_RW(near), GIVEN_SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes)))
 static int meet_self_body(const duite_call *call, const struct meet_self_fields *on)
 {
     struct meeting m;
@@ -73,7 +73,7 @@ static int meet_self_body(const duite_call *call, const struct meet_self_fields 
 }
 
 FLOW_KERNEL(meet, FLOW_COLLIDE, struct flow_meet_args,
-            (GIVEN_RW(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes),
+            (GIVEN_RW(near), GIVEN_SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes),
              GIVEN_R(other_skin), GIVEN_R(other_x), GIVEN_R(other_boxes)))
 static int meet_body(const duite_call *call, const struct meet_fields *on)
 {
@@ -86,8 +86,8 @@ static int meet_body(const duite_call *call, const struct meet_fields *on)
 }
 
 FLOW_KERNEL(meet_figure, FLOW_COLLIDE, struct flow_meet_args,
-            (GIVEN_RW(near), SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes), R(body_skins),
-             R(body_points), R(body_boxes), R(body_fans)))
+            (GIVEN_RW(near), GIVEN_SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes),
+             R(body_skins), R(body_points), R(body_boxes), R(body_fans)))
 static int meet_figure_body(const duite_call *call, const struct meet_figure_fields *on)
 {
     struct meeting m;

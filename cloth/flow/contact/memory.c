@@ -37,6 +37,7 @@ void flow_contact_free(struct flow_state *state)
     free(contact->meetings.all);
     free(contact->meetings.count);
     free(contact->meetings.counted);
+    free(contact->meetings.counts);
     *contact = (struct flow_contact_state){0};
 }
 
@@ -50,8 +51,11 @@ int flow_contact_room(struct flow_state *state, uint32_t n)
     free(meetings->all);
     free(meetings->count);
     free(meetings->counted);
+    free(meetings->counts);
     free(contact->refs);
-    meetings->room = n + n / 2;
+    meetings->room = (n + n / 2) / FLOW_MEETING_GROUP * FLOW_MEETING_GROUP + FLOW_MEETING_GROUP;
+    meetings->counts =
+        cloth_alloc(meetings->room / FLOW_MEETING_GROUP, sizeof *meetings->counts, trouble);
     meetings->all = cloth_alloc(meetings->room, sizeof *meetings->all, trouble);
     meetings->count = cloth_alloc(meetings->room, FLOW_COUNTS * sizeof *meetings->count, trouble);
     meetings->counted =
@@ -108,5 +112,7 @@ void flow_contact_part(struct flow_state *state)
     struct flow_meetings *meetings = &state->contact.meetings;
     for (uint32_t i = 0; i < meetings->n; i++)
         flow_noted(state, duite_free(state->rt, meetings->all[i].near));
+    for (uint32_t g = 0; g < flow_meeting_groups(meetings); g++)
+        flow_noted(state, duite_free(state->rt, meetings->counts[g]));
     meetings->n = 0;
 }

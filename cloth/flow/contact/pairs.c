@@ -147,6 +147,16 @@ static uint32_t count_near(const struct flow_state *state, double reach)
     return n;
 }
 
+/* The counts of a group of meetings are one object, since each of its tasks opens the whole of it:
+ * in one object of all, memory would grow with the square of their number. */
+static void make_counts(struct flow_state *state)
+{
+    struct flow_meetings *meetings = &state->contact.meetings;
+    for (uint32_t g = 0; g < flow_meeting_groups(meetings); g++)
+        flow_noted(state, duite_new(state->rt, DUITE_F64, FLOW_COUNTS * FLOW_MEETING_GROUP,
+                                    meetings->counts + g));
+}
+
 /* The object of a list lives with the first side where the sum of both is even, else with the
  * second: so neighbours share the work. */
 static void pairs_make_list(struct flow_state *state, struct flow_meeting *meeting)
@@ -177,7 +187,7 @@ static int make_meetings(struct flow_state *state)
             *meeting = (struct flow_meeting){.side = {a, b}, .room = LEAST_ROOM};
             pairs_make_list(state, meeting);
         }
-    flow_object_again(state, FLOW_FIELD_meeting_counts, 0);
+    make_counts(state);
     return DUITE_OK;
 }
 
@@ -194,7 +204,7 @@ int flow_contact_meet_again(struct flow_state *state, uint32_t n,
             (struct flow_meeting){.side = {side[i].side[0], side[i].side[1]}, .room = side[i].room};
         pairs_make_list(state, meeting);
     }
-    flow_object_again(state, FLOW_FIELD_meeting_counts, 0);
+    make_counts(state);
     return DUITE_OK;
 }
 
@@ -255,6 +265,8 @@ static int fork_meeting(struct flow_state *state, uint32_t number)
                                         .to = step.time};
     const struct flow_objects *other = state->block + (side[1] < n_blocks ? side[1] : 0);
     const struct flow_with with = {.near = meeting->near,
+                                   .meeting_counts =
+                                       state->contact.meetings.counts[number / FLOW_MEETING_GROUP],
                                    .other_skin = other->skin,
                                    .other_x = other->skin_x,
                                    .other_boxes = other->skin_boxes};
@@ -286,12 +298,16 @@ static void choose_meetings(struct flow_state *state, bool again)
 static int fork_meetings(struct flow_state *state, struct flow_seen *seen)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
-    int code = duite_set(state->rt, state->run.meeting_counts, NULL);
+    const uint32_t n_groups = flow_meeting_groups(meetings);
+    int code = DUITE_OK;
+    for (uint32_t g = 0; g < n_groups && !code; g++)
+        code = duite_set(state->rt, meetings->counts[g], NULL);
     for (uint32_t i = 0; i < meetings->n && !code; i++)
         if (meetings->all[i].looks != FLOW_LOOKS_NOT)
             code = fork_meeting(state, i);
-    if (!code)
-        code = duite_get(state->rt, state->run.meeting_counts, meetings->counted);
+    for (uint32_t g = 0; g < n_groups && !code; g++)
+        code = duite_get(state->rt, meetings->counts[g],
+                         meetings->counted + (size_t)g * FLOW_COUNTS * FLOW_MEETING_GROUP);
     for (uint32_t i = 0; i < meetings->n && !code; i++) {
         const double *counted = meetings->counted + FLOW_COUNTS * (size_t)i;
         if (meetings->all[i].looks == FLOW_LOOKS_NOT)

@@ -141,7 +141,6 @@ enum {
     X(slope,        ONE,     double,        1, one,           implicit_run, work)                  \
     X(roots,        ONE,     double,        FLOW_ROOT, sides,     meets,        work)              \
     X(tie_said,     SIZED,   unsigned char, 1, records_bytes, meets,        work)                  \
-    X(meeting_counts, ONE,   double,        FLOW_COUNTS, meetings, meets, work)                    \
     X(cut_counts,   ONE,     double,        FLOW_CUT_COUNTS, one, sweeps,       work)              \
     X(cut_longest,  ONE,     double,        1, one,           sweeps,       work)                  \
     X(obstacle_force, ONE,   phys_vec,      4, obstacles,     feels,        work)                  \
@@ -182,8 +181,9 @@ enum {
     X(saved_objects, unsigned char)                                                                \
     /* the fields of all blocks that make the system of a step (observe/system.c) */               \
     X(system_objects, unsigned char)                                                               \
-    /* contact (contact.h): a meeting's list; of its second side; the lists of a block's */        \
+    /* contact (contact.h): a meeting's list, counts; of its second side; a block's lists */       \
     X(near, struct flow_list)                                                                      \
+    X(meeting_counts, double)                                                                      \
     X(other_skin, unsigned char)                                                                   \
     X(other_x, phys_vec)                                                                           \
     X(other_boxes, unsigned char)                                                                  \

@@ -179,9 +179,15 @@ struct flow_meeting {
 struct flow_meetings {
     uint32_t n, room;
     struct flow_meeting *all;
-    double *counted; /* the field meeting_counts in this round, and */
-    double *count;   /* when each was looked at last */
+    duite_object *counts; /* of FLOW_MEETING_GROUP meetings each: FLOW_COUNTS numbers a meeting, */
+    double *counted;      /* what they are in this round, and */
+    double *count;        /* when each was looked at last */
 };
+enum { FLOW_MEETING_GROUP = 64 };
+static inline uint32_t flow_meeting_groups(const struct flow_meetings *meetings)
+{
+    return (meetings->n + FLOW_MEETING_GROUP - 1) / FLOW_MEETING_GROUP;
+}
 
 /* The lists of a block's contacts, of the fields `contacts` and the two behind it: each has room
  * for so many, and at most n of them are there. */

@@ -97,7 +97,7 @@ cloths:
     loads: [{edges: [[90, 91], [91, 92], [92, 93], [93, 94], [94, 95], [95, 96], [96, 97], [97, 98], [98, 99], [99, 100], [100, 101], [101, 102],
         [102, 103], [103, 104]], force: [0, 0, 2]}]
 materials: {m: {model: triangles, density: 0.2, stretch: 200, shear: 80}}
-time: {h: 100, end: 1000, fps: 1e-9}
+time: {h: 100, end: 200, fps: 1e-9}
 newton: {steps: 20, tolerance: 1e-10}
 solver: {stop: {relative: 1e-12}, max_iterations: 20000}
 probes:

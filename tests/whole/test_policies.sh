@@ -38,9 +38,9 @@ static void start(void *state, int rank, int n_ranks, unsigned worker, uint64_t 
 }
 static int stay(void *state, const duite_leaf *leaf) { (void)state, (void)leaf; return -1; }
 const duite_scheduler duite_own_scheduler = {
-    .name = "mine", .summary = "", .state_size = 8, .place = place, .serve = serve, .victim = victim, .chain = chain};
-const duite_mapping duite_own_mapping = {.name = "mine", .summary = "", .map = map};
-const duite_balancer duite_own_balancer = {.name = "mine", .summary = "", .state_size = 8, .start = start, .place = stay};
+    .size = sizeof(duite_scheduler), .name = "mine", .summary = "", .state_size = 8, .place = place, .serve = serve, .victim = victim, .chain = chain};
+const duite_mapping duite_own_mapping = {.size = sizeof(duite_mapping), .name = "mine", .summary = "", .map = map};
+const duite_balancer duite_own_balancer = {.size = sizeof(duite_balancer), .name = "mine", .summary = "", .state_size = 8, .start = start, .place = stay};
 EOF
 
 # shellcheck disable=SC2086 # a list of flags

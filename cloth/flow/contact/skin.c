@@ -145,7 +145,9 @@ static int skin_place_body(const duite_call *call, const struct skin_place_field
     const phys_vec nowhere = {0};
     gather_points(&skin, flow_shape_of(call)->n_neighbours, on->x, on->halo_x, on->skin_x, NULL);
     memcpy(on->skin_x + n, on->skin_x, n * sizeof *on->skin_x);
+    memset(contact_moved_points(&skin.skin, on->skin_boxes), 1, n);
     contact_refit(&skin.skin, on->skin_x, on->skin_x, &nowhere, on->skin_boxes);
+    contact_moved_mark(&skin.skin, on->skin_boxes);
     return 0;
 }
 

@@ -308,6 +308,19 @@ UNIT_TEST(certified_contact)
                  i ? "solver.stop={count: 1}" : NULL));
 }
 
+/* No push and no cut parts pinned cloth from a body that hits it. */
+UNIT_TEST(hopeless_contact)
+{
+    static const char *const hits = "obstacles[1]={body: {obj: box.obj, scale: 0.2, translate: "
+                                    "[0, -0.2012, 0], motion: {times: [0, 1], translate: "
+                                    "[[0, 0, 0], [0, 30, 0]]}}}";
+    scene_write_file("box.obj", box, sizeof box - 1);
+    run_how(&(struct how){.ends = "cannot be kept apart"},
+            SETS("integrator=implicit_euler", "contact={mode: certified, thickness: 0.0005}", hits,
+                 "time.halving=off", "cloths[0].pins=[{box: [[-9, -9, -9], [9, 9, 9]]}]",
+                 "probes=[]"));
+}
+
 /* A plane, and cloth on cloth. */
 UNIT_TEST(repulsion)
 {

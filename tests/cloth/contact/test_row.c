@@ -170,7 +170,7 @@ struct pinch {
 
 static const double NEWTONS = 0.5; /* that halve a gap */
 
-static void begin_row(struct contact_row *row, double y, double gap, double h)
+static void begin_row(struct contact_row *row, double y, double gap)
 {
     row->origin = (phys_vec){0, y, 0, 0};
     row->gap = gap;
@@ -189,8 +189,8 @@ static void step_between(struct pinch *pinch, double from, double to)
     struct contact_row *row[2] = {&pinch->low, &pinch->high};
     const double h = pinch->h;
     double force = -pinch->kg * G, stiffness = 0;
-    begin_row(row[0], pinch->y, pinch->y, h);
-    begin_row(row[1], pinch->y, from - pinch->y, h);
+    begin_row(row[0], pinch->y, pinch->y);
+    begin_row(row[1], pinch->y, from - pinch->y);
     row[1]->gap += to - from; /* as flow_contact_ahead */
     const phys_vec ahead = {0, pinch->y + h * pinch->v, 0, 0};
     for (int i = 0; i < 2; i++) {
@@ -280,7 +280,7 @@ static void open_against(double spring)
     for (int i = 0; i < 2500; i++) {
         const double h = pinch.h;
         phys_vec push, value;
-        begin_row(&pinch.low, pinch.y, pinch.y, h);
+        begin_row(&pinch.low, pinch.y, pinch.y);
         const phys_vec ahead = {0, pinch.y + h * pinch.v, 0, 0};
         contact_row_linearise(&pinch.low, &ahead, &push, &value);
         const double force = push[1] - down - spring * (ahead[1] - 0.6 * THICKNESS);

@@ -397,7 +397,8 @@ UNIT_TEST(a_law_each)
  * min(max(9, 5), 3). */
 UNIT_TEST(another_law_is_another_access)
 {
-    static const int64_t GIVEN[][WIDTH] = {{3, 3, 3, 3}, {5, 5, 5, 5}, {4, 4, 4, 4}, {9, 9, 9, 9}};
+    static const int64_t GIVEN[][WIDTH * LARGEST / sizeof(int64_t)] = {
+        {3, 3, 3, 3}, {5, 5, 5, 5}, {4, 4, 4, 4}, {9, 9, 9, 9}};
     const duite_kernel *const KERNELS[] = {&GIVE_MIN, &GIVE_MAX, &GIVE_MIN, &GIVE_SUM};
     int64_t value[WIDTH] = {9, 9, 9, 9};
     duite_object object;

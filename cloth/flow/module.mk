@@ -66,7 +66,7 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/contact/image.h \
     cloth/flow/contact/kin.c \
     cloth/flow/contact/meet.c cloth/flow/contact/meet_pair.c cloth/flow/contact/meeting.h \
-    cloth/flow/contact/meet_shape.c \
+    cloth/flow/contact/ahead.c cloth/flow/contact/meet_shape.c \
     cloth/flow/contact/memory.c \
     cloth/flow/contact/mode.h \
     cloth/flow/contact/modes.c \

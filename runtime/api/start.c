@@ -197,10 +197,10 @@ struct instance_leftovers {
 static bool instance_has_nothing_left(void *context)
 {
     struct instance_leftovers *leftovers = context;
-    const duite *rt = leftovers->rt;
+    duite *rt = leftovers->rt;
     if (!work_unfinished(rt->pool) && !offload_count(&rt->graph))
         return true;
-    return comm_is_lost(rt->comm) && !task_events_pending((struct task_graph *)&rt->graph) &&
+    return comm_is_lost(rt->comm) && !task_events_pending(&rt->graph) &&
            work_stands_still(rt->pool, &leftovers->still);
 }
 

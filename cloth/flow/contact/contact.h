@@ -176,13 +176,13 @@ int flow_contact_cut(struct flow_state *state, bool push, struct flow_cut *cut);
 int flow_contact_cut_none(struct flow_state *state); /* no row was cut yet */
 
 /* Sets the normal and gap of row's origin at the end of a step between two times (s), for a contact
- * with a convex shape. Local. (meet_shape.c) */
+ * with a convex shape. Local. (ahead.c) */
 void flow_contact_end(const struct flow *flow, double from, double to,
                       const struct flow_contact *contact, struct contact_row *row);
 
 /* A contact with an obstacle, where the obstacle is in a step between two times (s): row begins as
  * that of the contact. Others stay as they are. Local.
- * (meet_shape.c) */
+ * (ahead.c) */
 void flow_contact_ahead(const struct flow *flow, double from, double to,
                         const struct flow_contact *contact, struct contact_row *row);
 

@@ -18,7 +18,7 @@
 enum { GROUP = 32 };
 enum { APPROACHES = 8 }; /* steps of a search, which seldom takes more than two */
 
-struct meeting {
+struct shape_meeting {
     const struct flow *flow;
     const struct model *model;
     const struct flow_meet_args *args;
@@ -40,12 +40,12 @@ struct meeting {
 };
 
 /* The friction coefficient of the shape and the cloth of n points. */
-static double friction_at(const struct meeting *m, uint32_t n, const uint32_t *point)
+static double friction_at(const struct shape_meeting *m, uint32_t n, const uint32_t *point)
 {
     return flow_friction_of(m->flow, flow_cloth_of(&m->skin, n, point), m->obstacle);
 }
 
-static bool are_left_out(const struct meeting *m, uint32_t n, const uint32_t *point)
+static bool are_left_out(const struct shape_meeting *m, uint32_t n, const uint32_t *point)
 {
     return friction_at(m, n, point) < 0 ||
            flow_is_attached(m->attached, n, point, m->obstacle - m->flow->n_cloths);
@@ -53,7 +53,7 @@ static bool are_left_out(const struct meeting *m, uint32_t n, const uint32_t *po
 
 /* Fills the contact of a point of the cloth, in zeroed memory: n corners at places, weights in
  * `on`. The begin of a step adds the shape's motion (flow_contact_ahead). */
-static void describe_place(const struct meeting *m, uint32_t n, const uint32_t *point,
+static void describe_place(const struct shape_meeting *m, uint32_t n, const uint32_t *point,
                            const phys_vec *places, const struct contact_solid_point *on,
                            struct flow_near *near)
 {
@@ -81,7 +81,7 @@ static void describe_place(const struct meeting *m, uint32_t n, const uint32_t *
 
 /* ---- The gap ahead ---- */
 
-static bool meet_shape_is_certified(const struct meeting *m, const phys_vec x[3],
+static bool meet_shape_is_certified(const struct shape_meeting *m, const phys_vec x[3],
                                     const phys_vec y[3])
 {
     return contact_solid_certify(&m->solid, x, y, m->model->contact.thickness);
@@ -89,8 +89,8 @@ static bool meet_shape_is_certified(const struct meeting *m, const phys_vec x[3]
 
 /* The gap at a point one step later, if point and shape move on as in this step; from the begin of
  * this step, the gap at its end. */
-static double gap_of_place_ahead(const struct meeting *m, const phys_vec *x, const phys_vec *y,
-                                 const struct contact_solid_point *on)
+static double gap_of_place_ahead(const struct shape_meeting *m, const phys_vec *x,
+                                 const phys_vec *y, const struct contact_solid_point *on)
 {
     phys_vec way = -m->h * on->velocity;
     for (int k = 0; k < 3; k++)
@@ -101,7 +101,7 @@ static double gap_of_place_ahead(const struct meeting *m, const phys_vec *x, con
 /* ---- Triangles ---- */
 
 /* Corners that fail alone are contacts of their own. */
-static bool fails_alone(const struct meeting *m, const phys_vec x[3], const phys_vec y[3])
+static bool fails_alone(const struct shape_meeting *m, const phys_vec x[3], const phys_vec y[3])
 {
     bool fails = false;
     for (int k = 0; k < 3; k++) {
@@ -113,7 +113,7 @@ static bool fails_alone(const struct meeting *m, const phys_vec x[3], const phys
 
 /* Finds the pushes that bring corners out of the plane of the shape's nearest point, which moves
  * with it. */
-static void push_place(const struct meeting *m, uint32_t n, const phys_vec x[3],
+static void push_place(const struct shape_meeting *m, uint32_t n, const phys_vec x[3],
                        const phys_vec y[3], const struct contact_solid_point *on,
                        struct flow_near *near)
 {
@@ -129,9 +129,9 @@ static void push_place(const struct meeting *m, uint32_t n, const phys_vec x[3],
 }
 
 /* on: at the step's begin. The parts stay 1 if no cut helps, as in meet.c. */
-static void fail_place(struct meeting *m, uint32_t n, const uint32_t *point, const phys_vec x[3],
-                       const phys_vec y[3], const struct contact_solid_point *on,
-                       struct flow_near *near)
+static void fail_place(struct shape_meeting *m, uint32_t n, const uint32_t *point,
+                       const phys_vec x[3], const phys_vec y[3],
+                       const struct contact_solid_point *on, struct flow_near *near)
 {
     double part[3] = {1, 1, 1};
     describe_place(m, n, point, x, on, near);
@@ -145,7 +145,7 @@ static void fail_place(struct meeting *m, uint32_t n, const uint32_t *point, con
     push_place(m, n, x, y, on, near);
 }
 
-static void fail_triangle(struct meeting *m, uint32_t triangle, const phys_vec x[3],
+static void fail_triangle(struct shape_meeting *m, uint32_t triangle, const phys_vec x[3],
                           const phys_vec y[3])
 {
     struct contact_solid_point on;
@@ -159,7 +159,7 @@ static void fail_triangle(struct meeting *m, uint32_t triangle, const phys_vec x
     flow_findings_add(&m->findings, &near);
 }
 
-static void list_triangle(struct meeting *m, uint32_t triangle, const phys_vec y[3])
+static void list_triangle(struct shape_meeting *m, uint32_t triangle, const phys_vec y[3])
 {
     struct contact_solid_point on;
     struct flow_near near;
@@ -177,7 +177,7 @@ static void list_triangle(struct meeting *m, uint32_t triangle, const phys_vec y
     flow_findings_add(&m->findings, &near);
 }
 
-static void look_at_triangle(struct meeting *m, uint32_t triangle)
+static void look_at_triangle(struct shape_meeting *m, uint32_t triangle)
 {
     const uint32_t *point = m->skin.corner[triangle];
     const phys_vec x[3] = {m->x[point[0]], m->x[point[1]], m->x[point[2]]};
@@ -194,7 +194,7 @@ static void look_at_triangle(struct meeting *m, uint32_t triangle)
 /* ---- Vertices ---- */
 
 /* A vertex is a triangle of three equal corners. */
-static void find_vertex(const struct meeting *m, enum contact_end end, const phys_vec x[3],
+static void find_vertex(const struct shape_meeting *m, enum contact_end end, const phys_vec x[3],
                         struct contact_solid_point *on)
 {
     contact_solid_nearest(&m->solid, end, x, on);
@@ -205,7 +205,7 @@ static void find_vertex(const struct meeting *m, enum contact_end end, const phy
  * move on as in this step. The distance from a convex shape is a convex function of the way, so its
  * tangent at a place leads to a place that is not behind the first near one. A vertex that passes
  * beside the shape is no contact: the plane of its nearest point would hold it up. */
-static bool comes_near(const struct meeting *m, const phys_vec *x, const phys_vec *y,
+static bool comes_near(const struct shape_meeting *m, const phys_vec *x, const phys_vec *y,
                        const struct contact_solid_point *on)
 {
     const phys_vec way = *y - *x - m->h * on->velocity;
@@ -226,8 +226,8 @@ static bool comes_near(const struct meeting *m, const phys_vec *x, const phys_ve
 }
 
 /* Lists a vertex at the step's end if it is near, or will be. */
-static void list_vertex(struct meeting *m, uint32_t point, const phys_vec x[3], const phys_vec y[3],
-                        struct flow_near *near)
+static void list_vertex(struct shape_meeting *m, uint32_t point, const phys_vec x[3],
+                        const phys_vec y[3], struct flow_near *near)
 {
     struct contact_solid_point on;
     find_vertex(m, CONTACT_END, y, &on);
@@ -240,7 +240,7 @@ static void list_vertex(struct meeting *m, uint32_t point, const phys_vec x[3], 
     flow_findings_add(&m->findings, near);
 }
 
-static void meet_shape_look_at_vertex(struct meeting *m, uint32_t vertex)
+static void meet_shape_look_at_vertex(struct shape_meeting *m, uint32_t vertex)
 {
     const uint32_t point = m->skin.vertex[vertex];
     const phys_vec x[3] = {m->x[point], m->x[point], m->x[point]};
@@ -263,7 +263,7 @@ static void meet_shape_look_at_vertex(struct meeting *m, uint32_t vertex)
 /* ---- Contact that is not certified ---- */
 
 /* The shape's motion in the step is taken off the slip, as flow_contact_ahead does. */
-static void list_place(struct meeting *m, uint32_t vertex, const struct contact_hit *hit)
+static void list_place(struct shape_meeting *m, uint32_t vertex, const struct contact_hit *hit)
 {
     const uint32_t point = m->skin.vertex[vertex];
     const struct contact_solid_point on = {.weight = {1}, .normal = hit->normal, .gap = hit->gap};
@@ -280,7 +280,7 @@ static void list_place(struct meeting *m, uint32_t vertex, const struct contact_
 
 /* Vertices are put out of obstacles. Those that follow each other are near to each other, so many
  * at once are found sooner. */
-static void look_at_vertices(struct meeting *m)
+static void look_at_vertices(struct shape_meeting *m)
 {
     enum { AT_ONCE = 64 };
     uint32_t vertex[AT_ONCE], n = 0;
@@ -304,7 +304,7 @@ static void look_at_vertices(struct meeting *m)
 
 /* True if n points are out of the shape's reach in the step and, if they and the shape move on as
  * in this step, in the next one. So is all that lies between them. */
-static bool are_apart(const struct meeting *m, uint32_t n, const uint32_t *point)
+static bool are_apart(const struct shape_meeting *m, uint32_t n, const uint32_t *point)
 {
     phys_vec low = m->x[point[0]], high = low;
     for (uint32_t i = 0; i < n; i++) {
@@ -320,7 +320,7 @@ static bool are_apart(const struct meeting *m, uint32_t n, const uint32_t *point
 }
 
 /* True for features of n points that the last look at the step has seen as they are. */
-static bool was_seen(const struct meeting *m, uint32_t n, const uint32_t *point)
+static bool was_seen(const struct shape_meeting *m, uint32_t n, const uint32_t *point)
 {
     bool moved = !m->args->again;
     for (uint32_t k = 0; k < n; k++)
@@ -330,8 +330,9 @@ static bool was_seen(const struct meeting *m, uint32_t n, const uint32_t *point)
 
 /* Looks at all triangles, or vertices, that may be in reach, if they were not seen. n_corners:
  * points of each. */
-static void look_at_near(struct meeting *m, uint32_t n, uint32_t n_corners, const uint32_t *point,
-                         void (*look)(struct meeting *m, uint32_t number))
+static void look_at_near(struct shape_meeting *m, uint32_t n, uint32_t n_corners,
+                         const uint32_t *point,
+                         void (*look)(struct shape_meeting *m, uint32_t number))
 {
     for (uint32_t i = 0; i < n; i += GROUP) {
         const uint32_t some = n - i < GROUP ? n - i : GROUP;
@@ -346,7 +347,7 @@ static void look_at_near(struct meeting *m, uint32_t n, uint32_t n_corners, cons
     }
 }
 
-static void list_still_triangle(struct meeting *m, uint32_t triangle)
+static void list_still_triangle(struct shape_meeting *m, uint32_t triangle)
 {
     const uint32_t *point = m->skin.corner[triangle];
     const phys_vec y[3] = {m->y[point[0]], m->y[point[1]], m->y[point[2]]};
@@ -354,21 +355,21 @@ static void list_still_triangle(struct meeting *m, uint32_t triangle)
 }
 
 /* Edges and triangles that are near a shape from outside; of bodies vertices alone count. */
-static void look_at_places(struct meeting *m)
+static void look_at_places(struct shape_meeting *m)
 {
     if (!m->shape->body)
         look_at_near(m, m->skin.n_triangles, 3, *m->skin.corner, list_still_triangle);
     look_at_vertices(m);
 }
 
-static void meet_shape_look_at(struct meeting *m)
+static void meet_shape_look_at(struct shape_meeting *m)
 {
     look_at_near(m, m->skin.n_triangles, 3, *m->skin.corner, look_at_triangle);
     look_at_near(m, m->skin.n_vertices, 1, m->skin.vertex, meet_shape_look_at_vertex);
 }
 
 /* Keeps items of the list that did not move, as in meet.c. */
-static void keep_places(struct meeting *m)
+static void keep_places(struct shape_meeting *m)
 {
     const struct flow_near *near = m->findings.near;
     for (size_t i = 0; i < m->findings.before; i++)
@@ -386,14 +387,14 @@ static int meet_shape_body(const duite_call *call, const struct meet_shape_field
     const struct flow *flow = flow_of(call);
     const struct contact_shape *shape =
         flow->model->obstacles + (args->side[1] - flow->tables.n_blocks);
-    struct meeting m = {.flow = flow,
-                        .model = flow->model,
-                        .sweeps = flow_contact_mode(flow->model)->sweeps,
-                        .reach = flow_contact_reach(flow->model),
-                        .args = args,
-                        .obstacle = flow->n_cloths + (args->side[1] - flow->tables.n_blocks),
-                        .shape = shape,
-                        .h = args->to - args->from};
+    struct shape_meeting m = {.flow = flow,
+                              .model = flow->model,
+                              .sweeps = flow_contact_mode(flow->model)->sweeps,
+                              .reach = flow_contact_reach(flow->model),
+                              .args = args,
+                              .obstacle = flow->n_cloths + (args->side[1] - flow->tables.n_blocks),
+                              .shape = shape,
+                              .h = args->to - args->from};
     flow_findings_open(call, FLOW_INDEX_OF(meet_shape, near), on->near, args, on->meeting_counts,
                        &m.findings);
     contact_pose_over(shape, flow->model->keys, &flow->model->bodies, args->from, args->to,
@@ -413,49 +414,4 @@ static int meet_shape_body(const duite_call *call, const struct meet_shape_field
     else
         look_at_places(&m);
     return flow_findings_close(&m.findings, m.passes);
-}
-
-/* ---- Where a contact is ---- */
-
-/* The normal and the gap of a place, at an end of a step. */
-static void find_place(const struct flow *flow, double from, double to, enum contact_end end,
-                       const struct flow_contact *contact, struct contact_row *row,
-                       phys_vec *velocity)
-{
-    const struct model *model = flow->model;
-    const struct contact_shape *shape =
-        model->obstacles + (contact->side[1] - flow->tables.n_blocks);
-    const phys_vec x[3] = {row->origin, row->origin, row->origin};
-    struct contact_solid solid;
-    struct contact_pose pose;
-    struct contact_solid_point on;
-    contact_pose_over(shape, model->keys, &model->bodies, from, to, &pose);
-    contact_solid_make(shape, &pose, &solid);
-    contact_solid_nearest(&solid, end, x, &on);
-    row->normal = on.normal;
-    row->gap = on.gap;
-    *velocity = on.velocity;
-}
-
-void flow_contact_end(const struct flow *flow, double from, double to,
-                      const struct flow_contact *contact, struct contact_row *row)
-{
-    phys_vec velocity;
-    find_place(flow, from, to, CONTACT_END, contact, row, &velocity);
-}
-
-void flow_contact_ahead(const struct flow *flow, double from, double to,
-                        const struct flow_contact *contact, struct contact_row *row)
-{
-    phys_vec velocity;
-    if (contact->side[1] < flow->tables.n_blocks)
-        return;
-    if (contact->kind != FLOW_CONTACT_SHAPE) {
-        flow_body_ahead(flow, from, to, contact, row);
-        return;
-    }
-    find_place(flow, from, to, CONTACT_BEGIN, contact, row, &velocity);
-    const phys_vec carried = (to - from) * velocity;
-    row->gap -= phys_dot(&row->normal, &carried);
-    row->slip -= carried;
 }

@@ -39,9 +39,9 @@ int contact_scene_read(struct model *model, const char *name, const char *self, 
  * process. */
 extern const struct serve_run contact_scene_runs[];
 
-/* Of the sphere's sheet after ms= of its run, kept by threads= and quick=.
- * look times=: seconds of the contact part of a step, without its solves: boxes, certificates, what
- * is near, and the rows of the contacts. iterations contacts=0|1: of the next step's solve. */
+/* The sphere's sheet after ms= of its run, kept by threads= and quick=. look times=: seconds of the
+ * contact part of a step, without its solves: boxes, certificates, what is near, and the rows of
+ * the contacts. iterations contacts=0|1: those of the next step's solve. */
 extern const struct serve_run contact_state_runs[];
 /* The same of any scene, which `read` reads by the request's word of=. rows: with the rows of the
  * contacts. *n: how many there are. Also kept. 0, or what serve_fail returns. */

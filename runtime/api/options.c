@@ -137,7 +137,8 @@ int api_take_options(const duite_options *given, duite_options *whole)
     const int code = options_check_size("duite_start", given->size);
     if (code)
         return code;
-    *whole = options_defaults();
+    if (given->size < sizeof *whole)
+        *whole = options_defaults();
     memcpy(whole, given, given->size);
     if (whole->comm == (MPI_Comm)0) /* this handle ends the process in some MPIs */
         return base_error(

@@ -158,6 +158,10 @@ extern const duite_law duite_sum, duite_product, duite_min, duite_max;
 extern const duite_law duite_bits_and, duite_bits_or, duite_bits_xor;
 extern const duite_law duite_all, duite_any;
 
+/* The built-in law of a name ("sum", "min", "bits_and"), for programs in other languages. Local.
+ * Returns: a constant table. NULL, and a message for duite_message, if there is no such law. */
+const duite_law *duite_law_find(const char *name);
+
 /* ---- Kernels ---- */
 
 /* One parameter of a body. */
@@ -234,6 +238,10 @@ typedef int duite_body(const duite_call *call);
  * local. Returns: `code`. */
 int duite_fail(const duite_call *call, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* duite_fail with a text as it is, for programs in other languages. In a body; local. Returns:
+ * `code`. */
+int duite_fail_text(const duite_call *call, int code, const char *text);
 
 /* Gives parameter i, w or rw of an object made by duite_new_sized, so many elements; added ones are
  * zero. It begins with its present size (rw) or its maximum (w); readers find the size that the
@@ -406,6 +414,10 @@ typedef struct duite_options {
 /* Writes the defaults to options of `size` bytes, as duite_options_default does, for programs in
  * other languages. Local. Errors: DUITE_E_ARGUMENT (options of so many bytes have never been). */
 int duite_options_set(duite_options *options, size_t size);
+
+/* Sets the communicator of options by Fortran's handle of it, for programs in other languages.
+ * Local. Errors: DUITE_E_ARGUMENT (no options). */
+int duite_options_comm(duite_options *options, MPI_Fint comm);
 
 /* The defaults of the fields. Options must begin with these, since zeros are no size, no
  * communicator and no policies (DUITE_E_ARGUMENT). Fields that the program sets afterwards count

@@ -25,7 +25,7 @@ quotes() {
             return 0
         }
         !inside && /^<!-- .* -->$/ { file = $2; next }
-        !inside && /^```c$/ { inside = 1; size = 0; begin = NR; next }
+        !inside && /^```c(pp)?$/ { inside = 1; size = 0; begin = NR; next }
         inside && /^```$/ {
             inside = 0
             blocks++
@@ -245,11 +245,26 @@ lost() { # a link to a heading that is renamed is seen
     ! links "$scratch"/docs/*.md > "$scratch/said" && grep -q 'physics.md#integrators has no such heading' "$scratch/said"
 }
 
+# The names that the headers promise are those that the library exports: a change of either is seen here. A static one is none.
+exported() {
+    {
+        sed -n '/^static/d; /^typedef/d; s/^[a-z].*[ *]\(duite_[a-z_0-9]*\)(.*/\1/p' $headers
+        sed -n 's/^extern const duite_law \(.*\);/\1/p' $headers | tr -d ' ' | tr ',' '\n'
+    } | LC_ALL=C sort -u | diff "$srcdir/runtime/duite.sym" -
+}
+# Fortran binds each of them, but for what it does in another way: printf's form, lists of C's texts, and laws, which duite_law_find finds.
+bound() {
+    grep -o "name='duite_[a-z_]*'" "$srcdir/runtime/duite.f90" | cut -d "'" -f 2 | LC_ALL=C sort -u > "$scratch/bound"
+    grep -v -x -e duite_fail -e 'duite_[a-z]*_names' -e 'duite_\(sum\|product\|min\|max\|bits_[a-z]*\|all\|any\)' "$srcdir/runtime/duite.sym" |
+        diff "$scratch/bound" - || { echo "< has no function, > no binding in runtime/duite.f90" && return 1; }
+}
+
 plan_later
 # shellcheck disable=SC2086 # a list of files
 ok "links between pages lead somewhere" links $documents
 ok "a heading that is lost is seen" lost
 ok "docs/runtime.md quotes the examples as they are" quotes "$document"
+ok "docs/embedding.md, too" quotes "$srcdir/docs/embedding.md"
 ok "a quotation that differs is seen" sees 's/ += x\[i\] \* y\[i\];/ += x[i] - y[i];/'
 ok "a line left out is seen" sees '/DUITE_FORK(rt, &FACTOR, NULL/d'
 ok "C that nobody compiles is seen" sees '0,/^<!-- .* -->$/d'
@@ -271,6 +286,8 @@ else
     skip "a fault of a page is seen" "no groff"
 fi
 ok "every public function has a comment before it" commented
+ok "the list of exported names is that of the headers" exported
+ok "Fortran's module has a binding for each" bound
 for part in runtime cloth; do
     ok "guided tours of the $part stop at functions that are there" tours "$srcdir/docs/design/$part.md"
 done

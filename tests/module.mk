@@ -34,9 +34,9 @@ SH_LOG_DRIVER = $(LOG_DRIVER)
 SH_LOG_COMPILER = $(LOG_COMPILER)
 # intercept_tls_get_addr=0: LeakSanitizer trips now and then over the thread-local memory of loaded libraries that it follows.
 AM_TESTS_ENVIRONMENT = \
-    CC='$(CC)'; CXX='$(CXX)'; CFLAGS='$(CFLAGS) $(SANITIZE_FLAGS)'; PKG_CONFIG='$(PKG_CONFIG)'; MAKE='$(MAKE)'; \
+    CC='$(CC)'; CXX='$(CXX)'; FC='$(FC)'; CFLAGS='$(CFLAGS) $(SANITIZE_FLAGS)'; PKG_CONFIG='$(PKG_CONFIG)'; MAKE='$(MAKE)'; \
     MPIRUN='$(MPIRUN)'; MPI_CFLAGS='$(MPI_CFLAGS)'; MPI_LIBS='$(MPI_LIBS)'; \
-    SANITIZER='$(SANITIZE_FLAGS)'; LEAK_TESTS='$(LEAK_TESTS) $(LEAK_SH)'; export SANITIZER LEAK_TESTS CC CXX CFLAGS PKG_CONFIG MAKE MPIRUN MPI_CFLAGS MPI_LIBS; \
+    SANITIZER='$(SANITIZE_FLAGS)'; LEAK_TESTS='$(LEAK_TESTS) $(LEAK_SH)'; export SANITIZER LEAK_TESTS CC CXX FC CFLAGS PKG_CONFIG MAKE MPIRUN MPI_CFLAGS MPI_LIBS; \
     DUITE_QUICK=$${DUITE_QUICK-$(DUITE_QUICK)}; export DUITE_QUICK; \
     support=`cd '$(srcdir)/tests/support' && pwd`; \
     ASAN_OPTIONS=fast_unwind_on_malloc=0:intercept_tls_get_addr=0:$$ASAN_OPTIONS; export ASAN_OPTIONS; \
@@ -72,7 +72,7 @@ EXTRA_DIST += tests/arrows.txt tests/support/policies.h tests/support/tap.sh tes
 	tests/support/bodies.sh tests/support/hangs.c tests/support/probes.sh tests/support/table.sh tests/support/dress.awk tests/support/mpi.sh tests/support/rank.h tests/support/run.sh tests/support/screen.sh \
 	tests/support/count.sh \
     tests/support/lsan.supp tests/support/tsan.supp tests/support/valgrind.supp
-ASAN_SH += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/completion.sh tests/bootstrap.sh
+ASAN_SH += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/embedding.sh tests/completion.sh tests/bootstrap.sh
 PLAIN_SH += tests/install.sh tests/bare.sh tests/two_mpis.sh
 LONG_SH += tests/pages.sh tests/bare_long.sh
 

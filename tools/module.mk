@@ -11,6 +11,7 @@ include tools/predict/module.mk
 include tools/chart/module.mk
 include tools/compare/module.mk
 
+dist_pkgdata_DATA += tools/duite.py
 bin_PROGRAMS += duite-trace duite-predict duite-compare duite-graph
 dist_man_MANS += tools/duite-trace.1 tools/duite-predict.1 tools/duite-compare.1 tools/duite-graph.1
 duite_trace_SOURCES = tools/duite-trace.c tools/command.h

@@ -129,6 +129,14 @@ int duite_options_set(duite_options *options, size_t size)
     return code;
 }
 
+int duite_options_comm(duite_options *options, MPI_Fint comm)
+{
+    if (!options)
+        return base_error(DUITE_E_ARGUMENT, "duite_options_comm: no options");
+    options->comm = MPI_Comm_f2c(comm);
+    return DUITE_OK;
+}
+
 int api_take_options(const duite_options *given, duite_options *whole)
 {
     if (!given)

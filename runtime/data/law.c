@@ -147,6 +147,15 @@ bool data_law_fits(const duite_law *law, duite_type type)
     }
 }
 
+const duite_law *duite_law_find(const char *name)
+{
+    for (const duite_law *const *law = built_in; *law; law++)
+        if (name && !strcmp((*law)->name, name))
+            return *law;
+    base_error(DUITE_E_LAW, "duite_law_find: no built-in law is named %s", name ? name : "NULL");
+    return NULL;
+}
+
 /* ---- The laws of a program ---- */
 
 static bool law_is_listed(const duite_law *const *laws, const duite_law *law)

@@ -130,6 +130,12 @@ int duite_fail(const duite_call *call, int code, const char *format, ...)
     return code;
 }
 
+int duite_fail_text(const duite_call *call, int code, const char *text)
+{
+    snprintf(call->own->text, sizeof call->own->text, "%s", text);
+    return code;
+}
+
 /* The message is the body's own, or that of the call whose code it returns. */
 const struct data_failure *task_body_failure(const struct duite_call_private *body, int code)
 {

@@ -1,5 +1,6 @@
 # The programs that docs/runtime.md explains, each built and run as a user would. -no-install: no script of libtool starts them.
 ASAN_SH += tests/examples/test_examples.sh tests/examples/test_cpp.sh
+PLAIN_SH += tests/examples/test_fortran.sh
 check_PROGRAMS += tests/examples/dot tests/examples/stencil tests/examples/cholesky tests/examples/cg \
 	tests/examples/fib tests/examples/quicksort
 tests_examples_dot_LDFLAGS = $(AM_LDFLAGS) -no-install
@@ -14,4 +15,4 @@ tests_examples_fib_LDFLAGS = $(AM_LDFLAGS) -no-install
 tests_examples_fib_LDADD = libduite.la
 tests_examples_quicksort_LDFLAGS = $(AM_LDFLAGS) -no-install
 tests_examples_quicksort_LDADD = libduite.la
-EXTRA_DIST += tests/examples/dot.cpp
+EXTRA_DIST += tests/examples/dot.cpp tests/examples/dot.f90 tests/examples/stencil.cpp tests/runtime/front.cpp

@@ -1,6 +1,6 @@
 #!/bin/sh
-# A C++17 program as a user writes it: it compiles against an installed duite with pkg-config's flags alone, without a warning, and
-# runs; so does one that includes mpi.h and duite_policy.h before duite.h.
+# C++17 programs as users write them, by duite.h and by duite.hpp: they compile against an installed duite with pkg-config's flags alone,
+# without a warning, and run; wrong use of duite.hpp is refused by the compiler, with a sentence.
 . "${srcdir:-.}/tests/support/tap.sh"
 test -z "${SANITIZER:-}" || skip_all "the sanitizers are those of the C compiler"
 # shellcheck disable=SC2086 # a compiler and its options
@@ -11,10 +11,35 @@ PKG_CONFIG_PATH=$prefix/lib/pkgconfig${PKG_CONFIG_PATH:+:$PKG_CONFIG_PATH}
 export PKG_CONFIG_PATH
 unset MAKEFLAGS MFLAGS MAKELEVEL
 
-compile() { # PROGRAM SOURCE
+compile() { # PROGRAM SOURCE OPTION...
+    compile_program=$scratch/$1 compile_source=$2
+    shift 2
     # shellcheck disable=SC2046,SC2086 # lists of flags
-    ${CXX:-c++} -std=c++17 -O1 -Wall -Wextra -Wpedantic -Wshadow -Werror -o "$scratch/$1" "$2" \
-        $(${PKG_CONFIG:-pkg-config} --cflags --libs duite)
+    ${CXX:-c++} -std=c++17 -O1 -Wall -Wextra -Wpedantic -Wshadow -Werror "$@" -o "$compile_program" "$compile_source" \
+        $(${PKG_CONFIG:-pkg-config} --cflags --libs duite) -pthread
+}
+# refused SENTENCE CODE: main program that the compiler refuses with the sentence, once a right one in its place compiles.
+refused() {
+    for code in 'rt.fork(SET, 1.0, x);' "$2"; do
+        cat > "$scratch/refused.cpp" << END
+#include <duite.hpp>
+#include <string>
+const duite::kernel SET("set", [](double to, duite::write<double> x) { x[0] = to; });
+int main()
+{
+    duite::runtime rt(SET);
+    duite::object<double> x(rt, 1);
+    $code
+}
+END
+        if compile refused "$scratch/refused.cpp" > "$scratch/said" 2>&1; then
+            test "$code" != "$2" || { echo "compiles: $2" && return 1; }
+        else
+            cat "$scratch/said"
+            test "$code" = "$2" || return 1
+        fi
+    done
+    grep -qF "$1" "$scratch/said"
 }
 policies() {
     cat > "$scratch/policies.cpp" << 'END'
@@ -79,3 +104,23 @@ ok "duite_policy.h after mpi.h compiles" policies
 ok "it runs, too" limited "$scratch/policies"
 ok "a program whose body throws compiles" throwing
 ok "it is told so, and does not hang" told "^duite: the body of kernel throws was left by a C++ exception" limited "$scratch/throwing"
+ok "an example by duite.hpp compiles" compile stencil "$srcdir/tests/examples/stencil.cpp"
+ok "it runs" limited "$scratch/stencil"
+ok "it runs on 3 ranks" ranks 3 "$scratch/stencil"
+ok "it runs in checking mode" checking limited "$scratch/stencil"
+ok "all of duite.hpp compiles" compile front "$srcdir/tests/runtime/front.cpp"
+ok "it does what it says" limited "$scratch/front"
+ok "on 2 ranks, too" ranks 2 "$scratch/front"
+ok "it compiles without exceptions" compile front "$srcdir/tests/runtime/front.cpp" -fno-exceptions -DDUITE_NO_EXCEPTIONS
+ok "it does what it says without exceptions" limited "$scratch/front"
+ok "it compiles as C++20" compile front "$srcdir/tests/runtime/front.cpp" -std=c++20
+ok "a kernel that captures is refused" refused "a kernel captures nothing" \
+    'double by = 2; const duite::kernel scale("scale", [by](duite::readwrite<double> y) { y[0] *= by; });'
+ok "arguments with pointers in them are refused" refused "arguments are copied as bytes" \
+    'const duite::kernel name("name", [](const std::string &, duite::write<double>) {});'
+ok "a parameter without a type is refused" refused "names the types of its parameters" \
+    'const duite::kernel any("any", [](auto) {});'
+ok "arguments behind objects are refused" refused "then objects" 'const duite::kernel late("late", [](duite::write<double>, int) {});'
+ok "an object of other elements is refused" refused "has elements of the type of the kernel's parameter" \
+    'duite::object<float> y(rt, 1); rt.fork(SET, 1.0, y);'
+ok "a fork with too few objects is refused" refused "an object for each parameter" 'rt.fork(SET, 1.0);'

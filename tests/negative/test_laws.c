@@ -56,6 +56,15 @@ UNIT_TEST(not_listed)
             "kernel by bytes, `variadic`: law of bytes was not listed");
 }
 
+UNIT_TEST(by_name)
+{
+    ck_assert_ptr_eq(duite_law_find("sum"), &duite_sum);
+    ck_assert_ptr_eq(duite_law_find("any"), &duite_any);
+    ck_assert_ptr_null(duite_law_find("mean"));
+    says("no built-in law is named mean");
+    ck_assert_ptr_null(duite_law_find(NULL));
+}
+
 UNIT_TEST(no_cw)
 {
     duite_kernel kernel = BY_SUM;

@@ -20,7 +20,7 @@ static int ask(const duite_call *call)
     const struct wish *wish = call->args;
 
     asked = duite_resize(call, wish->parameter, wish->count);
-    return wish->speaks ? duite_fail(call, wish->code, "the body's own sentence") : wish->code;
+    return wish->speaks ? duite_fail_text(call, wish->code, "the body's own %s") : wish->code;
 }
 
 static const duite_kernel ASK = {.name = "ask",
@@ -94,7 +94,7 @@ UNIT_TEST(code_of_the_body)
 {
     refuses((struct wish){.count = MOST + 1, .code = 5}, 5, "code 5: duite_resize: parameter 0");
     refuses((struct wish){.count = MOST + 1, .code = 6, .speaks = 1}, 6,
-            "code 6: the body's own sentence");
+            "code 6: the body's own %s");
 }
 
 UNIT_TEST(no_accumulation)

@@ -197,6 +197,18 @@ UNIT_TEST(options_of_other_versions)
     ck_assert_int_eq(duite_version(), DUITE_VERSION);
 }
 
+/* The communicator by Fortran's handle of it. */
+UNIT_TEST(communicators_of_fortran)
+{
+    duite_options options = misuse_options(MPI_COMM_NULL);
+
+    misuse_mpi();
+    ck_assert_int_eq(duite_options_comm(NULL, MPI_Comm_c2f(MPI_COMM_SELF)), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_options_comm(&options, MPI_Comm_c2f(MPI_COMM_SELF)), DUITE_OK);
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_OK);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+}
+
 /* A shorter structure of counters is not written beyond its end; of a longer one the rest is 0. */
 UNIT_TEST(counters_of_other_versions)
 {

@@ -12,6 +12,7 @@ cut            | 2 1 3     | messages longer than their receives
 delegate       | 2 1 3     | tasks that run on other ranks than their own
 delegate       | 2         | the same in checking mode | DUITE_CHECK=accesses
 homes          | 2 3       | what settles the homes of objects
+itself         | 2 1       | nothing that was switched off
 loaded         | 2         | ranks sleep beside eight loops | OMPI_MCA_mpi_yield_when_idle=0
 mappings       | 2         | wrong mappings
 migrate        | 2 1 3     | objects that move

@@ -83,7 +83,7 @@ run_command() { # COMMAND NAME
         *slot:PE=*) skip "$2" "only where there are so many cores" ;;
         *--live*) if has duite-view && grep -q '^#define HAVE_ZMQ 1' "$build/config.h"; then ok "$2" here "$1"; else skip "$2" "no live view"; fi ;;
         *hdf5*) if has hdf5; then ok "$2" here "$1"; else skip "$2" "built without HDF5"; fi ;;
-        pvpython* | blender*) if command -v "${1%% *}" > /dev/null; then ok "$2" here "$1"; else skip "$2" "not installed"; fi ;;
+        pvpython* | blender* | gfortran*) if command -v "${1%% *}" > /dev/null; then ok "$2" here "$1"; else skip "$2" "not installed"; fi ;;
         *duite-view\ *--mp4*) if has duite-view && command -v ffmpeg > /dev/null; then ok "$2" here "$1"; else skip "$2" "no viewer, or no ffmpeg"; fi ;;
         duite-view* | ./duite-view*) if has duite-view; then ok "$2" here "$1"; else skip "$2" "no viewer"; fi ;;
         bench/duite-bench* | bench/experiments*) if has bench/duite-bench; then ok "$2" here "${1%% *} --quick ${1#* }"; else skip "$2" "no benches (make bench)"; fi ;;

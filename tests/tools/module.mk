@@ -1,6 +1,6 @@
 LEAK_SH += tests/tools/test_trace.sh
 ASAN_SH += tests/tools/test_vite.sh tests/tools/test_chart.sh
-PLAIN_SH += tests/tools/test_compare.sh
+PLAIN_SH += tests/tools/test_compare.sh tests/tools/test_python.sh
 if HAVE_CHECK
 TOOLS_TEST_LIBS = tests/support/libunit.a $(TOOLS_LIBS) $(CHECK_LIBS)
 LEAK_TESTS += tests/tools/test_traced

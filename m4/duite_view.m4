@@ -11,12 +11,15 @@ AC_DEFUN([DUITE_CHART], [
     AM_CONDITIONAL([HAVE_CAIRO], [test "$duite_chart_says" = "SVG, PNG"])])
 
 AC_DEFUN([DUITE_VIEW], [
+    AC_ARG_WITH([view], [AS_HELP_STRING([--without-view], [no pictures, films and windows (duite-view)])],
+        [], [with_view=check])
     duite_view_missing=
-    DUITE_VIEW_PART([EPOXY], [epoxy], [libepoxy-dev])
-    DUITE_VIEW_PART([EGL], [egl], [libegl-dev])
-    DUITE_VIEW_PART([PNG], [libpng], [libpng-dev])
-    AC_CHECK_HEADER([cglm/cglm.h], [], [
-        duite_view_missing="$duite_view_missing${duite_view_missing:+, }libcglm-dev"])
+    AS_IF([test "x$with_view" = xno], [duite_view_missing=--without-view], [
+        DUITE_VIEW_PART([EPOXY], [epoxy], [libepoxy-dev])
+        DUITE_VIEW_PART([EGL], [egl], [libegl-dev])
+        DUITE_VIEW_PART([PNG], [libpng], [libpng-dev])])
+    AS_IF([test "x$with_view" = xyes && test -n "$duite_view_missing"],
+        [AC_MSG_ERROR([--with-view, but pkg-config does not find all it needs: install $duite_view_missing])])
     AM_CONDITIONAL([HAVE_VIEW], [test -z "$duite_view_missing"])
     VIEW_MISSING=$duite_view_missing
     AC_SUBST([VIEW_MISSING])

@@ -52,8 +52,7 @@ if test -x ./duite-view && test -z "${VIEW_MISSING:-}"; then
         film="demo/dressing.mp4, at 0.4 of its speed"
     fi
 else
-    pictures="none: duite-view was not built, since these packages are missing: ${VIEW_MISSING:-see ./configure}
-                (./bootstrap installs them)"
+    pictures="none: duite-view was not built (${VIEW_MISSING:-see ./configure}); ./bootstrap installs what it needs"
     film=none
 fi
 

@@ -5,8 +5,6 @@
 
 #include "cloth/base/vector.h"
 
-#include <cglm/cam.h>
-#include <cglm/mat4.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -171,23 +169,37 @@ void view_fit_orbit(const struct view_fit *fit, struct view_orbit *orbit)
             orbit->target[k] += eye[i] * fit->side[i][k];
 }
 
+/* A point is at v in the axes of a camera, with its eye at 0. Clip coordinates are (wide v0, high v1,
+ * slope v2 + shift, -v2), so that depth is -1 at near and 1 at far. */
 void view_orbit_camera(const struct view_orbit *orbit, double aspect, struct view_camera *camera)
 {
-    double side[3][3];
-    mat4 view = GLM_MAT4_IDENTITY_INIT, projection;
-    sides(orbit->azimuth, orbit->elevation, side);
-    for (int k = 0; k < 3; k++)
-        camera->eye[k] = (float)(orbit->target[k] + orbit->distance * side[2][k]);
-    for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++)
-            view[k][i] = (float)side[i][k];
-        view[3][i] = (float)-(cloth_dot(side[i], orbit->target) + (i == 2 ? orbit->distance : 0));
-    }
-    const double angle = 2 * atan(tan(radians(HALF_ANGLE)) / orbit->zoom);
+    const double high = orbit->zoom / tan(radians(HALF_ANGLE)), wide = high / aspect;
     const double near = fmax(0.3 * (orbit->distance - orbit->front), 0.01 * orbit->distance);
     const double far = orbit->distance + orbit->behind + 40 * orbit->size;
-    glm_perspective((float)angle, (float)aspect, (float)near, (float)far, projection);
-    glm_mat4_mul(projection, view, camera->clip);
+    const double slope = (far + near) / (near - far), shift = 2 * far * near / (near - far);
+    double side[3][3], eye[3], v[3];
+    sides(orbit->azimuth, orbit->elevation, side);
+    for (int k = 0; k < 3; k++)
+        eye[k] = orbit->target[k] + orbit->distance * side[2][k];
+    for (int i = 0; i < 3; i++)
+        v[i] = -cloth_dot(side[i], eye);
+    const double origin[4] = {wide * v[0], high * v[1], slope * v[2] + shift, -v[2]};
+    const double back[4] = {0, 0, 1 / shift, slope / shift};
+    for (int k = 0; k < 3; k++) {
+        const double clip[4] = {wide * side[0][k], high * side[1][k], slope * side[2][k],
+                                -side[2][k]};
+        const double world[4] = {side[0][k] / wide, side[1][k] / high, back[2] * eye[k],
+                                 back[3] * eye[k] - side[2][k]};
+        camera->eye[k] = (float)eye[k];
+        for (int i = 0; i < 4; i++) {
+            camera->clip[k][i] = (float)clip[i];
+            camera->world[i][k] = (float)world[i];
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        camera->clip[3][i] = (float)origin[i];
+        camera->world[i][3] = (float)back[i];
+    }
     camera->reach = (float)orbit->size;
 }
 

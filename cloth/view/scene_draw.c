@@ -1,7 +1,6 @@
 /* A picture of a scene: all surfaces first, then the light on their visible parts. */
 #include "cloth/view/scene.h"
 
-#include <cglm/mat4.h>
 #include <math.h>
 #include <string.h>
 
@@ -177,10 +176,7 @@ static void shade(const struct view_scene *scene, const struct view_camera *came
 {
     const GLuint program = use_to_see(scene, VIEW_SHADE, camera, width, height);
     double ink = 0; /* edges are paler where they are dense, so that they do not hide the cloth */
-    mat4 clip, world;
-    glm_mat4_copy((vec4 *)camera->clip, clip);
-    glm_mat4_inv(clip, world);
-    glUniformMatrix4fv(glGetUniformLocation(program, "world"), 1, GL_FALSE, world[0]);
+    glUniformMatrix4fv(glGetUniformLocation(program, "world"), 1, GL_FALSE, camera->world[0]);
     glUniform1f(glGetUniformLocation(program, "pixel"), (float)pixel_width(camera, height));
     glUniform1i(glGetUniformLocation(program, "samples"), scene->surfaces.samples);
     if (scene->wired)

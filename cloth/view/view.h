@@ -4,7 +4,6 @@
 #include "cloth/base/error.h"
 #include "cloth/contact/shape.h"
 
-#include <cglm/types.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -36,9 +35,9 @@ void view_obstacles_free(struct view_obstacles *obstacles);
 /* --- camera.c: where to look from. Pure functions. --- */
 
 struct view_camera {
-    mat4 clip;    /* from the world to clip coordinates */
-    float eye[3]; /* m */
-    float reach;  /* largest extent of the fitted points, m; > 0 */
+    float clip[4][4], world[4][4]; /* columns: from the world to clip coordinates, and back */
+    float eye[3];                  /* m */
+    float reach;                   /* largest extent of the fitted points, m; > 0 */
 };
 
 /* Gathers points that the picture must show, seen from one direction. */

@@ -75,6 +75,23 @@ UNIT_LOOP(fits_tightly, 0, 5)
     ck_assert(low[2] > -1 && high[2] < 1);
 }
 
+UNIT_LOOP(knows_the_way_back, 0, 5)
+{
+    struct view_camera camera;
+    double position[3 * POINTS], at[4] = {0, 0, 0, 1};
+    fit_cloud(37 * _i, 25 * (_i - 2), 1.778, _i + 1, &camera);
+    cloud(position);
+    for (int v = 0; v < POINTS; v++) {
+        double back[4] = {0};
+        project(&camera, position + 3 * v, at);
+        for (int i = 0; i < 4; i++)
+            for (int k = 0; k < 4; k++)
+                back[i] += (double)camera.world[k][i] * at[k];
+        for (int i = 0; i < 3; i++)
+            ck_assert_double_eq_tol(back[i] / back[3], position[3 * v + i], 1e-4);
+    }
+}
+
 UNIT_TEST(zooms)
 {
     struct view_camera camera;

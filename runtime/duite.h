@@ -72,7 +72,7 @@ const char *duite_code_text(int code);
  * minor + patch. A program runs with the library of its header and with later ones of the same
  * major version. These may know longer structures: the program says how long its own are, and what
  * lies beyond keeps its default. Local. Returns: the version. */
-#define DUITE_VERSION 100
+#define DUITE_VERSION 10000
 int duite_version(void);
 
 typedef struct duite duite; /* a running runtime */

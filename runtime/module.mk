@@ -4,6 +4,8 @@ lib_LTLIBRARIES += libduite.la
 noinst_LTLIBRARIES += libduite_core.la
 include_HEADERS = runtime/duite.h runtime/duite.hpp runtime/duite_kernel.hpp runtime/duite_policy.h
 pkgconfig_DATA = runtime/duite.pc
+cmakeconfigdir = $(libdir)/cmake/duite
+cmakeconfig_DATA = runtime/duiteConfig.cmake runtime/duiteConfigVersion.cmake
 dist_man_MANS += runtime/duite.3
 man_MANS += $(RUNTIME_PAGES)
 # A page for each function, macro and type of the headers; tests/documents.sh compares.

@@ -1,8 +1,8 @@
 #!/bin/sh
 # README's two commands on a bare Debian of this machine's release, which debootstrap fetches from this machine's mirror (DUITE_MIRROR names
-# another) with nothing but what every Debian has; on one with MPICH alone the build, a program of the tutorial and the tests of the runtime; and on
-# a third libduite and its tools alone, without the packages of the cloth.
-# Half an hour on two cores, 3 GB each. What is tested is a clone: the last commit.
+# another) with nothing but what every Debian has; on one with MPICH alone the build, a program of the tutorial and the tests of the runtime; on
+# a third libduite and its tools alone, without the packages of the cloth; and on a fourth the Debian packages that the first has made come and
+# go. Half an hour on two cores, 3 GB each. What is tested is a clone: the last commit.
 . "${srcdir:-.}/tests/support/tap.sh"
 test "$(id -u)" = 0 || skip_all "only root may enter another system"
 for tool in debootstrap unshare git apt-get; do
@@ -10,9 +10,7 @@ for tool in debootstrap unshare git apt-get; do
 done
 why=$(unshare --mount --pid --fork true 2>&1) || skip_all "no namespaces here: $why"
 git -C "$srcdir" rev-parse --git-dir > "$scratch/output" 2>&1 || skip_all "no sources of git"
-release=$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)
-mirror=${DUITE_MIRROR:-$(apt-get indextargets --format '$(CODENAME) $(REPO_URI)' 'Created-By: Packages' | sed -n "s/^$release //p" | head -n 1)}
-test -n "$mirror" || skip_all "the sources of apt name no mirror of '$release'"
+. "$srcdir/tests/support/mirror.sh"
 plan_later
 DUITE_TIMEOUT=7200
 
@@ -32,7 +30,7 @@ enter() {
 system() {
     debootstrap --variant=minbase "$release" "$scratch/one" "$mirror" > "$scratch/said" 2>&1 || { tail -n 20 "$scratch/said" && return 1; }
     echo "127.0.0.1 localhost" > "$scratch/one/etc/hosts" && git clone -q "$srcdir" "$scratch/one/root/duite" && cp -a "$scratch/one" "$scratch/mpich" &&
-        cp -a "$scratch/one" "$scratch/alone"
+        cp -a "$scratch/one" "$scratch/alone" && cp -a "$scratch/one" "$scratch/packages"
 }
 command_of_readme() { grep -qxF "$1" "$srcdir/README.md" && enter one "$1"; }
 pictures() { test -s "$scratch/one/root/duite/demo/sheet-008.png" && test -s "$scratch/one/root/duite/demo/dressing.png"; }
@@ -52,11 +50,28 @@ without_cloth() {
     enter alone 'dpkg-query -W libyaml-dev libhdf5-dev libzmq3-dev libepoxy-dev' # the names of those that are there
     ! grep -v '^dpkg-query: no packages found' "$scratch/said"
 }
+packages() {
+    enter one 'apt-get install -qq --no-install-recommends debhelper dpkg-dev lintian && make deb && lintian --allow-root --fail-on error,warning deb/*.changes'
+}
+install_packages() {
+    mv "$scratch/one/root/duite/deb" "$scratch/packages/root" && rm "$scratch"/packages/root/deb/*-dbgsym_*.deb &&
+        enter packages 'apt-get update -qq && apt-get install -qq --no-install-recommends gcc libc6-dev make cmake pkg-config ../deb/*.deb && sh tests/installed.sh &&
+            cd / && OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n 2 duite-cloth sheet.yaml --end 0.002'
+}
+remove_packages() { # nothing of them is left
+    enter packages 'apt-get purge -qq libduite1 libduite-dev duite-tools duite-cloth' || return
+    find "$scratch/packages" -path "$scratch/packages/root" -prune -o -name '*duite*' -print > "$scratch/left"
+    cat "$scratch/left"
+    test ! -s "$scratch/left"
+}
 
 ok "a bare $release" system
 ok "README: ./bootstrap && make demo" command_of_readme './bootstrap && make demo'
 ok "pictures of it" pictures
 ok "README: ./bootstrap && make check" command_of_readme './bootstrap && make check'
+ok "Debian packages, of which lintian warns of nothing" packages
+ok "Debian packages on a bare system: the first program, and two ranks of cloth" install_packages
+ok "Debian packages: removed" remove_packages
 ok "MPICH alone: build" only_mpich
 ok "MPICH alone: the first program on 1, 2 and 3 ranks" first
 ok "MPICH alone: the tests of the runtime" runtime

@@ -73,6 +73,13 @@ other_mpi() { # MPICH will do, and with both missing Open MPI is installed
         told 0 0 "libopenmpi-dev openmpi-bin libmpich-dev mpich" "" && grep -q "libopenmpi-dev openmpi-bin" "$scratch/asked"
 }
 told_of() { "$tree/bootstrap" --help | grep DUITE_NO_INSTALL=1 && grep DUITE_NO_INSTALL=1 "$srcdir/docs/install.md"; }
+notice() { # NOTICE has the licence of each package but those of the build
+    eval "$(grep '^[a-z]*="' "$srcdir/bootstrap")"
+    # shellcheck disable=SC2154 # its lists
+    for package in $mpi $other_mpi $core $cloth $charts $tests $pictures $live $rivals $plots $frames; do
+        grep -Eq "^    ([a-z0-9+, -]* )?$(echo "$package" | sed 's/+/[+]/g')[ ,].*[A-Z(]" "$srcdir/NOTICE" || { echo "$package is missing" && return 1; }
+    done
+}
 
 ok "without root and an optional package of the tests" optional check
 ok "without root and an optional package of pictures" optional libglfw3-dev
@@ -86,3 +93,4 @@ ok "no network" offline
 ok "--full without root" eval 'told 0 1000 gnuplot-nox "" --full && configured'
 ok "another MPI is there" other_mpi
 ok "DUITE_NO_INSTALL=1 is documented" told_of
+ok "NOTICE has each package" notice

@@ -1,5 +1,6 @@
 #!/bin/sh
-# What a user of the library meets: make install, pkg-config duite, a program of a few lines, and no symbols but ours.
+# What a user of the library meets: make install, pkg-config duite, a program of a few lines, and no symbols but ours. tests/installed.sh
+# builds the first program.
 . "${srcdir:-.}/tests/support/tap.sh"
 
 prefix=$scratch/usr
@@ -23,18 +24,14 @@ EOF
     ${CC:-cc} ${CFLAGS:-} -o "$scratch/three" "$scratch/three.c" $(pc --cflags --libs)
 }
 
-compile_example() {
-    # shellcheck disable=SC2046,SC2086
-    ${CC:-cc} ${CFLAGS:-} -o "$scratch/dot" "$srcdir/tests/examples/dot.c" $(pc --cflags --libs)
-}
-
 exports() { # the names of the list, which tests/documents.sh compares with the headers
     nm -D --defined-only "$prefix/lib/libduite.so" | awk '{ print $3 }' | LC_ALL=C sort | diff "$srcdir/runtime/duite.sym" -
 }
 
 one_version() {
     version=$(pc --modversion | awk -F. '{ print 10000 * $1 + 100 * $2 + $3 }')
-    grep -qx "#define DUITE_VERSION $version" "$prefix/include/duite.h"
+    grep -qx "#define DUITE_VERSION $version" "$prefix/include/duite.h" &&
+        grep -F "version(\"$(pc --modversion)\")" "$srcdir/contrib/spack/packages/duite/package.py"
 }
 
 pages() {
@@ -64,12 +61,11 @@ ok "make install" install_duite "$prefix"
 ok "pkg-config knows duite and where mpi.h is" pc --exists
 ok "a program compiles with pkg-config's flags" compile
 ok "and runs, though no other path leads to the library" limited "$scratch/three"
-ok "an example compiles with them" compile_example
-ok "and runs on 2 ranks" ranks 2 "$scratch/dot"
+ok "the first program is built by pkg-config and by CMake" env duite_DIR="$prefix/lib/cmake/duite" sh "$srcdir/tests/installed.sh"
 ok "the man page is there" test -s "$prefix/share/man/man3/duite.3"
 ok "each function has one" pages
 ok "libduite.so exports the names of runtime/duite.sym" exports
-ok "duite.h is of the version that pkg-config tells" one_version
+ok "duite.h and the recipe for Spack are of the version that pkg-config tells" one_version
 ok "there is no static library, and configure says why" no_static_library
 ok "make install DESTDIR" install_staged
 ok "make uninstall leaves no file" uninstalled

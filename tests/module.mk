@@ -66,15 +66,20 @@ check-threads:
 check-threads-long:
 	$(MAKE) $(AM_MAKEFLAGS) check DUITE_QUICK=0 TESTS=tests/runtime/test_threads_long.sh TEST_SUITE_LOG=test-suite-long.log
 check-programs: $(check_PROGRAMS)
+# What make install left: the first program of the tutorial against it.
+installcheck-local:
+	@$(AM_TESTS_ENVIRONMENT) srcdir='$(srcdir)'; duite_DIR='$(cmakeconfigdir)'; \
+	  PKG_CONFIG_PATH='$(pkgconfigdir)'$${PKG_CONFIG_PATH:+:$$PKG_CONFIG_PATH}; export srcdir duite_DIR PKG_CONFIG_PATH; \
+	  $(LOG_COMPILER) $(srcdir)/tests/installed.sh
 .PHONY: check-long check-threads check-threads-long check-programs golden-sentences
 
 EXTRA_DIST += tests/arrows.txt tests/support/policies.h tests/support/tap.sh tests/support/predicted.sh tests/support/commands.sh \
 	tests/support/bodies.sh tests/support/hangs.c tests/support/probes.sh tests/support/table.sh tests/support/dress.awk tests/support/mpi.sh tests/support/rank.h tests/support/run.sh tests/support/screen.sh \
-	tests/support/count.sh \
+	tests/support/count.sh tests/support/mirror.sh tests/installed.sh \
     tests/support/lsan.supp tests/support/tsan.supp tests/support/valgrind.supp
 ASAN_SH += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/embedding.sh tests/completion.sh tests/bootstrap.sh
 PLAIN_SH += tests/install.sh tests/bare.sh tests/two_mpis.sh
-LONG_SH += tests/pages.sh tests/bare_long.sh
+LONG_SH += tests/pages.sh tests/bare_long.sh tests/arm64_long.sh
 
 if HAVE_CHECK
 check_LIBRARIES += tests/support/libunit.a

@@ -173,9 +173,14 @@ locations() {
         "datadir=$1/share mandir=$1/share/man pkgconfigdir=$1/lib/pkgconfig"
 }
 
+tap_moved() { # PREFIX FILE: as configure makes it with this prefix; the file says prefix=... or set(prefix "...")
+    sed -e "s|^prefix=.*|prefix=$1|; s|^libdir=.*|libdir=$1/lib|; s|^includedir=.*|includedir=$1/include|" \
+        -e "s|set(prefix .*|set(prefix \"$1\")|; s|set(libdir .*|set(libdir \"$1/lib\")|; s|set(includedir .*|set(includedir \"$1/include\")|" "$2"
+}
+
 install_duite() {
     # shellcheck disable=SC2046 # a list of settings
     env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL "${MAKE:-make}" install $(locations "$1") &&
-        sed -e "s|^prefix=.*|prefix=$1|" -e "s|^libdir=.*|libdir=$1/lib|" -e "s|^includedir=.*|includedir=$1/include|" \
-            runtime/duite.pc > "$1/lib/pkgconfig/duite.pc"
+        tap_moved "$1" runtime/duite.pc > "$1/lib/pkgconfig/duite.pc" &&
+        tap_moved "$1" runtime/duiteConfig.cmake > "$1/lib/cmake/duite/duiteConfig.cmake"
 }

@@ -77,7 +77,8 @@ notice() { # NOTICE has the licence of each package but those of the build
     eval "$(grep '^[a-z]*="' "$srcdir/bootstrap")"
     # shellcheck disable=SC2154 # its lists
     for package in $mpi $other_mpi $core $cloth $charts $tests $pictures $live $rivals $plots $frames; do
-        grep -Eq "^    ([a-z0-9+, -]* )?$(echo "$package" | sed 's/+/[+]/g')[ ,].*[A-Z(]" "$srcdir/NOTICE" || { echo "$package is missing" && return 1; }
+        grep -Eq "^    ([a-z0-9+, -]+, )?$(echo "$package" | sed 's/+/[+]/g')(, [a-z0-9+, -]+)?  +[^ ]" "$srcdir/NOTICE" ||
+            { echo "$package is missing" && return 1; }
     done
 }
 

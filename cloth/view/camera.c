@@ -169,8 +169,8 @@ void view_fit_orbit(const struct view_fit *fit, struct view_orbit *orbit)
             orbit->target[k] += eye[i] * fit->side[i][k];
 }
 
-/* A point is at v in the axes of a camera, with its eye at 0. Clip coordinates are (wide v0, high v1,
- * slope v2 + shift, -v2), so that depth is -1 at near and 1 at far. */
+/* A point is at v in the axes of a camera, with its eye at 0. Clip coordinates are (wide v0, high
+ * v1, slope v2 + shift, -v2), so that depth is -1 at near and 1 at far. */
 void view_orbit_camera(const struct view_orbit *orbit, double aspect, struct view_camera *camera)
 {
     const double high = orbit->zoom / tan(radians(HALF_ANGLE)), wide = high / aspect;

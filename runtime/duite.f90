@@ -240,6 +240,23 @@ module duite
             type(c_ptr), value :: rt
             type(duite_object), value :: object
         end function
+        integer(c_int) function duite_adopt(rt, rank, type, count, values, done, user, object) bind(C, name='duite_adopt')
+            import :: c_int, c_ptr, c_funptr, c_size_t, duite_object
+            type(c_ptr), value :: rt
+            integer(c_int), value :: rank, type
+            integer(c_size_t), value :: count
+            type(c_ptr), value :: values ! c_loc of an array; on other ranks c_null_ptr
+            type(c_funptr), value :: done ! or c_null_funptr
+            type(c_ptr), value :: user
+            type(duite_object), intent(out) :: object
+        end function
+        integer(c_int) function duite_set_at(rt, object, rank, values) bind(C, name='duite_set_at')
+            import :: c_int, c_ptr, duite_object
+            type(c_ptr), value :: rt
+            type(duite_object), value :: object
+            integer(c_int), value :: rank
+            type(*), intent(in), optional :: values(*)
+        end function
         integer(c_int) function duite_hint(rt, object, weight, n, neighbours, edge_weights) bind(C, name='duite_hint')
             import :: c_int, c_ptr, c_size_t, c_double, duite_object
             type(c_ptr), value :: rt

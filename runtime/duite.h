@@ -139,7 +139,7 @@ typedef enum duite_mode {
  * neither associative nor commutative, since the tree of contributions is fixed (see duite_fork).
  *
  * A law for bytes may see structures in them: count is always that of the whole object, in bytes
- * then, and values are aligned to 16 bytes. */
+ * then, and values are aligned to 16 bytes (but for duite_adopt). */
 typedef struct duite_law {
     const char *name;
     duite_type type; /* of the objects it is for; 0: any but bytes */
@@ -166,7 +166,8 @@ const duite_law *duite_law_find(const char *name);
 
 /* One parameter of a body. */
 typedef struct duite_param {
-    void *data;   /* 64-byte aligned; const under DUITE_R; dies with the body; NULL if postponed */
+    void *data;   /* 64-byte aligned, but for duite_adopt; const under DUITE_R; dies with the body;
+                     NULL if postponed */
     size_t count; /* elements; the maximum for a postponed object that changes its size */
     duite_type type;     /* of the elements */
     size_t max;          /* room in elements under w and rw: see duite_resize */
@@ -543,6 +544,31 @@ int duite_new(duite *rt, duite_type type, size_t count, duite_object *object);
  * communication. Errors: as of duite_new: DUITE_E_ARGUMENT, DUITE_E_MEMORY. */
 int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_object *object);
 
+/* The runtime is done with memory that it adopted. Called on any thread of the runtime, in
+ * duite_free, duite_release or duite_stop also on the main thread; it calls no function of the
+ * runtime. */
+typedef void duite_done(void *values, void *user);
+
+/* Makes an object of memory of the program's own on one rank, without a copy: its value is what
+ * lies there, count elements (of their type's alignment, at most 8 bytes; bodies find them where
+ * they are, so duite_param.data has no other alignment). That rank is the object's home and stays
+ * it. Others ignore `values`, `done` and `user`. From now on the memory is the runtime's: the
+ * program may look at it or change it only between duite_acquire and duite_release of the object,
+ * whose data it then is. Tasks under rw and w that run one after the other on `rank` work in place.
+ * A turn waits for all earlier tasks on the object, also for those that read an older value. Values
+ * that come from elsewhere (duite_set, a task on another rank, after a failure) lie in memory of
+ * the runtime's until the program acquires or frees the object. duite_free puts the last value
+ * there and gives the memory back: `done`, unless it is NULL, is called once with `values` and
+ * `user`. A duite_wait after duite_free returns later than that. duite_stop also gives back the
+ * memory of objects that were not freed, whose value may be an older one; duite_abandon does so
+ * unless MPI may still read it. The memory may be adopted again once it was given back. Collective;
+ * no communication. Errors: DUITE_E_ARGUMENT (nowhere to put the object, no such rank, a type that
+ * is none, a count that is negative, 0 or too large), DUITE_E_MEMORY. Memory that is NULL, not
+ * aligned, or overlaps memory that is adopted is DUITE_E_ARGUMENT on `rank` alone. All ranks then
+ * have the object, poisoned with that code, so that the next duite_wait returns it on all. */
+int duite_adopt(duite *rt, int rank, duite_type type, size_t count, void *values, duite_done *done,
+                void *user, duite_object *object);
+
 /* Frees an object after the last earlier access; afterwards `object` is invalid. Collective.
  * Errors: DUITE_E_OBJECT; in a body DUITE_E_RIGHT for an object that it did not make. */
 int duite_free(duite *rt, duite_object object);
@@ -556,6 +582,11 @@ int duite_set(duite *rt, duite_object object, const void *values);
  * changes (duite_set sets the maximum); else DUITE_E_SIZE. Collective; returns at once. Errors:
  * DUITE_E_OBJECT, DUITE_E_SIZE, DUITE_E_MEMORY; in a body DUITE_E_RIGHT. */
 int duite_set_sized(duite *rt, duite_object object, const void *values, size_t count);
+
+/* duite_set with the values of one rank only; the others ignore `values`. The value stays there,
+ * and goes to other ranks as they need it. Collective; returns at once. Errors: DUITE_E_OBJECT,
+ * DUITE_E_ARGUMENT (no such rank), DUITE_E_MEMORY. */
+int duite_set_at(duite *rt, duite_object object, int rank, const void *values);
 
 /* The number of elements that the tasks forked so far leave in the object. Waits and returns errors
  * like duite_get; a later duite_get need not wait. Collective. Errors: as of duite_get:

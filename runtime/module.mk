@@ -10,10 +10,10 @@ dist_man_MANS += runtime/duite.3
 man_MANS += $(RUNTIME_PAGES)
 # A page for each function, macro and type of the headers; tests/documents.sh compares.
 RUNTIME_PAGES = \
-	runtime/man/duite_abandon.3 runtime/man/duite_acquire.3 runtime/man/duite_release.3 runtime/man/DUITE_ARGS.3 runtime/man/duite_balancer.3 runtime/man/duite_balancer_find.3 \
+	runtime/man/duite_abandon.3 runtime/man/duite_acquire.3 runtime/man/duite_adopt.3 runtime/man/duite_release.3 runtime/man/DUITE_ARGS.3 runtime/man/duite_balancer.3 runtime/man/duite_balancer_find.3 \
 	runtime/man/duite_balancer_names.3 runtime/man/duite_blocks.3 runtime/man/duite_body.3 runtime/man/duite_build.3 \
 	runtime/man/duite_call.3 runtime/man/duite_code.3 runtime/man/duite_code_text.3 runtime/man/duite_colocate.3 \
-	runtime/man/duite_contribute.3 runtime/man/duite_cores.3 runtime/man/duite_count.3 runtime/man/duite_count_all.3 runtime/man/duite_count_sized.3 \
+	runtime/man/duite_contribute.3 runtime/man/duite_cores.3 runtime/man/duite_done.3 runtime/man/duite_count.3 runtime/man/duite_count_all.3 runtime/man/duite_count_sized.3 \
 	runtime/man/duite_counters.3 runtime/man/duite_complete.3 runtime/man/duite_end.3 runtime/man/duite_event.3 runtime/man/duite_event_new.3 runtime/man/duite_fail.3 runtime/man/duite_fail_text.3 runtime/man/DUITE_FORK.3 \
 	runtime/man/duite_fork.3 runtime/man/duite_fork_at.3 runtime/man/duite_fork_with.3 runtime/man/duite_free.3 \
 	runtime/man/duite_get.3 runtime/man/duite_get_at.3 runtime/man/duite_get_count.3 runtime/man/duite_graph.3 \
@@ -27,7 +27,7 @@ RUNTIME_PAGES = \
 	runtime/man/duite_param.3 runtime/man/duite_prefetch.3 runtime/man/duite_random.3 runtime/man/duite_rank.3 \
 	runtime/man/duite_ranks.3 runtime/man/duite_ready.3 runtime/man/duite_replay.3 runtime/man/duite_replay_while.3 \
 	runtime/man/duite_request.3 runtime/man/duite_resize.3 runtime/man/duite_scheduler.3 runtime/man/duite_scheduler_find.3 \
-	runtime/man/duite_scheduler_names.3 runtime/man/duite_set.3 runtime/man/duite_set_sized.3 runtime/man/duite_start.3 \
+	runtime/man/duite_scheduler_names.3 runtime/man/duite_set.3 runtime/man/duite_set_at.3 runtime/man/duite_set_sized.3 runtime/man/duite_start.3 \
 	runtime/man/duite_stop.3 runtime/man/duite_task_graph.3 runtime/man/duite_task_options.3 runtime/man/duite_threads.3 \
 	runtime/man/duite_trace_end.3 runtime/man/duite_trace_step.3 runtime/man/duite_type.3 runtime/man/duite_version.3 \
 	runtime/man/duite_wait.3

@@ -1,9 +1,10 @@
 #!/bin/sh
-# docs/runtime.md and the library's man pages tell the truth: the tutorial quotes the programs that make check runs, each function of the
+# docs/runtime.md, docs/embedding.md and the library's man pages tell the truth: they quote the programs that make check runs, each function of the
 # headers has a comment and a page, and the overview names all pages.
 . "${srcdir:-.}/tests/support/tap.sh"
 
 document=$srcdir/docs/runtime.md
+embedding=$srcdir/docs/embedding.md
 page=$srcdir/runtime/duite.3
 pages=runtime/man
 headers="$srcdir/runtime/duite.h $srcdir/runtime/duite_policy.h"
@@ -46,7 +47,7 @@ sees() {
 examples() { # every program of tests/examples is quoted, and runs in make check
     for source in "$srcdir"/tests/examples/*.c; do
         name=$(basename "$source" .c)
-        grep -qx "<!-- tests/examples/$name.c -->" "$document" || { echo "$name.c is not quoted" && return 1; }
+        grep -qx "<!-- tests/examples/$name.c -->" "$document" "$embedding" || { echo "$name.c is not quoted" && return 1; }
         grep -q "^for example in .*\<$name\>" "$srcdir/tests/examples/test_examples.sh" || { echo "$name does not run" && return 1; }
     done
 }
@@ -264,11 +265,11 @@ plan_later
 ok "links between pages lead somewhere" links $documents
 ok "a heading that is lost is seen" lost
 ok "docs/runtime.md quotes the examples as they are" quotes "$document"
-ok "docs/embedding.md, too" quotes "$srcdir/docs/embedding.md"
+ok "docs/embedding.md, too" quotes "$embedding"
 ok "a quotation that differs is seen" sees 's/ += x\[i\] \* y\[i\];/ += x[i] - y[i];/'
 ok "a line left out is seen" sees '/DUITE_FORK(rt, &FACTOR, NULL/d'
 ok "C that nobody compiles is seen" sees '0,/^<!-- .* -->$/d'
-ok "docs/runtime.md quotes every example, and each runs" examples
+ok "every example is quoted, and runs" examples
 ok "examples are short" short
 ok "the man pages are those of the headers, and module.mk has them all" pages_are_made
 ok "each function and macro has its page, with all sections" pages_are_whole

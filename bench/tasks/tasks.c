@@ -5,10 +5,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct bench_case *const CASES[] = {
-    &tasks_stencil,     &tasks_chain, &tasks_independent,  &tasks_fib_case,
-    &tasks_tree,        &tasks_tiles, &tasks_growth,       &tasks_bytes,
-    &tasks_granularity, &tasks_wake,  &tasks_instructions, NULL};
+static const struct bench_case *const CASES[] = {&tasks_stencil,
+                                                 &tasks_chain,
+                                                 &tasks_independent,
+                                                 &tasks_fib_case,
+                                                 &tasks_tree,
+                                                 &tasks_tiles,
+                                                 &tasks_growth,
+                                                 &tasks_bytes,
+                                                 &tasks_granularity,
+                                                 &tasks_wake,
+                                                 &tasks_instructions,
+                                                 &tasks_adopt,
+                                                 NULL};
 enum { N_CASES = sizeof CASES / sizeof *CASES - 1 };
 
 /* For two cores and the full sizes. */
@@ -24,6 +33,7 @@ static const struct measure_target TARGETS[] = {
     {"fib_speedup_t2", 1.8, true},
     {"tree_vs_libomp", 1.3, false},
     {"tiles_vs_libomp", 1, false},
+    {"adopt_vs_copy", 0.1, false},
     {"independent_growth", 1.5, false},
     {"bytes_per_pending_task", 192, false},
     {"granularity_50_w2_vs_mpi", 1.2, false},
@@ -50,6 +60,7 @@ static const duite_kernel *const KERNELS[] = {&tasks_gate,
                                               &tasks_fib_add,
                                               &tasks_tree_node,
                                               &tasks_wake_up,
+                                              &tasks_adopt_change,
                                               &tasks_tiles_kernels[TILES_POTRF],
                                               &tasks_tiles_kernels[TILES_TRSM_L],
                                               &tasks_tiles_kernels[TILES_SYRK],

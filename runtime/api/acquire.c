@@ -9,13 +9,18 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/data/adopted.h"
 #include "runtime/task/event.h"
+
+#include <string.h>
 
 struct api_turn {
     struct api_turn *next;
     duite_object object;
-    duite_event event; /* written before `begun` */
+    duite_event event; /* written before `begun`, as are: */
     void *data;
+    struct data_version *version;
+    struct data_packet *kept; /* adopted memory that it reads and no version has, or NULL */
     const struct data_failure *failure; /* of its task, written before `over` */
     _Atomic int holders, begun, over, released;
 };
@@ -41,6 +46,7 @@ static int acquire_body(const duite_call *call)
     if (code)
         return code;
     turn->data = call->param[0].data;
+    turn->version = call->own->task->access[0].waiter.version;
     atomic_store(&turn->begun, 1);
     turn_complete(call->own->graph, turn);
     queue_notify(call->own->graph->pool);
@@ -105,6 +111,8 @@ static void turn_end(duite *rt, struct api_turn **place)
 {
     struct api_turn *turn = *place;
     *place = turn->next;
+    data_packet_free(turn->kept);
+    turn->kept = NULL;
     atomic_store(&turn->released, 1);
     turn_complete(&rt->graph, turn);
     turn_drop(turn);
@@ -135,13 +143,45 @@ static bool turn_is_settled(void *context)
     return atomic_load(&turn->begun) || atomic_load(&turn->over);
 }
 
+static bool turn_memory_rests(void *memory)
+{
+    return data_adopted_rests(memory);
+}
+
+/* The turn has begun. A value whose object has adopted memory, and that lies elsewhere, comes
+ * there; a reader gets a copy, since others may read the value meanwhile. Tasks that still use the
+ * memory come earlier, so they end. */
+static int turn_come_home(duite *rt, struct api_turn *turn, duite_mode mode)
+{
+    struct data_object *object = data_object_here(&rt->graph.table, turn->object);
+    struct data_adopted *memory = object ? object->memory : NULL;
+    struct data_packet *packet = turn->version->packet;
+    if (!memory || packet == &memory->packet)
+        return DUITE_OK;
+    work_until(rt->pool,
+               &(struct work_why){"duite_acquire", "earlier tasks on adopted memory", NULL},
+               turn_memory_rests, memory);
+    if (!data_adopted_rests(memory))
+        return comm_error(rt->comm);
+    turn->data = data_payload(data_adopted_take(memory));
+    if (mode != DUITE_W)
+        memcpy(turn->data, data_payload(packet), packet->bytes);
+    if (mode == DUITE_R) {
+        turn->kept = &memory->packet;
+    } else {
+        turn->version->packet = &memory->packet;
+        data_packet_free(packet);
+    }
+    return DUITE_OK;
+}
+
 /* On the object's home: works until the turn begins, or its task is over without it. */
-static int turn_wait(duite *rt, struct api_turn *turn)
+static int turn_wait(duite *rt, struct api_turn *turn, duite_mode mode)
 {
     work_until(rt->pool, &(struct work_why){"duite_acquire", "its turn on an object", NULL},
                turn_is_settled, turn);
     if (atomic_load(&turn->begun))
-        return DUITE_OK;
+        return turn_come_home(rt, turn, mode);
     if (atomic_load(&turn->over))
         return task_failure_error(&rt->graph, turn->failure);
     return comm_error(rt->comm);
@@ -157,7 +197,7 @@ static int turn_begin(duite *rt, struct api_turn *turn, duite_mode mode)
     rt->turns = turn;
     const int code = duite_fork(rt, &turn_kernels[mode - DUITE_R], &turn, 1, &turn->object);
     if (!code)
-        return here ? turn_wait(rt, turn) : DUITE_OK;
+        return here ? turn_wait(rt, turn, mode) : DUITE_OK;
     if (here)
         turn_drop(turn); /* its task never was */
     if (rt->turns == turn)

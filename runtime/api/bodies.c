@@ -127,7 +127,8 @@ int api_body_set(struct duite_call_private *body, duite_object object, const voi
     if (!code)
         code = task_check_call(body, call, object, DUITE_W);
     if (!code)
-        code = task_set_object(task_inside(body), body->worker, object, values, count);
+        code =
+            task_set_object(task_inside(body), body->worker, object, TASK_ANYWHERE, values, count);
     return body_remember(body, code);
 }
 

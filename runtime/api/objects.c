@@ -50,6 +50,45 @@ int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_
     return object_new(rt, type, count, max, true, object);
 }
 
+/* All ranks find these errors, and only these keep the object from being made. */
+static int adopt_check(const duite *rt, int rank, duite_type type, size_t count,
+                       const duite_object *object)
+{
+    if (!object)
+        return base_error(DUITE_E_ARGUMENT, "duite_adopt: nowhere to put the object");
+    if (rank < 0 || rank >= rt->graph.n_ranks)
+        return base_error(DUITE_E_ARGUMENT, "duite_adopt: there is no rank %d, only 0 to %d", rank,
+                          rt->graph.n_ranks - 1);
+    return data_object_check(type, count, count)
+               ? data_object_refuse("duite_adopt", type, count, count)
+               : DUITE_OK;
+}
+
+int duite_adopt(duite *rt, int rank, duite_type type, size_t count, void *values, duite_done *done,
+                void *user, duite_object *object)
+{
+    if (object)
+        *object = DUITE_NO_OBJECT;
+    int code = api_enter(rt, "duite_adopt");
+    if (code)
+        return code;
+    struct task_graph *graph = &rt->graph;
+    code = adopt_check(rt, rank, type, count, object);
+    if (code)
+        return api_remember(rt, code);
+    task_mix(graph, (uint64_t)rank);
+    task_mix(graph, count);
+    task_mix(graph, (uint64_t)type);
+    task_mixed(graph, COMM_CALLED, COMM_CALLED_ADOPT);
+    code = data_object_new_at(&graph->table, type, count, rank, object);
+    if (code)
+        return api_remember(rt, code);
+    trace_object(rt->trace, &graph->table, *object);
+    trace_moved(rt->trace, &graph->table, &object->slot, 1);
+    code = task_adopt(graph, &graph->table.object[object->slot], values, done, user);
+    return graph->broken ? api_remember(rt, code) : code; /* a poisoned value tells of itself */
+}
+
 static void object_mix_name(duite *rt, duite_object object)
 {
     task_mix(&rt->graph, task_name_bits(object));

@@ -249,8 +249,8 @@ static int object_set(duite *rt, duite_object object, const void *values, const 
     if (!code)
         code = api_remember(rt, api_settle(rt));
     if (!code)
-        code =
-            api_remember(rt, task_set_object(&rt->graph.root, rt->worker, object, values, count));
+        code = api_remember(
+            rt, task_set_object(&rt->graph.root, rt->worker, object, TASK_ANYWHERE, values, count));
     if (!code)
         trace_set(rt->trace, object);
     return code;
@@ -264,6 +264,23 @@ int duite_set(duite *rt, duite_object object, const void *values)
 int duite_set_sized(duite *rt, duite_object object, const void *values, size_t count)
 {
     return object_set(rt, object, values, &count, "duite_set_sized");
+}
+
+int duite_set_at(duite *rt, duite_object object, int rank, const void *values)
+{
+    int code = api_enter(rt, "duite_set_at");
+    if (code)
+        return code;
+    if (rank < 0 || rank >= rt->graph.n_ranks)
+        return api_remember(rt, base_error(DUITE_E_ARGUMENT,
+                                           "duite_set_at: there is no rank %d, only 0 to %d", rank,
+                                           rt->graph.n_ranks - 1));
+    code = api_settle(rt);
+    if (!code)
+        code = task_set_object(&rt->graph.root, rt->worker, object, rank, values, NULL);
+    if (!code)
+        trace_set(rt->trace, object);
+    return api_remember(rt, code);
 }
 
 /* ---- Ranks, threads and cores ---- */

@@ -24,7 +24,9 @@ enum comm_call_kind {
     ROW(NEW_SIZED, "duite_new_sized")                                                              \
     ROW(HINT, "duite_hint")                                                                        \
     ROW(COLOCATE, "duite_colocate")                                                                \
+    ROW(ADOPT, "duite_adopt")                                                                      \
     ROW(SET, "duite_set")                                                                          \
+    ROW(SET_AT, "duite_set_at")                                                                    \
     ROW(FREE, "duite_free")                                                                        \
     ROW(GRAPH_BIND, "duite_graph_bind")                                                            \
     ROW(GRAPH_FREE, "duite_graph_free")                                                            \

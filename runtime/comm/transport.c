@@ -61,6 +61,8 @@ static bool message_send(struct comm *comm, struct comm_letter *letter)
     if (comm_is_broken(comm))
         return false;
     struct data_packet *packet = comm->setup.owner->packet(letter);
+    if (packet && packet->elsewhere && !packet_is_large(packet))
+        packet = letter->packet = data_packet_copy(packet);
     if (!packet || !comm_requests_room(comm, 1)) {
         comm_break_memory(comm, "a message");
         return false;

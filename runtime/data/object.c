@@ -59,17 +59,19 @@ static int table_reserve(struct data_table *table)
                : base_no_memory("the table of objects");
 }
 
-int data_object_refuse(duite_type type, size_t count, size_t max)
+int data_object_refuse(const char *call, duite_type type, size_t count, size_t max)
 {
     size_t size = data_type_size(type);
     if (!size)
-        return base_error(DUITE_E_ARGUMENT, "duite_new: %d is no element type", (int)type);
+        return base_error(DUITE_E_ARGUMENT, "%s: %d is no element type", call, (int)type);
     if (!max)
-        return base_error(DUITE_E_ARGUMENT, "duite_new: an object has at least one element");
+        return base_error(DUITE_E_ARGUMENT, "%s: an object has at least one element", call);
+    if (max > SIZE_MAX / 2)
+        return base_error(DUITE_E_ARGUMENT, "%s: the number of elements is negative: %td", call,
+                          (ptrdiff_t)max);
     if (max > DATA_MAX_BYTES / size)
-        return base_error(DUITE_E_ARGUMENT,
-                          "duite_new: %zu elements of %zu bytes are more than %zu bytes", max, size,
-                          DATA_MAX_BYTES);
+        return base_error(DUITE_E_ARGUMENT, "%s: %zu elements of %zu bytes are more than %zu bytes",
+                          call, max, size, DATA_MAX_BYTES);
     if (count > max)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_new_sized: %zu elements are more than %zu at most", count, max);
@@ -107,6 +109,17 @@ int data_object_new(struct data_table *table, duite_type type, size_t count, siz
         (struct data_hint){.slot = slot, .leader = slot, .weight = 1};
     table->n_alive++;
     *name = (duite_object){slot, generation};
+    return DUITE_OK;
+}
+
+int data_object_new_at(struct data_table *table, duite_type type, size_t count, int home,
+                       duite_object *name)
+{
+    const int code = data_object_new(table, type, count, count, false, name);
+    if (code)
+        return code;
+    table->n_unsettled--; /* the last of these */
+    data_object_settle(table, name->slot, home);
     return DUITE_OK;
 }
 

@@ -17,7 +17,9 @@ struct data_object {
     int holder;          /* the rank that has the current version for certain */
     bool copied;         /* some rank beside the holder has a copy: `copies` says which */
     bool sized;          /* its versions differ in size */
-    bool fixed;          /* a task of a fixed kernel ran for it: its home does not change */
+    bool fixed;          /* a task of a fixed kernel ran for it, or its memory is the program's:
+                            its home does not change */
+    bool adopted;        /* its memory is the program's */
     uint64_t number;     /* of the current version: writes so far */
     struct data_version *current; /* this rank's copy of the current version, or NULL */
     uint64_t leaves;              /* contributions forked since the last other access;
@@ -30,10 +32,10 @@ struct data_object {
     /* The second line. */
     struct data_sum *sum; /* those that concern this rank, or NULL */
     duite_type type;
-    size_t count, bytes; /* at first, when all elements are zero */
-    size_t max, room;    /* elements and bytes of the largest version */
-    uint64_t : 64;       /* of two lines: in the table, which begins at one, each begins at one */
-    uint64_t : 64;
+    size_t count, bytes;         /* at first, when all elements are zero */
+    size_t max, room;            /* elements and bytes of the largest version */
+    struct data_adopted *memory; /* at home, of an adopted one */
+    uint64_t : 64; /* of two lines: in the table, which begins at one, each begins at one */
 };
 _Static_assert(sizeof(struct data_object) == 2 * BASE_LINE, "objects begin at cache lines");
 
@@ -69,20 +71,23 @@ struct data_table {
 int data_table_start(struct data_table *table, int n_ranks);
 void data_table_stop(struct data_table *table);
 
-/* Checks an object's type and counts. Errors: type, count. data_object_refuse is the whole check;
- * data_object_check accepts clear cases at once. */
-int data_object_refuse(duite_type type, size_t count, size_t max);
+/* Checks an object's type and counts. Errors: type, count. data_object_refuse is the whole check,
+ * and names the call; data_object_check accepts clear cases at once. */
+int data_object_refuse(const char *call, duite_type type, size_t count, size_t max);
 static inline int data_object_check(duite_type type, size_t count, size_t max)
 {
     enum { LARGEST_TYPE = 16 };
     const bool fits = data_type_size(type) && max && max <= DATA_MAX_BYTES / LARGEST_TYPE;
-    return fits && count <= max ? 0 : data_object_refuse(type, count, max);
+    return fits && count <= max ? 0 : data_object_refuse("duite_new", type, count, max);
 }
 
 /* Makes an object without a home, of `count` zeros. sized: its versions have 0 to `max` elements;
  * else max is count. Errors: type, count, memory. */
 int data_object_new(struct data_table *table, duite_type type, size_t count, size_t max, bool sized,
                     duite_object *name);
+/* Makes an object of a fixed size whose home is settled. Errors: as above. */
+int data_object_new_at(struct data_table *table, duite_type type, size_t count, int home,
+                       duite_object *name);
 
 /* Zeroes the object in two parts: for all its bytes at once gcc uses a string instruction, which
  * starts more slowly than these few words are written. */
@@ -136,7 +141,7 @@ void data_object_hand_on(const struct data_table *table, struct data_object *obj
 /* A version of the object, as of data_version_new. */
 static inline struct data_version *data_object_version(const struct data_object *object)
 {
-    return data_version_new(object->type, object->max, object->sized);
+    return data_version_new(object->type, object->max, object->sized, object->adopted);
 }
 
 /* The hint of the object in a slot, or NULL if its home is settled. The slot is not free. */

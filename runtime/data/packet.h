@@ -8,7 +8,8 @@
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* The bytes of one version of an object, with room for a message header in front of them, so that
- * they are sent and received where they lie. */
+ * they are sent and received where they lie. The program's own memory has none: its header lies
+ * elsewhere (adopted.h). */
 enum data_packet_kind {
     DATA_VALUE = 1,
     DATA_PIECES,
@@ -29,9 +30,10 @@ struct data_packet {
     uint32_t kind;
     uint32_t pieces;          /* DATA_PIECES: how many */
     struct data_packet *next; /* for whoever holds it; means nothing to the receiver */
-    uint64_t lines;           /* of memory, this one among them; 0: it is a scope's, see task_cell;
-                                 means nothing to the receiver */
-    uint64_t unused[2];
+    uint64_t lines;           /* of memory, this one among them; 0: it is a scope's, see task_cell,
+                                 or adopted; means nothing to the receiver, as does: */
+    void *elsewhere;          /* the payload, if it does not follow: adopted memory */
+    uint64_t unused;
 };
 _Static_assert(sizeof(struct data_packet) == 64, "a header takes one cache line");
 
@@ -51,7 +53,11 @@ void data_packet_free(struct data_packet *packet); /* NULL is fine */
 static inline void data_packet_came(struct data_packet *packet)
 {
     packet->lines = data_packet_lines(packet->bytes);
+    packet->elsewhere = NULL;
 }
+
+/* A copy in which the payload follows, to be sent as one message; NULL without memory. */
+struct data_packet *data_packet_copy(struct data_packet *packet);
 
 /* Returns the packet, or a replacement, with memory for so many bytes. `keep`: its payload is kept.
  * NULL without memory: then the packet was freed. */
@@ -62,7 +68,7 @@ void data_packet_resize(struct data_packet *packet, size_t bytes);
 
 static inline void *data_payload(struct data_packet *packet)
 {
-    return packet + 1;
+    return packet->elsewhere ? packet->elsewhere : packet + 1;
 }
 
 #pragma GCC visibility pop

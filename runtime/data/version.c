@@ -1,8 +1,9 @@
-/* Packets, and the rarer operations on versions. A packet owns its bytes; the holder of its only
- * pointer may write them. */
+/* Packets, and the rarer operations on versions. A packet owns its bytes, but for adopted ones; the
+ * holder of its only pointer may write them. */
 #include "runtime/data/version.h"
 
 #include "runtime/base/memory.h"
+#include "runtime/data/adopted.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -31,6 +32,19 @@ void data_packet_free(struct data_packet *packet)
 {
     if (packet && packet->lines)
         base_pool_give(packet, packet->lines * sizeof *packet);
+    else if (packet && packet->elsewhere)
+        data_adopted_rest((struct data_adopted *)packet);
+}
+
+struct data_packet *data_packet_copy(struct data_packet *packet)
+{
+    struct data_packet *copy = data_packet_new(packet->bytes, false);
+    if (!copy)
+        return NULL;
+    copy->key = packet->key;
+    copy->kind = packet->kind;
+    memcpy(data_payload(copy), data_payload(packet), packet->bytes);
+    return copy;
 }
 
 struct data_packet *data_packet_room(struct data_packet *packet, size_t bytes, bool keep)

@@ -90,9 +90,10 @@ struct data_version {
     _Atomic(struct data_waiter *)
         waiters; /* tasks that want to read; DATA_PRODUCED once they may */
     _Atomic uint32_t holds;
-    bool sized : 1; /* its size is its own */
-    bool lent : 1;  /* its memory is that of a scope, which lives longer: see task_cell */
-    bool poisoned;  /* in place of bytes; set before it is produced */
+    bool sized : 1;   /* its size is its own */
+    bool lent : 1;    /* its memory is that of a scope, which lives longer: see task_cell */
+    bool adopted : 1; /* its bytes may be the program's memory: its object's is */
+    bool poisoned;    /* in place of bytes; set before it is produced */
     uint8_t type;
     size_t max; /* elements there may be; there are as many, or fewer if it is sized */
     struct data_waiter *heir; /* set before the object's hold is released */
@@ -106,13 +107,14 @@ struct data_version {
 #define DATA_PRODUCED ((struct data_waiter *)1)
 
 /* A version held by its producer and by its object. NULL without memory. */
-static inline struct data_version *data_version_new(duite_type type, size_t max, bool sized)
+static inline struct data_version *data_version_new(duite_type type, size_t max, bool sized,
+                                                    bool adopted)
 {
     struct data_version *version = base_pool_take(sizeof *version);
     if (!version)
         return NULL;
     *version = (struct data_version){
-        .holds = 2, .type = (uint8_t)type, .max = max, .sized = sized, .heir = NULL};
+        .holds = 2, .type = (uint8_t)type, .max = max, .sized = sized, .adopted = adopted};
     return version;
 }
 

@@ -57,8 +57,8 @@ int plan_replay_fork(struct plan_record *record, struct worker *worker, uint64_t
         for (uint32_t k = 0; k < fork->n; k++)
             objects[k] = record->object[record->access[fork->first + k].object].bound;
         if (fork->kernel == PLAN_SETS)
-            code = task_set_object(&graph->root, worker, objects[0], fork->zeros ? NULL : args,
-                                   &fork->count);
+            code = task_set_object(&graph->root, worker, objects[0], TASK_ANYWHERE,
+                                   fork->zeros ? NULL : args, &fork->count);
         else
             code = replay_fork_task(record, worker, &options, fork, args);
     }

@@ -170,6 +170,8 @@ void task_graph_stop(struct task_graph *graph)
 {
     for (uint32_t slot = 1; slot < graph->table.n_slots; slot++) {
         struct data_object *object = &graph->table.object[slot];
+        if (object->memory)
+            task_leave_now(object);
         task_forget(graph, NULL, object);
         if (object->sum)
             data_sum_free(object->sum);
@@ -294,13 +296,19 @@ uint64_t task_main_number(const struct task *task, bool *nested)
 
 const char *task_own_name(uint32_t number)
 {
-    static const char *const own[] = {
-        [TASK_COMBINE] = "duite_sum",      [TASK_PIECES] = "duite_sum",
-        [TASK_GATHER] = "duite_sum",       [TASK_COPY] = "duite_get",
-        [TASK_MOVE] = "duite_replay",      [TASK_TRACED_VOID] = "duite_fork",
-        [TASK_REPLAY] = "duite_replay",    [TASK_NODE_SET] = "duite_set",
-        [TASK_NODE_SUM] = "duite_sum",     [TASK_NODE_PARTIAL] = "duite_sum",
-        [TASK_NODE_COPY] = "duite_replay", [TASK_NODE_FLAG] = "duite_replay_while"};
+    static const char *const own[] = {[TASK_COMBINE] = "duite_sum",
+                                      [TASK_PIECES] = "duite_sum",
+                                      [TASK_GATHER] = "duite_sum",
+                                      [TASK_COPY] = "duite_get",
+                                      [TASK_LEAVE] = "duite_free",
+                                      [TASK_MOVE] = "duite_replay",
+                                      [TASK_TRACED_VOID] = "duite_fork",
+                                      [TASK_REPLAY] = "duite_replay",
+                                      [TASK_NODE_SET] = "duite_set",
+                                      [TASK_NODE_SUM] = "duite_sum",
+                                      [TASK_NODE_PARTIAL] = "duite_sum",
+                                      [TASK_NODE_COPY] = "duite_replay",
+                                      [TASK_NODE_FLAG] = "duite_replay_while"};
     const char *name = number < sizeof own / sizeof own[0] ? own[number] : NULL;
     return name ? name : "duite";
 }

@@ -61,6 +61,12 @@ int task_note_everywhere(struct task_graph *graph, struct worker *worker,
 
 /* The object has a new version on another rank: this rank's copy is stale. */
 void task_forget(struct task_graph *graph, struct worker *worker, struct data_object *object);
+/* Adopted memory is given back. task_leave: the value that the forks so far leave comes home, and a
+ * task puts it there (task_run_leave). task_leave_now: at stop, of an object that was not freed;
+ * unless a task uses it that can never end. */
+int task_leave(struct task_graph *graph, struct worker *worker, struct data_object *object);
+void task_run_leave(struct task *task);
+void task_leave_now(struct data_object *object);
 /* A version of the object with these bytes (values NULL: zeros), for the object alone to hold. NULL
  * without memory. */
 struct data_version *task_value_version(const struct data_object *object, const void *values,

@@ -20,6 +20,8 @@ int task_free_object(struct task_scope *scope, struct worker *worker, duite_obje
         task_mixed(graph, COMM_CALLED, COMM_CALLED_FREE);
     }
     int code = object->leaves ? task_reduce(scope, worker, object) : DUITE_OK;
+    if (object->adopted && !scope->depth && !code)
+        code = task_leave(graph, worker, object);
     task_forget(graph, worker, object);
     if (scope->depth)
         task_drop(scope, object);
@@ -122,7 +124,7 @@ int task_set_check(const struct data_object *object, duite_object name, size_t c
                       object->max);
 }
 
-int task_set_object(struct task_scope *scope, struct worker *worker, duite_object name,
+int task_set_object(struct task_scope *scope, struct worker *worker, duite_object name, int at,
                     const void *values, const size_t *wanted)
 {
     struct task_graph *graph = scope->graph;
@@ -136,16 +138,17 @@ int task_set_object(struct task_scope *scope, struct worker *worker, duite_objec
         return code;
     if (!scope->depth) {
         task_mix(graph, task_name_bits(name));
-        task_mix(graph, OVERWRITTEN);
+        task_mix(graph, OVERWRITTEN + (uint64_t)(at - TASK_ANYWHERE));
         task_mix(graph, count);
-        task_mixed(graph, COMM_CALLED, COMM_CALLED_SET);
+        task_mixed(graph, COMM_CALLED, at == TASK_ANYWHERE ? COMM_CALLED_SET : COMM_CALLED_SET_AT);
     }
     struct data_version *version = NULL;
+    const int holder = at == TASK_ANYWHERE ? object->home : at;
     const size_t bytes = count * data_type_size(object->type);
-    if (object->home == graph->rank && !(version = task_value_version(object, values, bytes)))
+    if (holder == graph->rank && !(version = task_value_version(object, values, bytes)))
         return task_break(graph, "the values of duite_set");
     code = object->leaves ? task_reduce(scope, worker, object) : DUITE_OK;
-    task_note_version(object, object->home);
+    task_note_version(object, holder);
     task_forget(graph, worker, object);
     object->current = version;
     return code;

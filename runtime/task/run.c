@@ -38,16 +38,18 @@ static inline const struct data_failure *version_prepare(const struct task *task
                : version_make_room(task, out, access->waiter.mode == DUITE_RW);
 }
 
-/* True for most versions: with bytes, without poison, and with a fixed number of elements. */
+/* True for most versions: with bytes behind their header, without poison, and with a fixed number
+ * of elements. */
 static inline bool version_is_usual(const struct data_version *version)
 {
-    return !version->sized && !version->poisoned && version->packet;
+    return !version->sized && !version->adopted && !version->poisoned && version->packet;
 }
 
-/* The parameter for a usual version. */
-static inline void param_describe(duite_param *param, const struct data_version *version)
+/* The parameter for a version with bytes here. */
+static inline void param_describe(duite_param *param, const struct data_version *version,
+                                  void *data)
 {
-    param->data = data_payload(version->packet);
+    param->data = data;
     param->count = version->max;
     param->type = (duite_type)version->type;
     param->max = version->max;
@@ -64,7 +66,7 @@ param_prepare_version(const struct task *task, const struct task_access *access,
         mode == DUITE_R ? data_version_failure(version) : version_prepare(task, access);
     if (failure)
         return failure;
-    param_describe(param, version);
+    param_describe(param, version, data_payload(version->packet));
     if (version->sized && mode != DUITE_W)
         param->count = version->packet->bytes / data_type_size(param->type);
     return NULL;
@@ -107,7 +109,8 @@ params_prepare(struct task *task, duite_param *param, bool *other)
     duite_object name = {TASK_LOCAL_NAME, access < end ? task_new_stamp() : 0};
     for (; access < end; access++, param++, name.slot++) {
         if (access->waiter.mode <= DUITE_RW && version_is_usual(access->waiter.version)) {
-            param_describe(param, access->waiter.version);
+            struct data_version *version = access->waiter.version;
+            param_describe(param, version, version->packet + 1); /* without a look at the header */
         } else {
             const struct data_failure *new = param_prepare_other(task, access, param);
             *other = true;
@@ -281,6 +284,9 @@ bool task_run(struct task_graph *graph, struct worker *worker, struct task *task
         break;
     case TASK_COPY:
         copy_run(graph, task);
+        break;
+    case TASK_LEAVE:
+        task_run_leave(task);
         break;
     default: /* nothing is left to do: a MOVE has come, a SEND is sent */
         break;

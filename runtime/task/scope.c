@@ -146,6 +146,7 @@ void task_lend(struct task_scope *inner, struct task_access *access,
     struct data_object *local = &nest->local[nest->n_lent];
     nest_object(nest, local, object->type, object->count, object->max, object->block);
     local->sized = object->sized;
+    local->adopted = object->adopted;
     local->law = object->law;
     local->current = version;
     access->lent = nest->n_lent;

@@ -61,6 +61,7 @@ static inline struct data_version *task_child_version(struct task_scope *scope,
     object->hint = 0;
     cell->packet.bytes = object->room;
     cell->packet.lines = 0;
+    cell->packet.elsewhere = NULL;
     cell->version = (struct data_version){.holds = 2,
                                           .type = (uint8_t)object->type,
                                           .lent = true,

@@ -39,6 +39,10 @@ const struct data_failure task_scope_no_memory = {
 static void exit_give_zeros(const struct task_exit *exit)
 {
     struct data_version *out = exit->out;
+    if (out->packet && out->packet->bytes == exit->bytes) {
+        memset(data_payload(out->packet), 0, exit->bytes);
+        return;
+    }
     if (out->packet)
         data_packet_free(out->packet);
     out->packet = data_packet_new(exit->bytes, true);

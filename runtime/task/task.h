@@ -29,6 +29,7 @@ enum task_type {
     TASK_PIECES = 2,  /* combines this rank's contributions, and sends them */
     TASK_GATHER = 3,  /* combines the contributions of a task's children into one of its own */
     TASK_SEND = 4,    /* sends a version to another rank */
+    TASK_LEAVE = 5,   /* duite_free of adopted memory: gives it back with the last value */
     TASK_COPY = 6,    /* duite_get: copies a version to the main program */
     TASK_MOVE = 7,    /* an object that moves here has come: nothing is left to do */
     TASK_TRACED_VOID = 8,
@@ -91,6 +92,7 @@ struct task {
         struct comm_letter *send;       /* SEND; as long as it is DELEGATED or LEAVES */
         struct offload_task *offloaded; /* OFFLOADED */
         struct task_copy *copy;         /* COPY */
+        struct data_adopted *adopted;   /* LEAVE */
         struct plan_replay *replay;     /* REPLAY */
         struct plan_node *node;         /* NODE... */
     };
@@ -325,10 +327,17 @@ int task_fork_nested(struct task_scope *scope, struct worker *worker, const duit
                      const void *args, size_t n, const duite_object *objects);
 
 /* Overwrites the object with a copy of *count values, or with zeros if `values` is NULL; waits for
- * nothing. `count` NULL: the object's maximum. Errors: objects, DUITE_E_SIZE, memory. */
-int task_set_object(struct task_scope *scope, struct worker *worker, duite_object object,
+ * nothing. `count` NULL: the object's maximum. at: the rank whose values count, or TASK_ANYWHERE:
+ * all have the same. Errors: objects, DUITE_E_SIZE, memory. */
+int task_set_object(struct task_scope *scope, struct worker *worker, duite_object object, int at,
                     const void *values, const size_t *count);
+/* Of an adopted object the last value goes into the program's memory, which is then given back. */
 int task_free_object(struct task_scope *scope, struct worker *worker, duite_object object);
+
+/* The object, which is new, has the program's memory at its home, and its value. Errors: memory;
+ * DUITE_E_ARGUMENT at home alone if that cannot be adopted: then the object is poisoned. */
+int task_adopt(struct task_graph *graph, struct data_object *object, void *values, duite_done *done,
+               void *user);
 
 /* Starts copying an object to `copy` on rank `to`, or on all ranks with TASK_ANYWHERE. The caller
  * waits for copy->done on the ranks it goes to. Main thread only. */

@@ -11,7 +11,7 @@ tests_runtime_random_programs_SOURCES = tests/runtime/random_programs.c tests/ru
     tests/runtime/random_rounds.c tests/runtime/random_laws.c tests/runtime/random_bodies.c tests/runtime/random_print.c \
     tests/runtime/random_cells.c tests/runtime/random_cells.h tests/runtime/random_interpret.c tests/runtime/random_interpret.h \
     tests/runtime/random_replay.c tests/runtime/random_run.c tests/runtime/random_run.h tests/runtime/random_calls.c \
-    tests/runtime/random_recording.c tests/runtime/random_places.c tests/runtime/random_options.c \
+    tests/runtime/random_memory.c tests/runtime/random_recording.c tests/runtime/random_places.c tests/runtime/random_options.c \
     tests/runtime/random_options.h
 tests_runtime_random_programs_LDADD = $(CORE_LIBS)
 check_PROGRAMS += tests/runtime/steals
@@ -20,7 +20,7 @@ tests_runtime_steals_LDADD = $(CORE_LIBS)
 RANKS = tests/support/ranks.c tests/support/ranks.h tests/negative/misuse.c tests/negative/misuse.h
 check_PROGRAMS += tests/runtime/ranks
 tests_runtime_ranks_SOURCES = $(RANKS) tests/runtime/delegation.c tests/runtime/delegation.h tests/runtime/moving.c tests/runtime/moving.h \
-    tests/runtime/ranks_acquire.c tests/runtime/ranks_control.c tests/runtime/ranks_cut.c tests/runtime/ranks_delegate.c tests/runtime/ranks_exit.c tests/runtime/ranks_homes.c tests/runtime/ranks_itself.c \
+    tests/runtime/ranks_acquire.c tests/runtime/ranks_adopt.c tests/runtime/ranks_control.c tests/runtime/ranks_cut.c tests/runtime/ranks_delegate.c tests/runtime/ranks_exit.c tests/runtime/ranks_homes.c tests/runtime/ranks_itself.c \
     tests/runtime/ranks_loaded.c tests/runtime/ranks_mappings.c tests/runtime/ranks_migrate.c tests/runtime/ranks_migrate_values.c \
     tests/runtime/ranks_mpi.c tests/runtime/ranks_plans.c tests/runtime/ranks_prune.c tests/runtime/ranks_replicated.c \
     tests/runtime/ranks_sizes.c tests/runtime/ranks_stuck.c tests/runtime/ranks_stuck_policies.c tests/runtime/ranks_subtrees.c \

@@ -145,6 +145,14 @@ static int has_size(const struct prog_args *args, const duite_param *param, size
     return param->count == max || (args->max[i] && mode != DUITE_W && !prog_is_postponed(mode));
 }
 
+/* Adopted memory is aligned to its elements. */
+static size_t alignment(const struct prog_args *args, const duite_param *param)
+{
+    const size_t size = prog_size(param->type);
+
+    return !args->adopts ? 64 : size < 8 ? size : 8;
+}
+
 /* The line of the first promise that is broken about a parameter; 0 if none is. */
 static int broken_parameter(const duite_call *call, const struct prog_args *args, size_t i)
 {
@@ -152,7 +160,7 @@ static int broken_parameter(const duite_call *call, const struct prog_args *args
 
     if (prog_is_postponed((duite_mode)args->mode[i]) != !param->data)
         return __LINE__;
-    if ((uintptr_t)param->data % 64 != 0)
+    if ((uintptr_t)param->data % alignment(args, param) != 0)
         return __LINE__;
     if (!has_size(args, param, i) || param->type != args->type[i])
         return __LINE__;
@@ -308,6 +316,7 @@ void prog_args_fill(const struct prog *prog, const struct prog_op *op,
     args->sometimes = op->sometimes != 0;
     args->ends = op->ends != 0;
     args->holds = prog->kernel[op->kernel].events != 0;
+    args->adopts = prog->adopts != 0;
     args->rank = op->rank;
     args->pause = op->pause;
     args->number = op->number;
@@ -325,5 +334,5 @@ void prog_shapes(const struct prog_args *args, struct prog_object *shape)
 {
     for (unsigned i = 0; i < args->n; i++)
         shape[i] =
-            (struct prog_object){(duite_type)args->type[i], args->count[i], args->max[i], -1};
+            (struct prog_object){(duite_type)args->type[i], args->count[i], args->max[i], -1, 0};
 }

@@ -12,7 +12,7 @@ int prog_call_new(struct run_scope *scope, const struct prog_op *op)
 {
     duite_object *object = &scope->name[op->object];
 
-    scope->shape[op->object] = (struct prog_object){op->type, op->count, op->max, -1};
+    scope->shape[op->object] = (struct prog_object){op->type, op->count, op->max, -1, 0};
     return op->max ? duite_new_sized(scope->rt, op->type, op->count, op->max, object)
                    : duite_new(scope->rt, op->type, op->count, object);
 }
@@ -24,10 +24,15 @@ int prog_call_set(struct run_scope *scope, const struct prog_op *op)
     const void *values = op->seed ? scope->bytes : NULL;
     const int whole = op->count == (shape->max ? shape->max : shape->count);
 
-    prog_values(shape->type, op->count, op->seed, scope->bytes);
-    const int code = whole && op->count % 2 ? duite_set(scope->rt, object, values)
-                                            : duite_set_sized(scope->rt, object, values, op->count);
+    int code;
 
+    prog_values(shape->type, op->count, op->seed, scope->bytes);
+    if (op->rank >= 0)
+        code = duite_set_at(scope->rt, object, op->rank, op->rank == scope->rank ? values : NULL);
+    else if (whole && op->count % 2)
+        code = duite_set(scope->rt, object, values);
+    else
+        code = duite_set_sized(scope->rt, object, values, op->count);
     memset(scope->bytes, 0xee, scope->largest); /* the runtime has its copy */
     return code;
 }

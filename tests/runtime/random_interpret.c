@@ -87,9 +87,11 @@ static void make_object(struct prog_frame *frame, const struct prog_op *op)
 {
     const unsigned place = op->object;
 
-    frame->shape[place] = (struct prog_object){op->type, op->count, op->max, -1};
+    frame->shape[place] = (struct prog_object){op->type, op->count, op->max, -1, op->rank + 1};
     frame->object[place] = &frame->cells[place];
     prog_cell_start(frame->object[place], &frame->shape[place]);
+    if (op->rank >= 0)
+        prog_interpret_set(frame->object[place], op);
 }
 
 /* A body learns from a get. */
@@ -255,17 +257,42 @@ void prog_interpret_fork(struct prog_machine *m, struct prog_frame *above, const
 
 /* ---- The main program ---- */
 
-static void get(struct prog_frame *frame, struct prog_cell *cell, struct prog_expect *expect)
+/* The value, or why there is none. */
+static void tell_value(struct prog_cell *cell, struct prog_expect *expect)
 {
-    const int refused = take_refused(frame);
-
     prog_cell_settle(cell);
-    expect->code = refused ? refused : cell->poison.code;
+    expect->code = cell->poison.code;
     expect->count = cell->count;
     if (is_failure(cell->poison))
         return;
     expect->bytes = prog_memory(prog_cell_bytes(cell), 1);
     memcpy(expect->bytes, cell->value, prog_cell_bytes(cell));
+}
+
+static void get(struct prog_frame *frame, struct prog_cell *cell, struct prog_expect *expect)
+{
+    const int refused = take_refused(frame);
+
+    tell_value(cell, expect);
+    expect->code = refused ? refused : expect->code;
+}
+
+/* The turn stands where it begins. Under w nothing is found. */
+static void acquire(struct prog_cell *cell, const struct prog_op *op, struct prog_expect *expect)
+{
+    struct prog_op write = *op;
+
+    if (op->mode == DUITE_W)
+        prog_cell_settle(cell);
+    else
+        tell_value(cell, expect);
+    if (op->mode == DUITE_R)
+        return;
+    write.count = op->mode == DUITE_W ? op->count : cell->count;
+    if (op->mode == DUITE_W || !is_failure(cell->poison))
+        prog_interpret_set(cell, &write);
+    else
+        cell->writes++;
 }
 
 static void operation(struct prog_machine *m, const struct prog_op *op, struct prog_expect *expect)
@@ -278,7 +305,12 @@ static void operation(struct prog_machine *m, const struct prog_op *op, struct p
         make_object(main, op);
         break;
     case PROG_FREE:
+        if (main->shape[op->object].adopted)
+            tell_value(cell, expect);
         prog_cell_end(cell);
+        break;
+    case PROG_ACQUIRE:
+        acquire(cell, op, expect);
         break;
     case PROG_SET:
         prog_interpret_set(cell, op);

@@ -8,7 +8,7 @@
 #include <string.h>
 
 const char *const prog_features[PROG_N_FEATURES] = {"nests",    "graphs",   "repeats", "sizes",
-                                                    "failures", "refusals", "large"};
+                                                    "failures", "refusals", "large",   "memory"};
 
 void *prog_memory(size_t n, size_t size)
 {
@@ -90,7 +90,9 @@ void make_new(struct maker *m)
         op->count = like->count;
         op->max = like->max;
     }
-    scope->object[scope->n] = (struct prog_object){op->type, op->count, op->max, -1};
+    if (!op->max && !scope->depth && make_has(m, PROG_MEMORY) && make_one_in(m, 2))
+        op->rank = (int)make_below(m, (unsigned)m->prog->n_ranks);
+    scope->object[scope->n] = (struct prog_object){op->type, op->count, op->max, -1, op->rank + 1};
     scope->right[scope->n] = DUITE_RWP;
     scope->made[scope->n] = 1;
     scope->live[scope->n_live++] = scope->n++;
@@ -152,7 +154,7 @@ static void make_follow(struct maker *m)
     struct prog_object *object = &scope->object[scope->live[place]];
     const unsigned leader = scope->live[make_below(m, place)];
 
-    if (object->leader >= 0 || scope->live[place] < m->unsettled)
+    if (object->leader >= 0 || object->adopted || scope->live[place] < m->unsettled)
         return;
     object->leader = (int)leader;
     make_push(m, PROG_FOLLOW, scope->live[place])->objects[0] = leader;
@@ -186,6 +188,10 @@ void make_set(struct maker *m, enum prog_kind kind, unsigned place, int zeros)
     op->count = object->max ? make_below(m, (unsigned)object->max + 1) : object->count;
     if (zeros)
         op->seed = 0;
+    if (kind == PROG_SET && !m->scope->depth && make_has(m, PROG_MEMORY) && make_one_in(m, 3)) {
+        op->count = object->max ? object->max : object->count;
+        op->rank = (int)make_below(m, (unsigned)m->prog->n_ranks);
+    }
     m->scope->written[place] = 1;
 }
 
@@ -201,6 +207,34 @@ static void make_wrong(struct maker *m)
         return;
     make_push(m, PROG_WRONG, make_draw_object(m))->fails = DUITE_E_ACCESS;
     m->refused = 1;
+}
+
+static void make_acquire(struct maker *m, unsigned place)
+{
+    struct prog_op *op = make_push(m, PROG_ACQUIRE, place);
+    const struct prog_object *object = &m->scope->object[place];
+
+    op->mode = (duite_mode)(DUITE_R + make_below(m, 3));
+    op->count = object->max ? object->max : object->count;
+}
+
+/* One or two turns, which do not wait for each other; tasks are forked meanwhile. */
+static void make_turns(struct maker *m)
+{
+    const unsigned first = make_draw_object(m), second = make_draw_object(m);
+    const int both = first != second && make_one_in(m, 3);
+
+    make_acquire(m, first);
+    if (both)
+        make_acquire(m, second);
+    for (unsigned i = make_below(m, 4); i > 0; i--)
+        if (make_one_in(m, 4))
+            make_set(m, PROG_SET, make_draw_object(m), 0);
+        else
+            make_fork(m);
+    make_push(m, PROG_RELEASE, first);
+    if (both)
+        make_push(m, PROG_RELEASE, second);
 }
 
 static void make_other(struct maker *m)
@@ -246,6 +280,8 @@ static void make_operations(struct maker *m, size_t n)
             make_follow(m);
         else if (choice < 14)
             make_burst(m);
+        else if (choice < 20 && make_has(m, PROG_MEMORY))
+            make_turns(m), m->unsettled = scope->n;
         else if (choice < 34 && make_has(m, PROG_GRAPHS))
             make_graph_operation(m);
         else if (choice < 78)
@@ -266,7 +302,8 @@ static void draw_character(struct maker *m, unsigned with, unsigned without)
 {
     m->features = bit(PROG_NESTS, make_one_in(m, 2)) | bit(PROG_GRAPHS, make_one_in(m, 2)) |
                   bit(PROG_REPEATS, make_one_in(m, 2)) | bit(PROG_FAILURES, make_one_in(m, 4)) |
-                  bit(PROG_REFUSALS, make_one_in(m, 8)) | bit(PROG_LARGE, make_one_in(m, 40));
+                  bit(PROG_REFUSALS, make_one_in(m, 8)) | bit(PROG_LARGE, make_one_in(m, 40)) |
+                  bit(PROG_MEMORY, make_one_in(m, 2));
     const int sized = !make_has(m, PROG_GRAPHS) || make_one_in(m, 4); /* such graphs have no plan */
 
     m->features |= bit(PROG_SIZES, sized);
@@ -321,6 +358,7 @@ struct prog *prog_make(uint64_t seed, int n_ranks, unsigned with, unsigned witho
     prog->inner = prog_memory(MAX_BODIES * MOST_ACTIONS, sizeof *prog->inner);
     m.ops = prog->ops;
     draw_character(&m, with, without);
+    prog->adopts = make_has(&m, PROG_MEMORY);
     make_kernels(&m);
     make_beginning(&m);
     make_operations(&m, make_one_in(&m, 20) ? MAX_OPS - MAX_LIVE : 10 + make_below(&m, 90));

@@ -78,6 +78,8 @@ static void print_object(FILE *file, const struct prog_op *op)
         fprintf(file, " of %zu", op->max);
     for (unsigned i = 0; i < op->n; i++)
         fprintf(file, " %u", op->objects[i]);
+    if (op->kind == PROG_ACQUIRE)
+        fprintf(file, " %s", op->mode == DUITE_R ? "r" : op->mode == DUITE_W ? "w" : "rw");
     if (op->kind == PROG_FOLLOW)
         fprintf(file, " leader %u", op->objects[0]);
     if (op->rank >= 0)
@@ -88,10 +90,10 @@ static void print_operation(FILE *file, const struct prog *prog, const struct pr
                             int indent)
 {
     static const char *const KINDS[] = {
-        "skip",   "new",          "free",   "set",        "fork",       "get",
-        "get_at", "count",        "wait",   "contribute", "hint",       "follow",
-        "home",   "wrong",        "graph",  "  fork",     "  set",      "graph again",
-        "replay", "replay while", "rounds", "graph args", "graph bind", "graph free"};
+        "skip",         "new",     "free",       "set",        "fork",      "get",         "get_at",
+        "count",        "wait",    "contribute", "hint",       "follow",    "home",        "wrong",
+        "acquire",      "release", "graph",      "  fork",     "  set",     "graph again", "replay",
+        "replay while", "rounds",  "graph args", "graph bind", "graph free"};
 
     fprintf(file, "%*s%s", indent, "", KINDS[op->kind]);
     if (prog_is_fork(op))

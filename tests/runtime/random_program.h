@@ -27,6 +27,7 @@ enum prog_feature {
     PROG_FAILURES, /* bodies fail */
     PROG_REFUSALS, /* forks that are refused */
     PROG_LARGE,    /* large objects */
+    PROG_MEMORY,   /* adopted memory, turns of the main program, sets of one rank */
     PROG_N_FEATURES
 };
 extern const char *const prog_features[PROG_N_FEATURES];
@@ -45,8 +46,10 @@ enum prog_kind {
     PROG_HINT,
     PROG_FOLLOW,
     PROG_HOME,
-    PROG_WRONG, /* a fork that must be refused; the next get or wait returns its error once more.
-                   Without one a body fails with it */
+    PROG_WRONG,   /* a fork that must be refused; the next get or wait returns its error once more.
+                     Without one a body fails with it */
+    PROG_ACQUIRE, /* by `mode`; what is written stands there at the release */
+    PROG_RELEASE,
     PROG_GRAPH, /* records what follows it: `n` operations of the next two kinds */
     PROG_GRAPH_FORK,
     PROG_GRAPH_SET,
@@ -71,11 +74,12 @@ struct prog_op {
     unsigned kernel;
     size_t body, n_inner; /* fork: what the body does: n_inner operations of prog->inner */
     unsigned number;      /* forks: no other fork has it */
-    int rank;             /* fork, get_at; -1: none named */
+    int rank;             /* fork, get_at, set; new: that of its adopted memory; -1: none named */
+    duite_mode mode;      /* acquire */
     duite_type type;      /* new */
     size_t count;   /* new: elements; set: of an object whose size changes; graphs: see there */
     size_t max;     /* new: elements at most, 0: the size is fixed */
-    uint64_t seed;  /* set: of the values, 0: zeros; fork: of the body */
+    uint64_t seed;  /* set, acquire, adopted: of the values, 0: zeros; fork: of the body */
     unsigned pause; /* fork: how the body wastes time */
     int fails;      /* fork: the code the body returns */
     unsigned
@@ -94,6 +98,7 @@ struct prog_args {
     size_t body, n_inner;
     int fails, rank;
     uint8_t sometimes, ends, holds; /* holds: its kernel has events */
+    uint8_t adopts;                 /* any object may have adopted memory */
     unsigned pause, number, n, exceeds;
     uint32_t count[PROG_MAX_PARAMS], max[PROG_MAX_PARAMS]; /* most 0: the size is fixed */
     uint8_t type[PROG_MAX_PARAMS], mode[PROG_MAX_PARAMS], law[PROG_MAX_PARAMS];
@@ -104,11 +109,13 @@ struct prog_object {
     duite_type type;
     size_t count, max; /* most 0: the size is fixed */
     int leader;        /* follows this object for certain; -1: none */
+    int adopted;       /* its memory is the program's, on this rank + 1; 0: it is not */
 };
 
 struct prog {
     uint64_t seed;
     int n_ranks;
+    int adopts; /* some objects have adopted memory */
     size_t n_kernels, n_ops, n_inner, n_objects, n_forks, n_graphs;
     char name[PROG_MAX_KERNELS][16];
     duite_kernel kernel[PROG_MAX_KERNELS];
@@ -120,8 +127,9 @@ struct prog {
 /* The right answer of an operation. */
 struct prog_expect {
     int code;
-    unsigned char *bytes; /* get, get_at: the object; NULL if it is poisoned */
-    size_t count;         /* get, get_at, get_count: its elements */
+    unsigned char *bytes; /* get, get_at, acquire, free of adopted memory: the object; NULL if it is
+                             poisoned */
+    size_t count;         /* the same, get_count: its elements */
     uint64_t rounds;      /* rounds: how many */
 };
 

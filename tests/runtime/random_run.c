@@ -108,7 +108,10 @@ static void hint(struct run *run, const struct prog_op *op)
 static void ask_home(struct run *run, unsigned number)
 {
     const int home = duite_home(run->main.rt, run->main.name[number]);
+    const int adopted = run->main.shape[number].adopted;
 
+    if (adopted && home != adopted - 1)
+        prog_found(run, "object %u, adopted on rank %d, has home %d", number, adopted - 1, home);
     if (run->moves)
         return;
     if (home < 0 || home >= run->prog->n_ranks)
@@ -124,11 +127,20 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
 
     switch (op->kind) {
     case PROG_NEW:
-        prog_expect_code(run, "new", prog_call_new(&run->main, op), DUITE_OK);
+        prog_expect_code(run, "new",
+                         op->rank < 0 ? prog_call_new(&run->main, op) : prog_call_adopt(run, op),
+                         DUITE_OK);
         break;
     case PROG_FREE:
         ask_home(run, op->object);
+        run->memory[op->object].freed = run->at + 1;
         prog_expect_code(run, "free", duite_free(run->main.rt, *object), DUITE_OK);
+        break;
+    case PROG_ACQUIRE:
+        prog_call_acquire(run, op, answer);
+        break;
+    case PROG_RELEASE:
+        prog_call_release(run, op);
         break;
     case PROG_SET:
         prog_expect_code(run, "set", prog_call_set(&run->main, op), DUITE_OK);
@@ -145,6 +157,7 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
         break;
     case PROG_WAIT:
         prog_expect_code(run, "wait", duite_wait(run->main.rt), answer->code);
+        prog_check_memory(run, 1);
         break;
     case PROG_HINT:
         hint(run, op);
@@ -240,6 +253,7 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
     prog_expect_code(run, "stop", duite_stop(&run->main.rt), run->answers->stop);
     if (run->main.rt)
         prog_found(run, "stop left *rt");
+    prog_check_memory(run, 0);
     prog_check_places(run, context, setup);
 }
 

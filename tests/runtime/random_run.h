@@ -24,6 +24,23 @@ struct run_scope {
     size_t largest;
 };
 
+/* Memory of the program's own on this rank, for an object. */
+struct run_memory {
+    unsigned char *block; /* with guards; NULL: the object has none here */
+    void *values;
+    size_t freed;          /* the operation that freed the object, plus 1 */
+    atomic_int given_back; /* times */
+};
+
+/* A turn of the main program. */
+struct run_turn {
+    int acquired;
+    duite_mode mode;
+    void *data;
+    size_t count;
+    uint64_t seed;
+};
+
 struct run {
     const struct prog *prog;
     const struct prog_answers *answers;
@@ -33,7 +50,9 @@ struct run {
     int home[PROG_MAX_TABLE]; /* when last asked; -1 before, and of what is freed if... */
     int moves;                /* ... homes change: then they are asked for at the end only */
     struct run_graph *graph;  /* n_graphs */
-    int check;                /* checking mode */
+    struct run_memory memory[PROG_MAX_TABLE];
+    struct run_turn turn[PROG_MAX_TABLE];
+    int check; /* checking mode */
 };
 
 /* Keeps what is wrong at the operation `at`, if it is the first. Main thread. */
@@ -46,6 +65,13 @@ void prog_expect_code(struct run *run, const char *call, int code, int expected)
 int prog_call_new(struct run_scope *scope, const struct prog_op *op);
 int prog_call_set(struct run_scope *scope, const struct prog_op *op);
 int prog_call_fork(struct run_scope *scope, const struct prog_op *op);
+
+/* Adopted memory and turns (random_memory.c). `wait`: a wait has returned, so what was freed was
+ * given back; else the runtime is stopped, and everything was. */
+int prog_call_adopt(struct run *run, const struct prog_op *op);
+void prog_call_acquire(struct run *run, const struct prog_op *op, const struct prog_expect *answer);
+void prog_call_release(struct run *run, const struct prog_op *op);
+void prog_check_memory(struct run *run, int wait);
 
 /* An operation on a graph. */
 void prog_call_graph(struct run *run, const struct prog_op *op, const struct prog_expect *answer);

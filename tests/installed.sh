@@ -1,6 +1,7 @@
 #!/bin/sh
-# An installed duite: the first program of the tutorial is built by pkg-config and by CMake, and runs on one rank and on two. make
-# installcheck calls it for what make install left, tests/install.sh and tests/bare_long.sh for theirs; PKG_CONFIG_PATH and duite_DIR lead there.
+# An installed duite: the first program of the tutorial is built by pkg-config and by CMake, others in C++ and Fortran where there are
+# compilers for them, and each runs on one rank and on two. make installcheck calls it for what make install left, tests/install.sh and
+# tests/bare_long.sh for theirs; PKG_CONFIG_PATH and duite_DIR lead there.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 cd "$scratch" || exit 99
@@ -10,16 +11,30 @@ by_pkg_config() {
     ${CC:-cc} ${CFLAGS:-} -o by_pkg_config "$srcdir/tests/examples/dot.c" $(${PKG_CONFIG:-pkg-config} --cflags --libs duite)
 }
 
+# shellcheck disable=SC2046,SC2086 # lists of flags
+by_cpp() { ${CXX:-c++} -std=c++17 -o by_cpp "$srcdir/tests/examples/stencil.cpp" $(${PKG_CONFIG:-pkg-config} --cflags --libs duite); }
+# shellcheck disable=SC2046,SC2086
+by_fortran() {
+    ${FC:-gfortran} -c "$(${PKG_CONFIG:-pkg-config} --variable=fortran duite)" &&
+        ${FC:-gfortran} -o by_fortran "$srcdir/tests/examples/dot.f90" duite.o $(${PKG_CONFIG:-pkg-config} --libs duite)
+}
+there() { command -v "${1%% *}" > "$scratch/output"; }
+
 cmake_finds() { # VERSION
     mkdir -p tree && cat > tree/CMakeLists.txt << END && cmake -S tree -B "built-$1"
 cmake_minimum_required(VERSION 3.13)
-project(first C)
+project(first C $(! there "${CXX:-c++}" || echo CXX))
 find_package(duite $1 REQUIRED)
 add_executable(by_cmake "$srcdir/tests/examples/dot.c")
 target_link_libraries(by_cmake PRIVATE duite::duite)
+if(CMAKE_CXX_COMPILER)
+    add_executable(by_cmake_cpp "$srcdir/tests/examples/stencil.cpp")
+    target_link_libraries(by_cmake_cpp PRIVATE duite::duite)
+    target_compile_features(by_cmake_cpp PRIVATE cxx_std_17)
+endif()
 END
 }
-by_cmake() { cmake_finds 1 && cmake --build built-1 && mv built-1/by_cmake .; }
+by_cmake() { cmake_finds 1 && cmake --build built-1 && mv built-1/by_cmake* .; }
 
 ok "pkg-config builds it" by_pkg_config
 if command -v cmake > "$scratch/output"; then
@@ -28,6 +43,8 @@ if command -v cmake > "$scratch/output"; then
 else
     skip "CMake builds it" "no cmake"
 fi
+if there "${CXX:-c++}"; then ok "a program in C++" by_cpp; else skip "a program in C++" "no C++ compiler"; fi
+if there "${FC:-gfortran}"; then ok "a program in Fortran" by_fortran; else skip "a program in Fortran" "no Fortran compiler"; fi
 for program in by_*; do
     ok "$program on one rank" limited "./$program"
     if command -v "${MPIRUN:-mpirun}" > "$scratch/output"; then

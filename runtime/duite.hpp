@@ -141,7 +141,8 @@ class calls
     }
 };
 
-/* An object that this one owns. most: its size changes, up to so many elements. */
+/* An object that this one owns. most: its size changes, up to so many elements. rank, memory: of the program's own memory on one rank
+ * (duite_adopt), which has it back when this object has gone and a wait is over; other ranks say nullptr. */
 template <typename T> class object : public ref<T>
 {
     duite *const *rt_;
@@ -155,6 +156,10 @@ template <typename T> class object : public ref<T>
     object(const calls &where, std::size_t size, std::size_t most) : ref<T>{{}, 0}, rt_(where.handle()), max_(most)
     {
         told(duite_new_sized(*rt_, type_of<T>(), size * unit<T>, most * unit<T>, &this->name));
+    }
+    object(const calls &where, int rank, std::size_t size, T *memory) : ref<T>{{}, size}, rt_(where.handle()), max_(size)
+    {
+        told(duite_adopt(*rt_, rank, type_of<T>(), size * unit<T>, memory, nullptr, nullptr, &this->name));
     }
     object(object &&from) noexcept : ref<T>(from), rt_(std::exchange(from.rt_, nullptr)), max_(from.max_) {}
     object &operator=(object &&from) noexcept

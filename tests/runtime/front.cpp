@@ -174,6 +174,19 @@ void turns(duite::runtime &rt)
     CHECK(rt.get(x, first) == DUITE_OK && first == 1);
 }
 
+void adopted(duite::runtime &rt)
+{
+    std::vector<std::int64_t> mine(3, 4), got;
+    {
+        duite::object<std::int64_t> x(rt, 0, 3, duite_rank(rt.c()) == 0 ? mine.data() : nullptr);
+        rt.fork(TWICE, x);
+        rt.get(x, got);
+        CHECK(got == std::vector<std::int64_t>(3, 8));
+    }
+    rt.wait();
+    CHECK(mine[2] == (duite_rank(rt.c()) == 0 ? 8 : 4));
+}
+
 void events(duite::runtime &rt)
 {
     duite::object<std::int64_t> x(rt, 1);
@@ -251,6 +264,7 @@ void errors(duite::runtime &rt)
     CHECK(thrown([&] { rt.wait(); }) == 31 && std::strstr(duite_message(), "with a code"));
     rt.fork(PASS, x);
     CHECK(thrown([&] { rt.get(x); }) == 17 && thrown([&] { rt.wait(); }) == 17);
+    CHECK(thrown([] { duite::runtime second(ADD); }) == DUITE_E_STATE); // MPI is for one at a time
     rt.fork(LATER, 23, x);
     CHECK(thrown([&] { rt.wait(); }) == 23);
     CHECK(thrown([&] { rt.set(x, std::vector<std::int64_t>(3)); }) == DUITE_E_SIZE && thrown([&] { rt.wait(); }) == DUITE_E_SIZE);
@@ -289,6 +303,7 @@ int main()
     values(rt);
     structures(rt);
     turns(rt);
+    adopted(rt);
     events(rt);
     graphs(rt);
     errors(rt);

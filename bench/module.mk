@@ -42,7 +42,8 @@ bench_duite_bench_SOURCES = bench/duite-bench.c
 bench_duite_bench_LDADD = $(BENCH_LIBRARY)
 EXTRA_DIST += bench/experiments bench/readme.sh bench/contact/peers bench/garments/experiments.sh bench/garments/hanging.yaml bench/garments/worn.yaml \
 	bench/vassilev/panels.awk bench/vassilev/jeans.yaml bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/cg/states.yaml bench/tiles.c \
-	bench/results/epyc-2026-11-22.md bench/results/xeon-2026-11-24.md bench/results/xeon-2026-11-27.md
+	bench/results/epyc-2026-11-22.md bench/results/xeon-2026-11-24.md bench/results/xeon-2026-11-27.md \
+	bench/results/xeon-2026-11-29.md
 
 # The arithmetic of the case tiles, which would otherwise compare compilers: compiled once, for us and the rivals.
 TILES_OBJECT = bench/rivals/tiles.$(OBJEXT)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Prints the table of README.md against rivals, all of it from one run on this machine (half an hour). Options go to
+# Prints the table of README.md against rivals, all of it from one run on this machine (a quarter of an hour). Options go to
 # duite-bench, as --repeats 4; --list names the cases that are run, and fails where one is missing.
 #
 #     bench/readme.sh [OPTION...]

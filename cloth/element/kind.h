@@ -84,7 +84,8 @@ struct element_kind {
 };
 
 /* All kinds, in the order in which their forces are added and their entries assembled. */
-#define ELEMENT_ALL(KIND) KIND(triangles) KIND(hinges) KIND(quadratic) KIND(air) KIND(strain_limit)
+#define ELEMENT_ALL(KIND)                                                                          \
+    KIND(triangles) KIND(hinges) KIND(quadratic) KIND(air) KIND(strain_limit) KIND(pressure)
 
 #define ELEMENT_COUNT(name) +1
 enum { ELEMENT_KINDS = 0 ELEMENT_ALL(ELEMENT_COUNT) };

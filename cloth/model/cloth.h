@@ -209,6 +209,7 @@ struct model_cloth {
     struct mesh_low low;  /* triangles that are lower at rest than contacts reach */
     uint32_t n_unjoined;  /* vertices at another's place that are not joined with it */
     double mass_per_vertex; /* kg, replaces density * area where > 0 */
+    double pressure;        /* Pa, behind its triangles less that in front */
     double velocity[3];     /* at the start, m/s */
     double *start;          /* n_vertices x 6: where they start (m) and how fast (m/s), the shape of
                                the mesh notwithstanding; NULL: at the mesh, with `velocity` */

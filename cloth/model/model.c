@@ -265,8 +265,12 @@ bool model_is_guarded(const struct model *model)
 {
     const double *wind = model->air.wind;
     const bool blown = model_has_air(model) && (wind[0] != 0 || wind[1] != 0 || wind[2] != 0);
-    return model_is_implicit(model) && model->energy_growth > 0 && !blown && !model->n_motions &&
-           !model->n_curves && !model_obstacles_move(model);
+    bool pressed = false;
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        pressed = pressed || model->cloths[c].pressure != 0;
+    return model_is_implicit(model) && model->energy_growth > 0 && !blown && !pressed &&
+           !model->n_motions && !model->n_curves && !model->n_pulled &&
+           !model_obstacles_move(model);
 }
 
 uint32_t model_patches(const struct model *model, uint32_t n_blocks)

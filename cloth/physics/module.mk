@@ -10,6 +10,7 @@ libduite_cloth_a_SOURCES += \
     cloth/physics/limit.c cloth/physics/limit.h \
     cloth/physics/motion.c cloth/physics/motion.h \
     cloth/physics/particle.c cloth/physics/particle.h \
+    cloth/physics/pressure.c cloth/physics/pressure.h \
     cloth/physics/spring.c cloth/physics/spring.h \
     cloth/physics/stage.c cloth/physics/stage.h cloth/physics/tiny.h \
     cloth/physics/strain_limit.c cloth/physics/strain_limit.h \

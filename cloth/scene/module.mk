@@ -3,11 +3,11 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/scene.c \
 	cloth/scene/pattern.h cloth/scene/pattern/reader.h \
 	cloth/scene/pattern/panels.c cloth/scene/pattern/pattern.c cloth/scene/pattern/values.c \
-	cloth/scene/yaml/tree.h \
+	cloth/scene/yaml/tree.h cloth/scene/yaml/edit.h \
 	cloth/scene/yaml/tree.c \
-	cloth/scene/yaml/load.c \
+	cloth/scene/yaml/load.c cloth/scene/yaml/include.c \
 	cloth/scene/yaml/scalar.c \
-	cloth/scene/yaml/edit.c \
+	cloth/scene/yaml/edit.c cloth/scene/yaml/sets.c \
 	cloth/scene/schema/rules.h \
 	cloth/scene/schema/rules.c \
 	cloth/scene/schema/rules_cloth.c \
@@ -51,7 +51,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/motion.c \
 	cloth/scene/build/obstacle.c \
 	cloth/scene/build/pattern.c \
-	cloth/scene/build/pieces.c \
+	cloth/scene/build/pieces.c cloth/scene/build/pin.c \
 	cloth/scene/build/report.c
 nodist_libduite_cloth_a_SOURCES = cloth/scene/schema/prose.c
 EXTRA_DIST += cloth/scene/schema/opening.md cloth/scene/schema/prose.md docs/scene.md

@@ -23,8 +23,10 @@ static const struct {
 
 static int read_tree(struct scene_tree *tree, uint32_t phase)
 {
-    const int code = scene_edit_sets(tree, phase) || scene_fabrics_fill(tree) ||
-                     scene_check(tree) || scene_build_file(tree, tree->path);
+    int code = scene_edit_sets(tree, phase) || scene_fabrics_fill(tree) || scene_check(tree) ||
+               scene_build_file(tree, tree->path);
+    for (size_t i = 0; i < tree->n_included && !code; i++)
+        code = scene_build_file(tree, tree->included[i]);
     for (size_t i = 0; i < sizeof steps / sizeof *steps && !code; i++) {
         const int cloths = scene_tree_get(tree, 1, "cloths");
         if (steps[i].whole && steps[i].whole(tree))
@@ -43,7 +45,7 @@ static int read_phase(struct model *model, const char *path, uint32_t phase, siz
     struct cloth_error own = {0}; /* the caller may want none, the steps below rely on one */
     struct scene_tree tree;
     *model = (struct model){0};
-    int code = scene_tree_load(&tree, path, &scene_words, &own);
+    int code = scene_tree_load_scene(&tree, path, &own);
     tree.model = model;
     tree.n_sets = n_sets;
     tree.sets = sets;

@@ -16,7 +16,7 @@ ok "the T-shirt on the mannequin" rests dressing "$one"
 ok "the jeans on the mannequin" rests jeans "$one"
 ok "the T-shirt over the jeans on the mannequin" rests layers "$two"
 # Nothing rests on who walks; the drape before the walk rests.
-walks() { scene walk 6000 3 walk && dressed walk "$two end"; }
+walks() { scene layers 6000 3 && scene walk 6000 3 walk && dressed walk "$two end"; }
 ok "both on the mannequin as it walks" walks
 
 # The body is 1.605 m tall, in decimetres, with the origin 0.819 m above its feet, and stands 6 cm before the middle of the garments.
@@ -55,7 +55,7 @@ for name in dressing jeans layers; do
     other_ok "one hash of $name.yaml on the other body" other_alike $name
 done
 walk_alike() { # a drape of 0.1 s; the walk begins after 0.2 s
-    scene walk 900 0.3 walk && sed -i '/name: drape/,/set: {/ s/set: {/set: {time.end: 0.1, /' walk.yaml && alike_all walk
+    scene layers 900 0.1 && scene walk 900 0.3 walk && alike_all walk
 }
 ok "one hash of walk.yaml" walk_alike
 shirt_alike() { scene shirt 700 0 && alike_all shirt --set 'phases[1].set.time.end=0.01'; }

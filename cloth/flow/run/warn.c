@@ -51,7 +51,7 @@ static void warn_of_extent(struct flow *flow)
         if (cloth->mesh.n_triangles && !(extent >= LEAST_EXTENT && extent <= MAX_EXTENT))
             flow_warn_say(flow, FLOW_WARN_EXTENT, cloth->mesh_place,
                           "cloth '%.60s' is %g m long in its largest extent, %s than %g m: is its "
-                          "mesh in metres? transform.scale changes that (0.01 for centimetres)",
+                          "mesh in metres? transform.units: cm reads centimetres",
                           name_of(cloth), extent, extent > MAX_EXTENT ? "more" : "less",
                           extent > MAX_EXTENT ? MAX_EXTENT : LEAST_EXTENT);
     }

@@ -88,10 +88,8 @@ int scene_build_file(const struct scene_tree *tree, const char *path)
 
 char *scene_build_path(const struct scene_tree *tree, int node)
 {
-    const char *name = scene_tree_scalar(tree, node), *slash = strrchr(tree->path, '/');
-    const int folder = slash && *name != '/' ? (int)(slash - tree->path) + 1 : 0;
-    char *path;
-    if (asprintf(&path, "%.*s%s", folder, tree->path, name) < 0)
+    char *path = scene_tree_beside(tree, node, scene_tree_scalar(tree, node));
+    if (!path)
         return scene_build_out_of_memory(tree->error);
     if (!scene_build_file(tree, path))
         return path;

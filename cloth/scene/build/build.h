@@ -144,11 +144,14 @@ int scene_build_constraint(struct model_pin *pin, const struct scene_tree *tree,
 /* A motion by key frames, whose keys become the model's last. */
 int scene_build_motion(struct model_motion *motion, const struct scene_tree *tree, int node);
 
-/* Checks that the key rotate of a map, which filled the transform, is a rotation. */
-int scene_build_check_turn(const struct mesh_transform *transform, const struct scene_tree *tree,
-                           int node);
+/* The rest of a transform that its map has filled: keys rotate, units and up. */
+int scene_build_transform(struct mesh_transform *transform, const struct scene_tree *tree,
+                          int node);
 
-/* A quaternion, made of length 1; what: "a rotation of a motion". A direction, likewise; what: "the
+/* The quaternion of a rotation: four numbers as they stand there, or that of its axis and angle. */
+int scene_build_quaternion(double rotate[4], const struct scene_tree *tree, int node);
+
+/* The same, made of length 1; what: "a rotation of a motion". A direction, likewise; what: "the
  * normal of a plane". */
 int scene_build_rotation(double rotate[4], const char *what, const struct scene_tree *tree,
                          int node);

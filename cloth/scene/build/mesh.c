@@ -79,16 +79,35 @@ static const struct {
              {"inline", build_inline},
              {"pattern", scene_build_pattern}};
 
-int scene_build_check_turn(const struct mesh_transform *transform, const struct scene_tree *tree,
+/* Before anything else a mesh takes the units and the axes of the scene. The start of a cloth has
+ * no such keys. */
+static void take_from_file(struct mesh_transform *transform, const struct scene_tree *tree,
                            int node)
 {
+    const char *units = scene_tree_text(tree, node, "units"),
+               *up = scene_tree_text(tree, node, "up");
+    double *q = transform->rotate;
+    for (int i = 0; units && i < 3; i++)
+        transform->scale[i] *= scene_word_value(scene_units, units, NULL) / 1e4;
+    if (!up || scene_word_value(scene_ups, up, NULL) == 1)
+        return;
+    const double turned[4] = {q[0] + q[1], q[1] - q[0], q[2] - q[3], q[3] + q[2]};
+    for (int i = 0; i < 4; i++) /* q, after a quarter turn from z to y */
+        q[i] = turned[i] * M_SQRT1_2;
+}
+
+int scene_build_transform(struct mesh_transform *transform, const struct scene_tree *tree, int node)
+{
     double square = 0;
+    if (scene_build_quaternion(transform->rotate, tree, scene_tree_get(tree, node, "rotate")))
+        return tree->error->code;
     for (int i = 0; i < 4; i++)
         square += transform->rotate[i] * transform->rotate[i];
     if (!(square > 1e-200) || !isfinite(square))
         return scene_tree_fail(tree, scene_tree_get(tree, node, "rotate"),
                                "the quaternion [w, x, y, z] has no direction; its length must be "
                                "neither zero nor huge");
+    take_from_file(transform, tree, node);
     return CLOTH_OK;
 }
 
@@ -102,7 +121,7 @@ int scene_build_mesh(struct model_cloth *cloth, struct scene_tree *tree, int nod
         kind++;
     const int at = scene_tree_get(tree, map, kinds[kind].key);
     if (scene_fill(&transform, &scene_transform, tree, change) ||
-        scene_build_check_turn(&transform, tree, change) ||
+        scene_build_transform(&transform, tree, change) ||
         scene_build_blame(kinds[kind].make(cloth, tree, at), "mesh", tree, at))
         return tree->error->code;
     mesh_apply(&cloth->mesh, &transform);

@@ -1,5 +1,7 @@
-/* Motions by key frames; what pins hold to, and how they move. Keys of all motions stand in one
- * array of the model, obstacles first, then in the order of the pins; so do sliders. */
+/* Motions by key frames. Keys of all motions stand in one array of the model, obstacles first, then
+ * in the order of the pins. Quaternions of two keys are interpolated along the shorter way. Key
+ * frames that name one axis turn all the way from angle to angle: further keys stand between them.
+ */
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/rules.h"
 
@@ -7,15 +9,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int build_times(struct phys_key *keys, const struct scene_tree *tree, int list, size_t n)
+static const double MOST_APART = 1.0 / 36; /* turns between keys: speeds vary by 0.2 % */
+static const double MOST_TURNS = 1000;     /* between key frames: 36,000 keys */
+
+static int check_times(const struct scene_tree *tree, int list)
 {
-    for (size_t i = 0; i < n; i++) {
-        scene_tree_vector(tree, scene_tree_item(tree, list, i), 1, &keys[i].time);
-        if (i && !(keys[i].time > keys[i - 1].time))
+    double before = 0, time;
+    for (size_t i = 0; i < scene_tree_length(tree, list); i++, before = time) {
+        scene_tree_vector(tree, scene_tree_item(tree, list, i), 1, &time);
+        if (i && !(time > before))
             return scene_tree_fail(tree, scene_tree_item(tree, list, i),
                                    "motion.times[%zu] is %g, which does not come after %g, the one "
                                    "before it; times in ascending order are expected",
-                                   i, keys[i].time, keys[i - 1].time);
+                                   i, time, before);
     }
     return CLOTH_OK;
 }
@@ -47,10 +53,40 @@ static bool make_unit(double *value, size_t n)
     return true;
 }
 
+/* The turns of a rotation by axis and angle. */
+static double turns_of(const struct scene_tree *tree, int node)
+{
+    return scene_tree_get(tree, node, "turns") ? scene_tree_number(tree, node, "turns")
+                                               : scene_tree_number(tree, node, "degrees") / 360;
+}
+
+/* By the axis of a rotation and these turns. */
+static int build_turn(double rotate[4], const struct scene_tree *tree, int node, double turns)
+{
+    const double half = M_PI * remainder(turns, 2); /* half of the angle, in radians */
+    double axis[3];
+    if (scene_build_direction(axis, "the axis of a rotation", tree,
+                              scene_tree_get(tree, node, "axis")))
+        return tree->error->code;
+    rotate[0] = cos(half);
+    for (int i = 0; i < 3; i++)
+        rotate[1 + i] = sin(half) * axis[i];
+    return CLOTH_OK;
+}
+
+int scene_build_quaternion(double rotate[4], const struct scene_tree *tree, int node)
+{
+    if (scene_tree_is(tree, node, YAML_MAPPING_NODE))
+        return build_turn(rotate, tree, node, turns_of(tree, node));
+    scene_tree_vector(tree, node, 4, rotate);
+    return CLOTH_OK;
+}
+
 int scene_build_rotation(double rotate[4], const char *what, const struct scene_tree *tree,
                          int node)
 {
-    scene_tree_vector(tree, node, 4, rotate);
+    if (scene_build_quaternion(rotate, tree, node))
+        return tree->error->code;
     if (make_unit(rotate, 4))
         return CLOTH_OK;
     return scene_tree_fail(tree, node,
@@ -66,164 +102,122 @@ int scene_build_direction(double direction[3], const char *what, const struct sc
     return scene_tree_fail(tree, node, "%s is zero; a direction is expected", what);
 }
 
-/* Halfway between opposite quaternions there is no rotation. */
-static int check_turns(const struct phys_key *keys, const struct scene_tree *tree, int list,
-                       size_t n)
+/* ---- Key frames ---- */
+
+/* The lists of a motion; 0: it has none. */
+struct key_frames {
+    const struct scene_tree *tree;
+    int times, translate, rotate;
+    size_t n;
+};
+
+/* The turns from a key frame to the next, where both name one axis; else 0. */
+static double turns_from(const struct key_frames *frames, size_t i)
 {
-    for (size_t k = 1; k < n; k++) {
-        double dot = 0;
-        for (int i = 0; i < 4; i++)
-            dot += keys[k].rotate[i] * keys[k - 1].rotate[i];
-        if (fabs(dot) < 1e-3)
-            return scene_tree_fail(tree, scene_tree_item(tree, list, k),
-                                   "a rotation of a motion is half a turn from the one before, so "
-                                   "that its way is open; smaller ones are expected");
+    const struct scene_tree *tree = frames->tree;
+    double axis[2][3];
+    int node[2];
+    for (size_t k = 0; k < 2; k++) {
+        node[k] = frames->rotate ? scene_tree_item(tree, frames->rotate, i + k) : 0;
+        if (!scene_tree_is(tree, node[k], YAML_MAPPING_NODE))
+            return 0;
+        scene_tree_vector(tree, scene_tree_get(tree, node[k], "axis"), 3, axis[k]);
     }
+    return memcmp(axis[0], axis[1], sizeof axis[0])
+               ? 0
+               : turns_of(tree, node[1]) - turns_of(tree, node[0]);
+}
+
+/* The keys of a key frame and of the way to the next one. */
+static size_t count_keys(const struct key_frames *frames, size_t i)
+{
+    const double turns = i + 1 < frames->n ? fabs(turns_from(frames, i)) : 0;
+    return turns > MOST_APART ? (size_t)ceil(turns / MOST_APART) : 1;
+}
+
+static int check_frames(const struct key_frames *frames)
+{
+    const struct scene_tree *tree = frames->tree;
+    if (check_times(tree, frames->times) ||
+        check_motion_length(tree, frames->translate, "translate", frames->n) ||
+        check_motion_length(tree, frames->rotate, "rotate", frames->n))
+        return tree->error->code;
+    for (size_t i = 1; i < frames->n; i++)
+        if (!(fabs(turns_from(frames, i - 1)) <= MOST_TURNS))
+            return scene_tree_fail(tree, scene_tree_item(tree, frames->rotate, i),
+                                   "a rotation of a motion is %g turns from the one before; at "
+                                   "most %g are expected",
+                                   fabs(turns_from(frames, i - 1)), MOST_TURNS);
     return CLOTH_OK;
 }
 
-/* A motion must begin where the vertices are: else it tears them away in the first step. */
-static int check_begin(const struct phys_key *keys, size_t n, const double about[3],
-                       const struct scene_tree *tree, int node)
+/* n numbers of a list that follow its item i by a part of the way to the next. */
+static void read_between(double *value, size_t n, const struct key_frames *frames, int list,
+                         size_t i, double part)
 {
-    struct phys_pose pose;
-    double away = 0;
-    phys_pose_at(n, keys, about, 0, &pose);
-    for (int i = 0; i < 3; i++) {
-        away = fmax(away, fabs(pose.translate[i]));
-        for (int k = 0; k < 3; k++)
-            away = fmax(away, fabs(pose.turn[i][k] - (i == k)));
-    }
-    if (away <= 1e-12)
+    double next[3];
+    scene_tree_vector(frames->tree, scene_tree_item(frames->tree, list, i), n, value);
+    if (part <= 0)
+        return;
+    scene_tree_vector(frames->tree, scene_tree_item(frames->tree, list, i + 1), n, next);
+    for (size_t c = 0; c < n; c++)
+        value[c] += part * (next[c] - value[c]);
+}
+
+static int build_key(struct phys_key *key, const struct key_frames *frames, size_t i, double part)
+{
+    *key = (struct phys_key){.rotate = {1}};
+    read_between(&key->time, 1, frames, frames->times, i, part);
+    if (frames->translate)
+        read_between(key->translate, 3, frames, frames->translate, i, part);
+    if (!frames->rotate)
         return CLOTH_OK;
-    return scene_tree_fail(tree, node,
-                           "a motion does not begin where the vertices start; at time 0 no shift "
-                           "and no rotation are expected");
+    const int node = scene_tree_item(frames->tree, frames->rotate, i);
+    if (part > 0)
+        return build_turn(key->rotate, frames->tree, node,
+                          turns_of(frames->tree, node) + part * turns_from(frames, i));
+    return scene_build_rotation(key->rotate, "a rotation of a motion", frames->tree, node);
+}
+
+/* Halfway between opposite quaternions there is no rotation. */
+static int check_way(const struct phys_key *key, const struct key_frames *frames, size_t i)
+{
+    double dot = 0;
+    for (int c = 0; c < 4; c++)
+        dot += key[0].rotate[c] * key[-1].rotate[c];
+    if (fabs(dot) >= 1e-3)
+        return CLOTH_OK;
+    return scene_tree_fail(frames->tree, scene_tree_item(frames->tree, frames->rotate, i),
+                           "a rotation of a motion is half a turn from the one before, so that its "
+                           "way is open; smaller ones are expected, or turns about one axis");
 }
 
 int scene_build_motion(struct model_motion *motion, const struct scene_tree *tree, int node)
 {
     struct model *model = tree->model;
     const int times = scene_tree_get(tree, node, "times");
-    const int translate = scene_tree_get(tree, node, "translate");
-    const int rotate = scene_tree_get(tree, node, "rotate");
-    const size_t n = scene_tree_length(tree, times);
+    const struct key_frames frames = {tree, times, scene_tree_get(tree, node, "translate"),
+                                      scene_tree_get(tree, node, "rotate"),
+                                      scene_tree_length(tree, times)};
+    size_t n = 0;
+    if (check_frames(&frames))
+        return tree->error->code;
+    for (size_t i = 0; i < frames.n; i++)
+        n += count_keys(&frames, i);
     *motion = (struct model_motion){.first = model->n_keys, .n = (uint32_t)n};
-    struct phys_key *keys =
-        scene_build_add(&model->keys, &model->n_keys, n, sizeof *keys, tree->error);
-    if (!keys)
+    struct phys_key *key =
+        scene_build_add(&model->keys, &model->n_keys, n, sizeof *key, tree->error);
+    if (!key)
         return tree->error->code;
     scene_tree_vector(tree, scene_tree_get(tree, node, "about"), 3, motion->about);
-    for (size_t i = 0; i < n; i++)
-        keys[i].rotate[0] = 1;
-    int code = build_times(keys, tree, times, n) ||
-               check_motion_length(tree, translate, "translate", n) ||
-               check_motion_length(tree, rotate, "rotate", n);
-    for (size_t i = 0; translate && i < n && !code; i++)
-        scene_tree_vector(tree, scene_tree_item(tree, translate, i), 3, keys[i].translate);
-    for (size_t i = 0; rotate && i < n && !code; i++)
-        code = scene_build_rotation(keys[i].rotate, "a rotation of a motion", tree,
-                                    scene_tree_item(tree, rotate, i));
-    return code || (rotate && check_turns(keys, tree, rotate, n));
-}
-
-/* ---- Pins ---- */
-
-static struct model_motion *add_motion(const struct scene_tree *tree)
-{
-    return scene_build_add(&tree->model->motions, &tree->model->n_motions, 1,
-                           sizeof(struct model_motion), tree->error);
-}
-
-static int build_pin_motion(const struct scene_tree *tree, int node)
-{
-    struct model_motion *motion = add_motion(tree);
-    return !motion || scene_build_motion(motion, tree, node) ||
-           check_begin(tree->model->keys + motion->first, motion->n, motion->about, tree, node);
-}
-
-/* Adds the motion of an obstacle to the model's. */
-static int build_follow(const struct scene_tree *tree, int node)
-{
-    const uint32_t obstacle =
-        scene_build_find(tree->model, SCENE_OBSTACLES, scene_tree_scalar(tree, node));
-    if (obstacle == UINT32_MAX)
-        return scene_build_no_name(tree, node, "obstacle", 1U << SCENE_OBSTACLES);
-    const struct contact_shape *shape = tree->model->obstacles + obstacle;
-    struct model_motion *motion = add_motion(tree);
-    if (!motion)
-        return tree->error->code;
-    *motion = (struct model_motion){.first = shape->first, .n = shape->n, .follow = obstacle + 1};
-    memcpy(motion->about, shape->about, sizeof motion->about);
-    return CLOTH_OK;
-}
-
-/* A slider has one of these, a point neither. */
-static const char *const hold_keys[] = {[SCENE_LINE] = "direction", [SCENE_PLANE] = "normal"};
-
-static int check_constraint(enum scene_constraint hold, const struct scene_tree *tree, int node)
-{
-    const char *to = scene_holds[hold].word;
-    for (int i = SCENE_LINE; i <= SCENE_PLANE; i++) {
-        const int key = scene_tree_get(tree, node, hold_keys[i]);
-        const bool wanted = i == (int)hold;
-        const char *of = scene_holds[i].word;
-        if (wanted && !key)
-            return scene_tree_fail(tree, node,
-                                   "a pin to a %s has no %s; a list of 3 numbers is expected", to,
-                                   hold_keys[i]);
-        if (!wanted && key)
-            return scene_tree_fail(tree, key,
-                                   "a pin to a %s has a %s, which is that of a %s; to: %s is "
-                                   "expected with it",
-                                   to, hold_keys[i], of, of);
+    for (size_t i = 0; i < frames.n; i++) {
+        const size_t of_frame = count_keys(&frames, i);
+        for (size_t k = 0; k < of_frame; k++, key++)
+            if (build_key(key, &frames, i, (double)k / (double)of_frame) ||
+                (i && !k && check_way(key, &frames, i)))
+                return tree->error->code;
     }
     return CLOTH_OK;
 }
 
-static int build_slider(struct model_pin *pin, enum scene_constraint hold,
-                        const struct scene_tree *tree, int node)
-{
-    struct model *model = tree->model;
-    const bool line = hold == SCENE_LINE;
-    struct model_slider *slider =
-        scene_build_add(&model->sliders, &model->n_sliders, 1, sizeof *slider, tree->error);
-    if (!slider)
-        return tree->error->code;
-    *slider = (struct model_slider){.kind = line ? MODEL_LINE : MODEL_PLANE, .motion = pin->motion};
-    pin->motion = 0;
-    pin->slider = model->n_sliders;
-    return scene_build_direction(slider->direction,
-                                 line ? "the direction of a pin" : "the normal of a pin", tree,
-                                 scene_tree_get(tree, node, hold_keys[hold]));
-}
-
-/* A pin follows an obstacle with all of its vertices, and has no motion of its own. */
-static int check_follow(enum scene_constraint hold, const struct scene_tree *tree, int pin)
-{
-    const int motion = scene_tree_get(tree, pin, "motion");
-    if (hold != SCENE_POINT)
-        return scene_tree_fail(tree, scene_tree_get(tree, pin, "follow"),
-                               "a pin to a %s cannot follow an obstacle; to: point is expected",
-                               scene_holds[hold].word);
-    if (motion)
-        return scene_tree_fail(tree, motion,
-                               "a pin follows an obstacle and has a motion; one of the two is "
-                               "expected");
-    return CLOTH_OK;
-}
-
-int scene_build_constraint(struct model_pin *pin, const struct scene_tree *tree, int node)
-{
-    const char *to = scene_tree_text(tree, node, "to");
-    const enum scene_constraint hold =
-        (enum scene_constraint)scene_word_value(scene_holds, to, NULL);
-    const int motion = scene_tree_get(tree, node, "motion");
-    const int follow = scene_tree_get(tree, node, "follow");
-    if (check_constraint(hold, tree, node) ||
-        (follow && (check_follow(hold, tree, node) || build_follow(tree, follow))) ||
-        (motion && build_pin_motion(tree, motion)))
-        return tree->error->code;
-    pin->motion = motion || follow ? tree->model->n_motions : 0;
-    return hold == SCENE_POINT ? CLOTH_OK : build_slider(pin, hold, tree, node);
-}
+/* ---- Pins ---- */

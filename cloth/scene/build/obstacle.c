@@ -42,13 +42,15 @@ static int build_parameter(double *value, const struct contact_kind *kind,
 
 static int check_motion(const struct model_motion *motion, const struct scene_tree *tree, int node)
 {
-    const struct phys_key *keys = tree->model->keys + motion->first;
     const int translate = scene_tree_get(tree, node, "translate");
+    double shift[3];
     int code = check_bound(motion->about, 3, "the about of a motion", tree,
                            scene_tree_get(tree, node, "about"));
-    for (uint32_t k = 0; translate && k < motion->n && !code; k++)
-        code = check_bound(keys[k].translate, 3, "a translate of a motion", tree,
+    for (size_t k = 0; k < scene_tree_length(tree, translate) && !code; k++) {
+        scene_tree_vector(tree, scene_tree_item(tree, translate, k), 3, shift);
+        code = check_bound(shift, 3, "a translate of a motion", tree,
                            scene_tree_item(tree, translate, k));
+    }
     return code;
 }
 
@@ -70,7 +72,7 @@ static int build_body_mesh(struct mesh *mesh, struct contact_frames *frames, dou
     struct mesh_transform transform = {0};
     const int file = scene_tree_get(tree, node, "obj");
     if (scene_fill(&transform, &scene_body, tree, node) ||
-        scene_build_check_turn(&transform, tree, node) ||
+        scene_build_transform(&transform, tree, node) ||
         (file ? scene_build_obj(mesh, mesh_read_surface, "body", tree, file)
               : scene_build_mannequin(mesh, &transform, frames, place, tree, node)))
         return tree->error->code;
@@ -94,7 +96,7 @@ static int warn_of_body(const struct scene_tree *tree, int file, bool turned)
     if (extent < LEAST_EXTENT || extent > MAX_EXTENT)
         scene_build_warn(tree, file,
                          "the body is %g m long in its largest extent, %s than %g m: is its mesh "
-                         "in metres? scale changes that (0.01 for centimetres)",
+                         "in metres? units: cm reads centimetres",
                          extent, extent > MAX_EXTENT ? "more" : "less",
                          extent > MAX_EXTENT ? MAX_EXTENT : LEAST_EXTENT);
     return tree->error->code;

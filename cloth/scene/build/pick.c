@@ -129,7 +129,7 @@ int scene_build_starts(struct model_cloth *cloth, struct scene_tree *tree, int n
     for (uint32_t i = 0; i < cloth->n_starts && !code; i++) {
         struct model_start *start = cloth->starts + i;
         const int item = scene_tree_item(tree, starts, i);
-        code = scene_build_check_turn(&start->transform, tree, item) ||
+        code = scene_build_transform(&start->transform, tree, item) ||
                scene_build_pick_once(&start->pick, tree, item, cloth, "one start");
     }
     return code;

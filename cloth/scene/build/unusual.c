@@ -70,6 +70,8 @@ static void warn_of_triangles(const struct scene_tree *tree, const struct model_
 static void warn_of_turn(const struct scene_tree *tree, int rotate)
 {
     double turn[4], square = 0;
+    if (!scene_tree_is(tree, rotate, YAML_SEQUENCE_NODE))
+        return; /* an axis and an angle */
     scene_tree_vector(tree, rotate, 4, turn);
     for (int i = 0; i < 4; i++)
         square += turn[i] * turn[i];

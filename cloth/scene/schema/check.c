@@ -18,9 +18,11 @@ static size_t set_of_pair(const struct scene_tree *tree, yaml_node_pair_t pair)
 {
     const yaml_mark_t mark = scene_tree_node(tree, pair.key)->start_mark;
     if (mark.index == SCENE_BY_PHASE)
-        return mark.line;
+        return tree->n_included + mark.line;
     const size_t phases = INT_MAX; /* more than there are nodes */
-    return mark.index == SCENE_BY_SET ? phases + mark.line + 1 : 0;
+    if (mark.index == SCENE_BY_SET)
+        return phases + mark.line + 1;
+    return mark.index == SCENE_BY_DEFAULT ? 0 : tree->n_included - mark.index;
 }
 
 static bool is_choice(const struct scene_tree *tree, const struct scene_rule *keys,
@@ -284,6 +286,10 @@ static int check_node(struct scene_tree *tree, const struct scene_place *at,
                                scene_place_path(at, path), (const char *)here->tag);
     if (base && scene_store_presence(base, rule, tree, node))
         return tree->error->code;
+    if (list && rule->type == SCENE_ROTATION)
+        return check_list(tree, at, &scene_quaternion, node, NULL);
+    if (map && rule->type == SCENE_ROTATION)
+        return check_map(tree, at, rule, node, NULL);
     if (map && rule->type == SCENE_MAP)
         return check_map(tree, at, rule, node, structure_of(rule, base));
     if (map && rule->type == SCENE_ONE_OF)

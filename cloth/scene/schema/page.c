@@ -13,7 +13,7 @@ static const struct scene_rule *map_of(const struct scene_rule *rule)
 {
     while (rule->type == SCENE_LIST || rule->type == SCENE_NAMED)
         rule = rule->inside;
-    return rule->type == SCENE_MAP || rule->type == SCENE_ONE_OF ? rule : NULL;
+    return rule->type <= SCENE_ROTATION ? rule : NULL;
 }
 
 /* ---- Words ---- */
@@ -31,7 +31,10 @@ static void print_link(FILE *file, const char *text, const char *section)
 /* What a key with other keys takes. */
 static void print_map(FILE *file, const struct scene_rule *key)
 {
-    const char *kind = key->type == SCENE_LIST    ? "list of maps"
+    const bool list = key->type == SCENE_LIST;
+    const bool turns = (list ? key->inside : key)->type == SCENE_ROTATION;
+    const char *kind = turns                      ? list ? "list of rotations" : "rotation"
+                       : list                     ? "list of maps"
                        : key->type == SCENE_NAMED ? "map of names"
                                                   : "map";
     if (key->section)

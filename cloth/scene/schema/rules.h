@@ -14,6 +14,7 @@
 enum scene_type {
     SCENE_MAP,            /* inside: its keys */
     SCENE_ONE_OF,         /* a map with exactly one of the keys `inside` */
+    SCENE_ROTATION,       /* a quaternion, or a map of an axis and an angle; inside: its keys */
     SCENE_NAMED,          /* a map with keys of the user's choice; inside: their one rule */
     SCENE_EDITS,          /* a map KEY: VALUE of changes to the scene (yaml/edit.c) */
     SCENE_LIST,           /* inside: the rule of its items */
@@ -120,14 +121,17 @@ struct scene_settled {
     char *cloth;  /* NULL: it is not given */
 };
 extern const struct scene_rule scene_grid, scene_disc, scene_inline, scene_pattern, scene_settled;
-extern const struct scene_rule scene_transform; /* a struct mesh_transform */
-extern const struct scene_rule scene_region;    /* a struct model_pick */
-extern const struct scene_rule scene_body;      /* a struct mesh_transform */
-extern const struct scene_rule scene_mannequin; /* a struct scene_figure */
+extern const struct scene_rule scene_transform;  /* a struct mesh_transform */
+extern const struct scene_rule scene_region;     /* a struct model_pick */
+extern const struct scene_rule scene_body;       /* a struct mesh_transform */
+extern const struct scene_rule scene_mannequin;  /* a struct scene_figure */
+extern const struct scene_rule scene_quaternion; /* what a SCENE_ROTATION is as a list */
 
 /* Words of choices that no field takes as they are. */
 enum scene_constraint { SCENE_POINT, SCENE_LINE, SCENE_PLANE };
 extern const struct model_word scene_holds[];        /* enum scene_constraint, in its order */
+extern const struct model_word scene_units[];        /* tenths of a millimetre */
+extern const struct model_word scene_ups[];          /* an axis */
 extern const struct model_word scene_rests[];        /* whether by uv */
 extern const struct model_word scene_meets[];        /* whether by maps */
 extern const struct model_word scene_views[];        /* an axis, or CONTACT_THINNEST */

@@ -82,7 +82,10 @@ static const struct scene_rule mesh_keys[] = {
      "[welds](#welds)"},
     {0}};
 
+const struct model_word scene_units[] = {{"m", 10000}, {"cm", 100}, {"mm", 10}, {"in", 254}, {0}};
+const struct model_word scene_ups[] = {{"y", 1}, {"z", 2}, {0}};
 static const struct scene_rule transform_keys[] = {
+    AS_IN_FILE,
     TRANSFORM(struct mesh_transform, ),
     {0}};
 
@@ -145,6 +148,9 @@ static const struct scene_rule cloth_keys[] = {
     {"mass_per_vertex", SCENE_NUMBER, "kg", .range = SCENE_POSITIVE,
      INTO(struct model_cloth, mass_per_vertex),
      .about = "instead of density times area"},
+    {"pressure", SCENE_NUMBER, "Pa", "0", INTO(struct model_cloth, pressure),
+     .about = "of a gas behind the triangles: it pushes them to the side from which their corners "
+     "are counter-clockwise", .needs = NEEDS_TRIANGLES},
     {"velocity", SCENE_LIST, "m/s", "[0, 0, 0]", VECTOR, INTO(struct model_cloth, velocity),
      PLACE(struct model_cloth, velocity_place),
      .about = "at the start; less than 10^6 along each axis"},

@@ -29,8 +29,7 @@ static const struct scene_rule box_keys[] = {
     {"centre", SCENE_LIST, "m", .required = true, VECTOR, .about = "its middle"},
     {"size", SCENE_LIST, "m", .required = true, .length = 3, .inside = &scene_positive,
      .about = "lengths of its edges, before it is rotated"},
-    {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &scene_number,
-     .about = "about its centre: a quaternion [w, x, y, z]"},
+    {"rotate", ROTATION, .fallback = "[1, 0, 0, 0]", .about = "about its centre"},
     MOVES,
     {0}};
 static const struct scene_rule capsule_keys[] = {
@@ -137,6 +136,7 @@ static const struct scene_rule body_keys[] = {
      .about = "an OBJ file of a closed mesh, relative to the scene's folder"},
     {"mannequin", SCENE_MAP, .choice = true, .inside = mannequin_keys, .apart = true,
      .about = "a standing figure, made to measure", .section = "A figure"},
+    AS_IN_FILE,
     TRANSFORM(struct mesh_transform, ),
     {"meet", SCENE_CHOICE, .fallback = "bvh", .words = scene_meets,
      .about = "bvh: its triangles, found by a tree of boxes; image: maps of it, from the front "

@@ -3,12 +3,19 @@
 
 /* clang-format off */
 
+const struct scene_rule scene_turn_keys[] = {
+    {"axis", SCENE_LIST, .required = true, VECTOR, .about = "of any length but 0"},
+    {"degrees", SCENE_NUMBER, "degrees", .choice = true,
+     .about = "counter-clockwise for someone whom the axis points at"},
+    {"turns", SCENE_NUMBER, .choice = true, .about = "the same, 1 for 360 degrees"},
+    {0}};
+static const struct scene_rule rotation = {.type = SCENE_ROTATION, .inside = scene_turn_keys};
+
 const struct scene_rule scene_motion_keys[] = {
     {"times", SCENE_LIST, "s", .required = true, .filled = true, .inside = &scene_number,
      .about = "of the key frames, ascending"},
     {"translate", SCENE_LIST, "m", .inside = &scene_point, .about = "a shift for each time"},
-    {"rotate", SCENE_LIST, .inside = &scene_quaternion,
-     .about = "a quaternion [w, x, y, z] for each time"},
+    {"rotate", SCENE_LIST, .inside = &rotation, .about = "a rotation for each time"},
     {"about", SCENE_LIST, "m", "[0, 0, 0]", VECTOR, .about = "the point that is rotated about",
      .needs = "rotate"},
     {0}};

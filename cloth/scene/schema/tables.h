@@ -8,7 +8,7 @@
  * or one value as a list of one, and the number of its items. PLACE: where the place of the value
  * goes (model.h). MEANS: which field says, by a value, that this key was chosen, or given. WORDS:
  * the words of a choice, each with its meaning. ITEM: the type of an item of a list. VECTOR: a
- * list of three numbers. */
+ * list of three numbers. ROTATION: one that cloth/scene/build turns into a quaternion. */
 /* clang-format off */
 #define FIELD(type, member) \
     {offsetof(type, member), sizeof(((type *)0)->member), #type, sizeof(type)}
@@ -19,6 +19,7 @@
 #define MEANS(type, member, is) .kind = FIELD(type, member), .value = (is)
 #define WORDS(...) .words = (const struct model_word[]){__VA_ARGS__, {0}}
 #define VECTOR .length = 3, .inside = &scene_number
+#define ROTATION SCENE_ROTATION, .inside = scene_turn_keys, .section = "Rotations"
 #define ITEM(type) .field = {.width = sizeof(type)}
 
 /* Keys of the struct mesh_transform `within` the type. */
@@ -26,10 +27,16 @@
     {"scale", SCENE_NUMBER_OR_LIST, .fallback = "1", .range = SCENE_POSITIVE, .length = 3, \
      .inside = &scene_positive, INTO(type, within scale), \
      .about = "first: a factor, or one for each axis"}, \
-    {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &scene_number, \
-     INTO(type, within rotate), .about = "then: a quaternion [w, x, y, z]"}, \
+    {"rotate", ROTATION, .fallback = "[1, 0, 0, 0]", .about = "then"}, \
     {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", VECTOR, \
      INTO(type, within translate), .about = "last: a shift"}
+
+/* How a mesh stands in its file, before it is transformed. */
+#define AS_IN_FILE \
+    {"units", SCENE_CHOICE, .fallback = "m", .words = scene_units, \
+     .about = "of lengths in the mesh's file"}, \
+    {"up", SCENE_CHOICE, .fallback = "y", .words = scene_ups, \
+     .about = "the axis that is up in the mesh's file; z becomes the scene's y, and y its -z"}
 
 /* Ways to choose vertices, one of these: into the struct model_pick `pick` of a type. */
 #define PICK_VERTICES(type, pick) \
@@ -60,7 +67,7 @@ enum { SCENE_MOST_NAMED = 4096, SCENE_MOST_PHASES = 100 };
 
 /* Items of lists. */
 extern const struct scene_rule scene_number, scene_positive, scene_text, scene_vertex;
-extern const struct scene_rule scene_point, scene_edge, scene_quaternion;
+extern const struct scene_rule scene_point, scene_edge;
 
 /* Tables of other files; keys end with a rule without a key. */
 extern const struct scene_rule scene_cloth, scene_material, scene_obstacle;
@@ -68,5 +75,5 @@ extern const struct scene_rule scene_pin, scene_load, scene_mass, scene_start, s
 extern const struct scene_rule scene_joint, scene_weld, scene_fold;
 extern const struct scene_rule scene_seams_keys[], scene_time_keys[], scene_contact_keys[];
 extern const struct scene_rule scene_solver_keys[], scene_newton_keys[], scene_output_keys[];
-extern const struct scene_rule scene_curve_kinds[], scene_motion_keys[];
+extern const struct scene_rule scene_curve_kinds[], scene_motion_keys[], scene_turn_keys[];
 #endif

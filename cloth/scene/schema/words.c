@@ -93,10 +93,10 @@ static void append_integer(const struct scene_rule *rule, char *text, size_t siz
 
 static void append_list(const struct scene_rule *rule, char *text, size_t size)
 {
-    const char *const all[] = {[SCENE_NUMBER] = "numbers", [SCENE_INTEGER] = "whole numbers",
-                               [SCENE_LIST] = "lists",     [SCENE_CHOICE] = "words",
-                               [SCENE_MAP] = "maps",       [SCENE_ONE_OF] = "maps",
-                               [SCENE_TEXT] = "texts"};
+    const char *const all[] = {[SCENE_NUMBER] = "numbers",     [SCENE_INTEGER] = "whole numbers",
+                               [SCENE_LIST] = "lists",         [SCENE_CHOICE] = "words",
+                               [SCENE_MAP] = "maps",           [SCENE_ONE_OF] = "maps",
+                               [SCENE_ROTATION] = "rotations", [SCENE_TEXT] = "texts"};
     const char *items = all[rule->inside->type];
     if (rule->length)
         cloth_text_add(text, size, "a list of %zu %s", rule->length, items);
@@ -137,6 +137,10 @@ char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size
     case SCENE_ONE_OF:
         cloth_text_add(text, size, "a map %s ",
                        rule->type == SCENE_MAP ? "of" : "with exactly one of");
+        append_keys(rule->inside, text, size);
+        break;
+    case SCENE_ROTATION:
+        cloth_text_add(text, size, "a quaternion [w, x, y, z] or a map of ");
         append_keys(rule->inside, text, size);
         break;
     case SCENE_NAMED:

@@ -2,22 +2,13 @@
  * set is a copy that only its parent knows; the root has no parent. So writing through it changes
  * one place. Its key is new, so that the mark of a key names the last set that changed anything
  * below it. */
-#include "cloth/scene/yaml/tree.h"
+#include "cloth/scene/yaml/edit.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The state of an edit: the mark of new nodes, and the rest of the path. */
-struct edit {
-    struct scene_tree *tree;
-    yaml_mark_t mark;
-    const char *start, *at; /* text of the set, and the rest of its path */
-    int value;              /* a node; 0: the text has it, behind the path */
-    const char *whole;      /* where a key begins that may have '.' and '[' in it; NULL: nowhere */
-    int parts;              /* of the path, so far */
-};
 /* No scene is as deep; each part of a path is a call. */
 enum { MAX_PARTS = 100 };
 
@@ -64,9 +55,8 @@ static bool copy_children(struct scene_tree *tree, int to, const yaml_node_t *fr
     return true;
 }
 
-/* Adds all nodes of a document; children come after all nodes exist. Returns the new number of its
- * root, or 0. */
-static int graft_nodes(struct edit *edit, const yaml_document_t *from)
+/* Children come after all nodes exist. */
+int edit_graft(struct edit *edit, const yaml_document_t *from)
 {
     struct scene_tree *tree = edit->tree;
     int shift = (int)(tree->document.nodes.top - tree->document.nodes.start);
@@ -80,8 +70,7 @@ static int graft_nodes(struct edit *edit, const yaml_document_t *from)
     return shift + 1;
 }
 
-__attribute__((format(printf, 2, 3))) static int edit_fails(const struct edit *edit,
-                                                            const char *format, ...)
+int edit_fails(const struct edit *edit, const char *format, ...)
 {
     char what[400], *place = scene_tree_mark_place(edit->tree, &edit->mark);
     va_list list;
@@ -115,7 +104,7 @@ static int add_value(struct edit *edit, const char *text)
             node = edit_fails(
                 edit, "the value is in itself, by an alias * of its anchor &; " SCENE_CIRCLE);
         else if (yaml_document_get_root_node(&document))
-            node = graft_nodes(edit, &document);
+            node = edit_graft(edit, &document);
         else
             node = edit_fails(edit, "there is no value; KEY=VALUE is expected");
         yaml_document_delete(&document);
@@ -145,9 +134,7 @@ static int own_node(struct edit *edit, int node, yaml_node_type_t type)
     return copy_children(tree, copy, from, 0) ? copy : edit_out_of_memory(edit->tree);
 }
 
-static int edit_put_value(struct edit *edit, int node);
-
-static int no_path(const struct edit *edit)
+int edit_no_path(const struct edit *edit)
 {
     return edit_fails(edit, edit->value ? "KEY: VALUE is expected, such as time.h: 0.002"
                                         : "KEY=VALUE is expected, such as time.h=0.002");
@@ -162,13 +149,96 @@ static int edit_add_key(struct edit *edit, const char *name, size_t length)
     return edit_add_node(edit, &key);
 }
 
+/* What is behind the one key of a map: the values of an obstacle, behind its kind. */
+static int put_behind_key(struct edit *edit, int node)
+{
+    struct scene_tree *tree = edit->tree;
+    const int map = own_node(edit, node, YAML_MAPPING_NODE);
+    if (!map)
+        return 0;
+    const yaml_node_pair_t pair = scene_tree_pair(tree, map, 0);
+    const int value = edit_put_value(edit, pair.value);
+    const int key = value ? edit_add_node(edit, scene_tree_node(tree, pair.key)) : 0;
+    if (key)
+        scene_tree_node(tree, map)->data.mapping.pairs.start[0] = (yaml_node_pair_t){key, value};
+    return key ? map : 0;
+}
+
+/* Puts the rest of the path, from `rest` on, into entry i of a list. put: how, from there on. */
+static int put_entry(struct edit *edit, int node, size_t i, const char *rest,
+                     int put(struct edit *, int))
+{
+    struct scene_tree *tree = edit->tree;
+    const int list = own_node(edit, node, YAML_SEQUENCE_NODE);
+    if (!list)
+        return 0;
+    const size_t n = scene_tree_length(tree, list);
+    if (i > n)
+        return edit_fails(edit, "'%.*s' has %zu entries; an index from 0 to %zu is expected",
+                          (int)(edit->at - edit->start), edit->start, n, n);
+    edit->at = rest;
+    const int value = put(edit, i < n ? scene_tree_item(tree, list, i) : 0);
+    if (value && i < n)
+        scene_tree_node(tree, list)->data.sequence.items.start[i] = value;
+    else if (value && !yaml_document_append_sequence_item(&tree->document, list, value))
+        return edit_out_of_memory(tree);
+    return value ? list : 0;
+}
+
+static int put_index(struct edit *edit, int node)
+{
+    char *end;
+    const unsigned long i = strtoul(edit->at + 1, &end, 10);
+    if (edit->at[1] < '0' || edit->at[1] > '9' || *end != ']')
+        return edit_fails(edit, "an index is written [0], [1], ...");
+    return put_entry(edit, node, i, end + 1, edit_put_value);
+}
+
+/* The text of the key name of a map; NULL: it has none, or it is no map. */
+static const char *name_of_map(const struct scene_tree *tree, int map)
+{
+    const bool is_map = scene_tree_is(tree, map, YAML_MAPPING_NODE);
+    const int name = is_map ? scene_tree_get(tree, map, "name") : 0;
+    return name ? scene_tree_scalar(tree, name) : NULL;
+}
+
+/* The name of a list's entry. *behind: the entry is a map of one key, whose map has the name. */
+static const char *name_of_entry(const struct scene_tree *tree, int entry, bool *behind)
+{
+    const char *name = name_of_map(tree, entry);
+    *behind = !name && scene_tree_is(tree, entry, YAML_MAPPING_NODE) &&
+              scene_tree_length(tree, entry) == 1;
+    return *behind ? name_of_map(tree, scene_tree_pair(tree, entry, 0).value) : name;
+}
+
+/* Puts the rest of the path into the entry of a list that has a name. */
+static int put_named(struct edit *edit, int list, const char *name, size_t length)
+{
+    const struct scene_tree *tree = edit->tree;
+    char names[200] = "";
+    for (size_t i = 0; i < scene_tree_length(tree, list); i++) {
+        bool behind;
+        const char *is = name_of_entry(tree, scene_tree_item(tree, list, i), &behind);
+        if (is && strlen(is) == length && !strncmp(is, name, length))
+            return put_entry(edit, list, i, name + length,
+                             behind ? put_behind_key : edit_put_value);
+        if (is)
+            cloth_text_add(names, sizeof names, "%s%s", *names ? ", " : "", is);
+    }
+    return edit_fails(edit, "'%.*s' is a list with no entry of the name '%.*s'; %s%s",
+                      (int)(edit->at - edit->start), edit->start, (int)length, name,
+                      *names ? "it has " : "an index is expected, such as [0]", names);
+}
+
 static int edit_put_key(struct edit *edit, int node)
 {
     struct scene_tree *tree = edit->tree;
     const char *name = edit->at + (*edit->at == '.');
     size_t length = strcspn(name, name == edit->whole ? "=" : ".[=");
     if (!length || (!name[length] && !edit->value))
-        return no_path(edit);
+        return edit_no_path(edit);
+    if (scene_tree_is(tree, node, YAML_SEQUENCE_NODE))
+        return put_named(edit, node, name, length);
     int map = own_node(edit, node, YAML_MAPPING_NODE);
     if (!map)
         return 0;
@@ -194,115 +264,19 @@ static int edit_put_key(struct edit *edit, int node)
     return key ? map : 0;
 }
 
-static int put_index(struct edit *edit, int node)
-{
-    struct scene_tree *tree = edit->tree;
-    char *end;
-    unsigned long i = strtoul(edit->at + 1, &end, 10);
-    if (edit->at[1] < '0' || edit->at[1] > '9' || *end != ']')
-        return edit_fails(edit, "an index is written [0], [1], ...");
-    int list = own_node(edit, node, YAML_SEQUENCE_NODE);
-    if (!list)
-        return 0;
-    size_t n = scene_tree_length(tree, list);
-    if (i > n)
-        return edit_fails(edit, "'%.*s' has %zu entries; an index from 0 to %zu is expected",
-                          (int)(edit->at - edit->start), edit->start, n, n);
-    edit->at = end + 1;
-    int value = edit_put_value(edit, i < n ? scene_tree_item(tree, list, i) : 0);
-    if (value && i < n)
-        scene_tree_node(tree, list)->data.sequence.items.start[i] = value;
-    else if (value && !yaml_document_append_sequence_item(&tree->document, list, value))
-        return edit_out_of_memory(edit->tree);
-    return value ? list : 0;
-}
-
-/* The replacement of `node` (0: none) after following the rest of the path; 0 with an error. */
-static int edit_put_value(struct edit *edit, int node)
+int edit_put_value(struct edit *edit, int node)
 {
     if (edit->value && !*edit->at)
         return edit->value;
     if (edit->parts++ == MAX_PARTS)
         return edit_fails(edit, "a key of more than 100 parts; no scene is as deep");
     if (edit->value && *edit->at == '=')
-        return no_path(edit);
+        return edit_no_path(edit);
     if (*edit->at == '=')
         return add_value(edit, edit->at + 1);
     if (*edit->at == '[')
         return put_index(edit, node);
     return edit_put_key(edit, node);
-}
-
-static bool starts_no_path(const char *text)
-{
-    return *text == '=' || *text == '[' || *text == '.';
-}
-
-/* True if a set changes the phases themselves. */
-static bool is_of_phases(const char *text)
-{
-    const size_t n = strlen("phases");
-    return !strncmp(text, "phases", n) && (!text[n] || strchr(".[=", text[n]));
-}
-
-/* Behind phases[N].set. the rest of the path is one key: a path of the scene. NULL for other paths.
- */
-static const char *key_of_phase(const char *text)
-{
-    const char *at = is_of_phases(text) ? text + strcspn(text, "]=") : "";
-    return strncmp(at, "].set.", 6) ? NULL : at + 6;
-}
-
-/* Applies the tree's sets that change the phases themselves, or the others. */
-static int edit_by_options(struct scene_tree *tree, bool phases)
-{
-    for (size_t i = 0; i < tree->n_sets; i++) {
-        const char *text = tree->sets[i].text;
-        struct edit edit = {.tree = tree,
-                            .mark = {.index = SCENE_BY_SET, .line = i},
-                            .start = text,
-                            .at = text,
-                            .whole = key_of_phase(text)};
-        if (is_of_phases(text) != phases)
-            continue;
-        if (starts_no_path(text))
-            no_path(&edit);
-        else
-            edit_put_value(&edit, 1);
-        if (tree->error->code)
-            return tree->error->code;
-    }
-    return CLOTH_OK;
-}
-
-/* The check reports a set that is no map, and faults of its keys. */
-static int edit_by_phase(struct scene_tree *tree, uint32_t phase)
-{
-    const int map = scene_tree_phase(tree, phase), set = map ? scene_tree_get(tree, map, "set") : 0;
-    if (!scene_tree_is(tree, set, YAML_MAPPING_NODE))
-        return CLOTH_OK;
-    for (size_t i = 0; i < scene_tree_length(tree, set) && !tree->error->code; i++) {
-        const yaml_node_pair_t pair = scene_tree_pair(tree, set, i);
-        const char *key = scene_tree_scalar(tree, pair.key);
-        const yaml_mark_t mark = {
-            .index = SCENE_BY_PHASE, .line = (size_t)pair.key, .column = phase};
-        struct edit edit = {tree, mark, key, key, pair.value, NULL, 0};
-        if (key && is_of_phases(key))
-            edit_fails(&edit, "a phase cannot change the phases");
-        else if (key && starts_no_path(key))
-            no_path(&edit);
-        else if (key)
-            edit_put_value(&edit, 1);
-    }
-    return tree->error->code;
-}
-
-int scene_edit_sets(struct scene_tree *tree, uint32_t phase)
-{
-    int code = edit_by_options(tree, true);
-    for (uint32_t i = 0; i <= phase && !code; i++)
-        code = edit_by_phase(tree, i);
-    return code ? code : edit_by_options(tree, false);
 }
 
 int scene_edit_default(struct scene_tree *tree, int map, const char *key, const char *value)

@@ -1,5 +1,5 @@
-/* From a file to a document. A file is read whole, so that a byte's offset can be turned into line
- * and column. */
+/* From one file to a document. A file is read whole, so that a byte's offset can be turned into
+ * line and column. */
 #include "cloth/scene/yaml/tree.h"
 
 #include "cloth/base/file.h"
@@ -229,6 +229,8 @@ static int parse_document(struct scene_tree *tree, yaml_parser_t *parser, const 
     tree->loaded = true;
     if (check_root(tree) || check_maps(tree) || check_circles(tree))
         return tree->error->code;
+    for (yaml_node_t *node = tree->document.nodes.start; node < tree->document.nodes.top; node++)
+        node->start_mark.index = 0; /* of the file itself (tree.h) */
     if (!yaml_parser_load(parser, &second))
         return parser_fails(tree, parser, bytes, size);
     if (yaml_document_get_root_node(&second))
@@ -245,8 +247,8 @@ const struct scene_words scene_words = {
 int scene_tree_load(struct scene_tree *tree, const char *path, const struct scene_words *words,
                     struct cloth_error *error)
 {
-    *tree = (struct scene_tree){.path = path, .words = words, .error = error};
     char *bytes = NULL;
+    *tree = (struct scene_tree){.path = path, .words = words, .error = error};
     size_t size = 0;
     yaml_parser_t parser;
     if (!yaml_parser_initialize(&parser))
@@ -263,5 +265,8 @@ void scene_tree_free(struct scene_tree *tree)
 {
     if (tree->loaded)
         yaml_document_delete(&tree->document);
+    for (size_t i = 0; i < tree->n_included; i++)
+        free(tree->included[i]);
     tree->loaded = false;
+    tree->n_included = 0;
 }

@@ -98,6 +98,25 @@ int scene_tree_phase(const struct scene_tree *tree, uint32_t phase)
     return scene_tree_is(tree, map, YAML_MAPPING_NODE) ? map : 0;
 }
 
+static const char *file_of_mark(const struct scene_tree *tree, const yaml_mark_t *mark)
+{
+    const size_t i = mark->index;
+    return i && i <= tree->n_included ? tree->included[i - 1] : tree->path;
+}
+
+const char *scene_tree_file(const struct scene_tree *tree, int node)
+{
+    return file_of_mark(tree, &scene_tree_node(tree, node)->start_mark);
+}
+
+char *scene_tree_beside(const struct scene_tree *tree, int node, const char *name)
+{
+    const char *file = scene_tree_file(tree, node), *slash = strrchr(file, '/');
+    const int folder = slash && *name != '/' ? (int)(slash - file) + 1 : 0;
+    char *path;
+    return asprintf(&path, "%.*s%s", folder, file, name) < 0 ? NULL : path;
+}
+
 /* The place of a key in the set of a phase. */
 static char *phase_place(const struct scene_tree *tree, const yaml_mark_t *mark)
 {
@@ -116,7 +135,8 @@ char *scene_tree_mark_place(const struct scene_tree *tree, const yaml_mark_t *ma
     if (mark->index == SCENE_BY_DEFAULT) {
         n = asprintf(&place, "%s", tree->path);
     } else if (mark->index != SCENE_BY_SET) {
-        n = asprintf(&place, "%s:%zu:%zu", tree->path, mark->line + 1, mark->column + 1);
+        n = asprintf(&place, "%s:%zu:%zu", file_of_mark(tree, mark), mark->line + 1,
+                     mark->column + 1);
     } else if (tree->sets[mark->line].option) {
         n = asprintf(&place, "%s", tree->sets[mark->line].option);
     } else {

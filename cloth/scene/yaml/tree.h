@@ -15,12 +15,16 @@ struct scene_words {
 };
 extern const struct scene_words scene_words;
 
+enum { SCENE_MOST_INCLUDED = 9 };
+
 /* A scene's document, and what is made of it. Nodes are known by their number (1 is the root, 0 is
  * none), since additions move them. */
 struct scene_tree {
     yaml_document_t document;
     bool loaded;
     const char *path; /* of the file, as the user wrote it */
+    size_t n_included;
+    char *included[SCENE_MOST_INCLUDED]; /* paths of the files below it (include.c) */
     const struct scene_words *words;
     struct cloth_error *error;    /* takes the first failure of all that read the tree */
     struct cloth_error inner;     /* of a part that the scene names, without its place there */
@@ -30,17 +34,25 @@ struct scene_tree {
     struct scene_made *made;      /* what the phases of a scene share (cloth/scene/build/build.h) */
 };
 
-/* The origin of a node that is not from the file. It is kept in its mark: index is one of these,
- * line the set's number; by a phase: line is the key in its set, column the phase's number. */
+/* The origin of a node is kept in its mark. Of a node from a file, index is 0, or 1 + the number of
+ * the included file. Else it is one of these, and line is the set's number; by a phase: line is the
+ * key in its set, column the phase's number. */
 #define SCENE_BY_SET     (SIZE_MAX)
 #define SCENE_BY_DEFAULT (SIZE_MAX - 1)
 #define SCENE_BY_PHASE   (SIZE_MAX - 2)
 
 /* Reads the one document of a file; its root is a map. Errors: CLOTH_E_INPUT with file:line:column.
- * `error` stays the tree's, and is not NULL. */
+ * `error` stays the tree's, and is not NULL. The second function is for scenes, which may include
+ * another: the document is that one, edited by the keys of the file. */
 int scene_tree_load(struct scene_tree *tree, const char *path, const struct scene_words *words,
                     struct cloth_error *error);
+int scene_tree_load_scene(struct scene_tree *tree, const char *path, struct cloth_error *error);
 void scene_tree_free(struct scene_tree *tree);
+
+/* The path of the file that a node is from; of other nodes that of the scene. */
+const char *scene_tree_file(const struct scene_tree *tree, int node);
+/* `name`, relative to the folder of that file. NULL: out of memory. */
+char *scene_tree_beside(const struct scene_tree *tree, int node, const char *name);
 
 /* The number of a node that an alias within it names; *line: a line of the alias's node, counted
  * from 0. 0: there is none. */
@@ -96,6 +108,9 @@ bool scene_scalar_has_comma(const char *text);
 #define SCENE_NO_COMMA "a number has no comma: its decimals follow a point, as in 0.2"
 
 /* ---- Edits (edit.c) ---- */
+
+/* Edits the tree by the keys of a document that includes it, KEY: VALUE. */
+int scene_edit_layer(struct scene_tree *tree, const yaml_document_t *layer);
 
 /* Applies the sets of the phases up to one, as far as the scene has phases, then the tree's sets in
  * their order. So what a phase sets holds until another phase sets it, and the tree's sets hold in

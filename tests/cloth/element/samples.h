@@ -62,7 +62,7 @@ static inline void make_scene(struct scene *s)
 {
     memset(s, 0, sizeof *s);
     for (uint32_t c = 0; c < CLOTHS; c++) {
-        s->cloth[c] = (struct model_cloth){.name = (char[]){"cloth"}, .material = c};
+        s->cloth[c] = (struct model_cloth){.name = (char[]){"cloth"}, .material = c, .pressure = 7};
         if (c < 2)
             make_uneven(&s->cloth[c].mesh,
                         c == 0 ? 0.1 : 0); /* quadratic bending has a flat rest shape */

@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 UNIT_TEST(sets_change_values)
 {
@@ -47,6 +48,50 @@ UNIT_TEST(sets_change_values)
     model_free(&model);
     model = scene_read_set("name=a=b");
     ck_assert_str_eq(model.name, "a=b");
+}
+
+UNIT_TEST(sets_find_entries_by_name)
+{
+    UNIT_OWNED(model_free)
+    struct model model = scene_read_set("cloths.sheet.mesh.grid.nx=40");
+    ck_assert_uint_eq(model.cloths[0].mesh.n_vertices, 120);
+    model_free(&model);
+    char *text = scene_changed(scene_right, "plane: {", "plane: {name: floor, friction: 1, ");
+    const char *const sets[] = {"obstacles.floor.friction=2", "obstacles.floor.name=sea",
+                                "obstacles.sea.point=[0, -2, 0]"};
+    model = scene_read_right(text, 3, sets);
+    ck_assert_double_eq(model.obstacles[0].friction, 2);
+    ck_assert_double_eq(model.obstacles[0].value[1], -2);
+    free(text);
+    model_free(&model);
+    const char *const phase[] = {"phases=[{name: one, set: {}}]", "phases.one.set.time.h=0.002"};
+    model = scene_read_right(scene_right, 2, phase);
+    ck_assert_double_eq(model.h, 0.002);
+}
+
+/* The file that includes decides over the included one, sets over both; a choice replaces a choice,
+ * and files are looked for beside the scene that names them. */
+UNIT_TEST(scenes_include_scenes)
+{
+    const char *base = "schema: 1\ninclude: base.yaml\ntime.h: 0.004\ntime.end: 0.2\n"
+                       "cloths.sheet.mesh.disc: {radius: 1, rings: 2}\n";
+    scene_write_file("base.yaml", scene_right, strlen(scene_right));
+    scene_write_file("middle.yaml", base, strlen(base));
+    const char *const sets[] = {"time.end=0.3"};
+    UNIT_OWNED(model_free)
+    struct model model = scene_read_right("include: middle.yaml\nschema: 1\ntime.h: 0.002\n"
+                                          "time.end: 0.4\nmaterials.cotton.stretch: 7\n"
+                                          "cloths[1]: {mesh: {grid: {width: 1, height: 1, nx: 2, "
+                                          "ny: 2}}, material: cotton}\n",
+                                          1, sets);
+    ck_assert_double_eq(model.h, 0.002);
+    ck_assert_double_eq(model.end, 0.3);
+    ck_assert_double_eq(model.materials[0].stretch, 7);
+    ck_assert_double_eq(model.materials[0].damping_mass, 0.1);
+    ck_assert_uint_eq(model.n_cloths, 2);
+    ck_assert_uint_eq(model.cloths[0].mesh.n_vertices, 19);
+    ck_assert_str_eq(model.name, "scene");
+    ck_assert_uint_eq(model.n_files, 3);
 }
 
 UNIT_TEST(sets_make_and_append)

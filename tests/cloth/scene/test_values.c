@@ -259,6 +259,59 @@ UNIT_TEST(cloths_of_every_mesh)
     free(text);
 }
 
+/* A figure of 1.8 m that stands along z, in centimetres. */
+UNIT_TEST(files_of_other_units_and_axes)
+{
+    const char *triangle = "v 0 0 0\nv 50 0 0\nv 0 20 180\nf 1 2 3\n";
+    char *text = scene_changed(
+        scene_right, "materials:\n",
+        "  - {mesh: {file: tall.obj}, material: cotton, transform: {units: cm, up: z}}\n"
+        "  - {mesh: {file: tall.obj}, material: cotton, transform: {units: mm, scale: [1, 2, 3], "
+        "up: z, rotate: {axis: [0, 1, 0], degrees: 90}, translate: [1, 0, 0]}}\n"
+        "materials:\n");
+    scene_write_file("tall.obj", triangle, strlen(triangle));
+    UNIT_OWNED(model_free) struct model model = scene_read_right(text, 0, NULL);
+    const double right[2][2][3] = {{{0.5, 0, 0}, {0, 1.8, -0.2}}, {{1, 0, -0.05}, {0.96, 0.54, 0}}};
+    for (int c = 0; c < 2; c++)
+        for (int v = 0; v < 2; v++)
+            for (int i = 0; i < 3; i++)
+                ck_assert_double_eq_tol(model.cloths[1 + c].mesh.position[3 * (v + 1) + i],
+                                        right[c][v][i], 1e-15);
+    free(text);
+}
+
+/* A part of the way through 2.5 turns in 3 s, and 1 m aside meanwhile. */
+static void turned_round(const struct model *model, const struct model_motion *motion, double time)
+{
+    const double angle = 2 * M_PI * 2.5 * time / 3, about[3] = {0};
+    struct phys_pose pose;
+    phys_pose_at(motion->n, model->keys + motion->first, about, time, &pose);
+    ck_assert_double_eq_tol(pose.turn[0][0], cos(angle), 1e-4);
+    ck_assert_double_eq_tol(pose.turn[0][2], sin(angle), 1e-4);
+    ck_assert_double_eq_tol(pose.translate[0], time / 3, 1e-14);
+}
+
+UNIT_TEST(rotations_by_axis_and_angle)
+{
+    UNIT_OWNED(model_free)
+    struct model model = scene_read_changed(
+        "pins: [{vertices: [0, 3]}]",
+        "start: [{vertices: [1], rotate: {axis: [0, 0, -3], degrees: 60}}, "
+        "{vertices: [2], rotate: {axis: [0, 1, 0], turns: 4.5}}]\n"
+        "    pins: [{vertices: [0], motion: {times: [0, 3], translate: [[0, 0, 0], [1, 0, 0]], "
+        "rotate: [{axis: [0, 2, 0], turns: 0}, {axis: [0, 2, 0], degrees: 900}]}},\n"
+        "           {vertices: [5], motion: {times: [0, 3], rotate: [[1, 0, 0, 0], "
+        "{axis: [0, 1, 0], degrees: 170}]}}]");
+    const struct model_start *starts = model.cloths[0].starts;
+    ck_assert_double_eq_tol(starts[0].transform.rotate[0], cos(M_PI / 6), 1e-15);
+    ck_assert_double_eq_tol(starts[0].transform.rotate[3], -0.5, 1e-15);
+    ck_assert_double_eq_tol(fabs(starts[1].transform.rotate[2]), 1, 1e-15);
+    ck_assert_uint_eq(model.n_motions, 2);
+    for (int i = 0; i <= 30; i++)
+        turned_round(&model, model.motions, i / 10.0);
+    ck_assert_uint_eq(model.motions[1].n, 2);
+}
+
 UNIT_TEST(starts_and_masses)
 {
     UNIT_OWNED(model_free)

@@ -5,13 +5,10 @@
 #include "cloth/base/simd.h"
 #include "cloth/contact/certificate.h"
 
+#include <math.h>
+
 enum { BATCH = 64 };
 static const double SIDE = 0.01, WAY = 0.002, THICKNESS = 0.001; /* m */
-
-struct pair {
-    phys_vec x[4], y[4];
-    enum contact_pair kind;
-};
 
 static double draw(uint64_t *seed, double reach)
 {
@@ -26,10 +23,10 @@ static void draw_vector(uint64_t *seed, double reach, phys_vec *x)
     (*x)[3] = 0;
 }
 
-static void draw_pair(uint64_t *seed, struct pair *pair)
+static void draw_pair(uint64_t *seed, struct contact_moving *pair)
 {
     phys_vec common, own;
-    pair->kind = draw(seed, 1) < 0 ? CONTACT_VT : CONTACT_EE;
+    pair->pair = draw(seed, 1) < 0 ? CONTACT_VT : CONTACT_EE;
     draw_vector(seed, WAY, &common);
     for (int k = 0; k < 4; k++) {
         draw_vector(seed, SIDE / 2, pair->x + k);
@@ -38,31 +35,33 @@ static void draw_pair(uint64_t *seed, struct pair *pair)
     }
 }
 
-static void draw_batch(uint64_t *seed, struct pair pair[BATCH])
+static void draw_batch(uint64_t *seed, struct contact_moving pair[BATCH])
 {
     for (int i = 0; i < BATCH; i++)
         draw_pair(seed, pair + i);
 }
 
-static size_t certify(const struct pair pair[BATCH])
+static size_t certify(const struct contact_moving pair[BATCH])
 {
+    enum contact_passing passing[BATCH];
     size_t n = 0;
+    contact_pass_all(BATCH, pair, THICKNESS, INFINITY, passing);
     for (int i = 0; i < BATCH; i++)
-        n += contact_certify(pair[i].kind, pair[i].x, pair[i].y, THICKNESS);
+        n += passing[i] != CONTACT_MAY_TOUCH;
     return n;
 }
 
-static int check_cut(const struct pair *pair)
+static int check_cut(const struct contact_moving *pair)
 {
     double t[4] = {1, 1, 1, 1};
     phys_vec end[4];
-    if (!contact_cut(pair->kind, pair->x, pair->y, THICKNESS, 0, t))
-        return contact_certify(pair->kind, pair->x, pair->x, THICKNESS)
+    if (!contact_cut(pair->pair, pair->x, pair->y, THICKNESS, 0, t))
+        return contact_certify(pair->pair, pair->x, pair->x, THICKNESS)
                    ? serve_fail("wrong answer: a pair that holds at the start is not cut")
                    : 0;
     for (int k = 0; k < 4; k++)
         end[k] = pair->x[k] + t[k] * (pair->y[k] - pair->x[k]);
-    return contact_certify(pair->kind, pair->x, end, THICKNESS)
+    return contact_certify(pair->pair, pair->x, end, THICKNESS)
                ? 0
                : serve_fail("wrong answer: a pair that is cut does not pass");
 }
@@ -71,7 +70,7 @@ static int check_cut(const struct pair *pair)
 static int check(uint64_t pairs, size_t n_certain)
 {
     const enum cloth_simd wide = cloth_simd;
-    struct pair pair[BATCH];
+    struct contact_moving pair[BATCH];
     uint64_t seed = 1;
     size_t n = 0;
     int code = 0;
@@ -79,7 +78,7 @@ static int check(uint64_t pairs, size_t n_certain)
     for (uint64_t done = 0; done < pairs && !code; done += BATCH) {
         draw_batch(&seed, pair);
         for (int i = 0; i < BATCH && !code; i++)
-            if (contact_certify(pair[i].kind, pair[i].x, pair[i].y, THICKNESS))
+            if (contact_certify(pair[i].pair, pair[i].x, pair[i].y, THICKNESS))
                 n++;
             else
                 code = check_cut(pair + i);
@@ -94,7 +93,7 @@ static int check(uint64_t pairs, size_t n_certain)
 static int run(struct serve_request *request, double *seconds, double *share)
 {
     const uint64_t pairs = serve_number(request, "pairs");
-    struct pair pair[BATCH];
+    struct contact_moving pair[BATCH];
     uint64_t seed = 1, done = 0;
     size_t n = 0;
     *seconds = 0;

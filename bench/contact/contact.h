@@ -7,7 +7,7 @@
 /* The bench "contact": what finding and certifying contacts costs, and what runs of scenes do with
  * it. bench.c and plans.c have the plans; the other files have what our process runs for them. */
 
-/* certify pairs=: seconds a pair of contact_certify. uncut pairs=: the share of them that passes.
+/* certify pairs=: seconds a pair of contact_pass_all. uncut pairs=: the share of them that passes.
  * Pairs are drawn: half of each kind, mixed; corners in a cube of 10 mm; they move by up to 2 mm
  * along each axis together and by up to 2 mm each. The thickness is 1 mm. */
 extern const struct serve_run contact_certify_runs[];

@@ -1,5 +1,6 @@
-/* Only contact_pass's two comparisons, each with its bound on rounding, make a pair certain. The
- * choice of direction and plane changes how many pairs are certain, never correctness. */
+/* Only the two comparisons with their bound on rounding, here and in certificate_four.c, make a
+ * pair certain. The choice of direction and plane changes how many pairs are certain, never
+ * correctness. */
 #include "cloth/contact/certificate.h"
 
 #include "cloth/contact/direction.h"
@@ -7,13 +8,6 @@
 #include <math.h>
 
 /* ---- Certainty ---- */
-
-/* The loss of f by rounding, see the header. */
-#define ROUNDING 0x1p-50
-
-/* The least f at the start: rounding of a direction must not lose a pair that the step before has
- * left at the margin. */
-#define LEAST (CONTACT_MARGIN / 2)
 
 PHYS_INLINE double lanes_size(const struct contact_lanes *x, const struct contact_lanes *y)
 {
@@ -68,7 +62,8 @@ PHYS_INLINE double along_wider(const struct along *a, double gap)
 PHYS_INLINE bool along_enough(const struct along *a, double gap, double thickness, double off)
 {
     const double least = least_after(gap, thickness), margin = CONTACT_MARGIN + off;
-    const double certain = a->length * (LEAST + off), asked = least > margin ? least : margin;
+    const double certain = a->length * (CONTACT_LEAST + off),
+                 asked = least > margin ? least : margin;
     const bool is_proof = (a->length > CONTACT_TINY) & (a->before > certain) & (a->after > certain);
     return is_proof & (a->after >= a->length * (asked < gap ? asked : gap));
 }
@@ -82,39 +77,6 @@ PHYS_INLINE bool along_beyond(const struct along *a, double far)
 
 /* ---- Certify ---- */
 
-/* Across both features, turned as they lie, with lanes z x y. Works for both kinds without a
- * branch.
- */
-PHYS_INLINE void quick_across(bool is_edges, const phys_vec p[4], phys_vec *n)
-{
-    const phys_vec a = p[2 - is_edges] - p[1 - is_edges], b = p[3] - p[1 + is_edges];
-    const phys_vec way = p[0] - p[1 + is_edges], turned = CONTACT_PICK(way, way, 2, 0, 1, 3);
-    contact_product_turned(&a, &b, n);
-    *n *= __builtin_copysign(1, phys_dot(n, &turned));
-}
-
-/* contact_apart of either kind. */
-PHYS_INLINE double quick_apart(bool is_edges, const phys_vec *along)
-{
-    static const double NEVER[2] = {0, INFINITY};
-    const double a = (*along)[0], b = (*along)[1], c = (*along)[2], d = (*along)[3];
-    const double of_first = b + NEVER[!is_edges], of_second = b - NEVER[is_edges];
-    const double last = c > d ? c : d;
-    return (a < of_first ? a : of_first) - (last > of_second ? last : of_second);
-}
-
-/* True if all differences are numbers below 2 m. All bits or'ed together are no less than the bits
- * of each. */
-PHYS_INLINE bool quick_small(const struct ends *ends)
-{
-    contact_mask bits = {0};
-    PHYS_UNROLL
-    for (int c = 0; c < 3; c++)
-        bits |= (contact_mask)ends->x.c[c] | (contact_mask)ends->y.c[c];
-    bits |= CONTACT_PICK(bits, bits, 2, 3, 0, 1);
-    return (uint64_t)(bits[0] | bits[1]) << 1 < UINT64_C(0x4000000000000000) << 1; /* 2.0 */
-}
-
 /* The two directions that features may be closest in, of their corners p, which `at` are against
  * the first. Returns true if the features are so near that the directions may be only rounding. */
 PHYS_INLINE bool find_directions(enum contact_pair pair, const phys_vec p[4],
@@ -123,13 +85,6 @@ PHYS_INLINE bool find_directions(enum contact_pair pair, const phys_vec p[4],
     contact_across(pair, p, at, n);
     const double square = contact_between(pair, at, n + 1);
     return !(square > CONTACT_NEAR * CONTACT_NEAR * contact_square(at));
-}
-
-/* The f at both ends, m, that shows features to be farther apart than reach. Its margin covers the
- * other roundings of nearest points. */
-PHYS_INLINE double far_of(double reach)
-{
-    return reach * (1 + 1e-9) + 1e-9;
 }
 
 /* The closest directions at the start and at the end; then the best ones of features that are very
@@ -144,7 +99,8 @@ PHYS_INLINE enum contact_passing pass_closely(enum contact_pair pair, const phys
     bool enough = false, by = false;
     contact_lanes_of(x, x, &ends.x);
     contact_lanes_of(y, y, &ends.y);
-    const double off = ROUNDING * lanes_size(&ends.x, &ends.y), far = far_of(reach) + off;
+    const double off = CONTACT_ROUNDING * lanes_size(&ends.x, &ends.y),
+                 far = contact_far_of(reach) + off;
     const bool near_x = find_directions(pair, x, &ends.x, n);
     const bool near_y = find_directions(pair, y, &ends.y, n + 2);
     PHYS_UNROLL
@@ -178,52 +134,6 @@ PHYS_KERNEL_OF(enum contact_passing, contact_pass_closely,
     if (pair == CONTACT_VT)
         return pass_closely(CONTACT_VT, x, y, thickness, reach);
     return pass_closely(CONTACT_EE, x, y, thickness, reach);
-}
-
-/* True if the sum of the directions across both features at the start and at the end proves the
- * pair, and f(1) is enough after any gap. Most calls end here. */
-PHYS_INLINE enum contact_passing pass_quickly(bool is_edges, const phys_vec x[4],
-                                              const phys_vec y[4], double thickness, double reach)
-{
-    static const double OFF = 36 * ROUNDING; /* m: of 18 differences below 2 m */
-    const double part = 0.1 * thickness, far = far_of(reach) + OFF;
-    const double least = part > CONTACT_MARGIN + OFF ? part : CONTACT_MARGIN + OFF;
-    struct ends ends;
-    phys_vec n, m, along_x, along_y;
-    contact_lanes_of(x, x, &ends.x);
-    contact_lanes_of(y, y, &ends.y);
-    quick_across(is_edges, x, &n);
-    quick_across(is_edges, y, &m);
-    n += m;
-    const double square = phys_dot(&n, &n);
-    n = CONTACT_PICK(n, n, 1, 2, 0, 3);
-    contact_along(&ends.x, &n, &along_x);
-    contact_along(&ends.y, &n, &along_y);
-    const double before = quick_apart(is_edges, &along_x), after = quick_apart(is_edges, &along_y);
-    const bool passes = (before > CONTACT_TINY) &
-                        (before * before > square * ((LEAST + OFF) * (LEAST + OFF))) & (after > 0) &
-                        (after * after >= square * (least * least)) & quick_small(&ends);
-    const double nearer = before < after ? before : after;
-    if (!passes)
-        return CONTACT_MAY_TOUCH;
-    return nearer * nearer > square * (far * far) ? CONTACT_PASSES_BY : CONTACT_PASSES;
-}
-
-PHYS_KERNEL_OF(enum contact_passing, contact_pass,
-               (enum contact_pair pair, const phys_vec x[4], const phys_vec y[4], double thickness,
-                double reach),
-               (pair, x, y, thickness, reach))
-{
-    const enum contact_passing quickly = pass_quickly(pair == CONTACT_EE, x, y, thickness, reach);
-    if (quickly != CONTACT_MAY_TOUCH)
-        return quickly;
-    return contact_pass_closely(pair, x, y, thickness, reach);
-}
-
-bool contact_certify(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
-                     double thickness)
-{
-    return contact_pass(pair, x, y, thickness, INFINITY) != CONTACT_MAY_TOUCH;
 }
 
 /* ---- Cut ---- */
@@ -379,7 +289,7 @@ bool contact_cut(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4
     contact_along(&end, &n, &cut.end);
     cut_share(&cut, FAR * thickness);
     cut_bounds(&cut);
-    if (!(gap > LEAST + cut.off) || !(cut.low <= cut.high))
+    if (!(gap > CONTACT_LEAST + cut.off) || !(cut.low <= cut.high))
         return cut_all(&cut, x, y, thickness, t);
     cut_corners(&cut, cut_plane(&cut), t);
     return true;

@@ -34,6 +34,15 @@ enum contact_passing { CONTACT_PASSES_BY, CONTACT_PASSES, CONTACT_MAY_TOUCH };
 enum contact_passing contact_pass(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
                                   double thickness, double reach);
 
+/* The same of n pairs, each to the bits that it has alone. Of most pairs four are certified at
+ * once. */
+struct contact_moving {
+    enum contact_pair pair;
+    phys_vec x[4], y[4];
+};
+void contact_pass_all(size_t n, const struct contact_moving *moving, double thickness, double reach,
+                      enum contact_passing *passing);
+
 /* For a pair that contact_certify does not pass: lowers t[4] so that it passes with the ends
  *
  *     x + t (y - x)       by corner, rounded as it may be; exactly x where t is 0.

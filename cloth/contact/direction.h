@@ -7,8 +7,8 @@
 
 #include <stdbool.h>
 
-/* Shared by pair.c and certificate.c: the directions that a pair may be closest in. Lane k is
- * corner k of four, as its difference against corner 0.
+/* Shared by pair.c and the files of certificates: the directions that a pair may be closest in.
+ * Lane k is corner k of four, as its difference against corner 0.
  *
  * Two features may be closest inside both (the foot of the vertex in the triangle, the feet of the
  * common perpendicular on both edges): the direction is then across both. Else they are closest at
@@ -29,17 +29,24 @@ typedef int64_t contact_mask __attribute__((vector_size(32)));
 #define CONTACT_PICK(a, b, i, j, k, l) __builtin_shuffle(a, b, (contact_mask){i, j, k, l})
 #endif
 
+/* Lane k of each is of vector k. */
+PHYS_INLINE void contact_transpose(const phys_vec *a, const phys_vec *b, const phys_vec *c,
+                                   const phys_vec *d, struct contact_lanes *to)
+{
+    const phys_vec ab_even = CONTACT_PICK(*a, *b, 0, 4, 2, 6),
+                   ab_odd = CONTACT_PICK(*a, *b, 1, 5, 3, 7);
+    const phys_vec cd_even = CONTACT_PICK(*c, *d, 0, 4, 2, 6),
+                   cd_odd = CONTACT_PICK(*c, *d, 1, 5, 3, 7);
+    to->c[0] = CONTACT_PICK(ab_even, cd_even, 0, 1, 4, 5);
+    to->c[1] = CONTACT_PICK(ab_odd, cd_odd, 0, 1, 4, 5);
+    to->c[2] = CONTACT_PICK(ab_even, cd_even, 2, 3, 6, 7);
+}
+
 PHYS_INLINE void contact_lanes_of(const phys_vec *origin, const phys_vec x[4],
                                   struct contact_lanes *to)
 {
     const phys_vec a = x[0] - *origin, b = x[1] - *origin, c = x[2] - *origin, d = x[3] - *origin;
-    const phys_vec ab_even = CONTACT_PICK(a, b, 0, 4, 2, 6),
-                   ab_odd = CONTACT_PICK(a, b, 1, 5, 3, 7);
-    const phys_vec cd_even = CONTACT_PICK(c, d, 0, 4, 2, 6),
-                   cd_odd = CONTACT_PICK(c, d, 1, 5, 3, 7);
-    to->c[0] = CONTACT_PICK(ab_even, cd_even, 0, 1, 4, 5);
-    to->c[1] = CONTACT_PICK(ab_odd, cd_odd, 0, 1, 4, 5);
-    to->c[2] = CONTACT_PICK(ab_even, cd_even, 2, 3, 6, 7);
+    contact_transpose(&a, &b, &c, &d, to);
 }
 
 /* n.x of the corners. */
@@ -185,6 +192,22 @@ PHYS_INLINE double contact_between(enum contact_pair pair, const struct contact_
  * degenerate, or so near that a direction between points is only rounding. n has length 1, or 0 if
  * there is none. x: as in contact_nearest_of. */
 void contact_direction_best(enum contact_pair pair, const phys_vec x[4], phys_vec *n);
+
+/* ---- Certainty ---- */
+
+/* The loss of f by rounding, see the header. */
+#define CONTACT_ROUNDING 0x1p-50
+
+/* The least f at the start: rounding of a direction must not lose a pair that the step before has
+ * left at the margin. */
+#define CONTACT_LEAST (CONTACT_MARGIN / 2)
+
+/* The f at both ends, m, that shows features to be farther apart than reach. Its margin covers the
+ * other roundings of nearest points. */
+PHYS_INLINE double contact_far_of(double reach)
+{
+    return reach * (1 + 1e-9) + 1e-9;
+}
 
 /* contact_pass by the closest directions alone: a function of its own, so that the code of most
  * calls is small. */

@@ -43,6 +43,9 @@ struct contact_skin {
     uint32_t n_nodes, n_leaves;
     const uint32_t (*child)[4]; /* n_nodes: a node, or CONTACT_IS_LEAF with a leaf */
     const struct contact_leaf *leaf;
+    const uint32_t *around; /* points of leaves */
+    /* by triangle, edge and vertex: bit k: point k of the leaf is its corner */
+    const uint32_t *triangle_bits, *edge_bits, *vertex_bits;
     const struct contact_loop *loop; /* 4 n_nodes + 1: of the children of nodes; of all */
     const uint32_t *along;           /* points of loops */
 };

@@ -12,10 +12,7 @@ static uint64_t skin_make_whole_lines(uint64_t bytes)
     return (bytes + CONTACT_ALIGN - 1) / CONTACT_ALIGN * CONTACT_ALIGN;
 }
 
-enum {
-    CONTACT_SKIN_LEAF = 8, /* triangles at most */
-    ALONG = 2              /* points of loops for each triangle */
-};
+enum { ALONG = 2 }; /* points of loops for each triangle */
 
 /* ---- Sizes ---- */
 
@@ -60,7 +57,15 @@ void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head 
     head->held = head->cloth + by_point;
     head->child = head->held + skin_make_whole_lines(head->n_points);
     head->leaf = head->child + skin_make_whole_lines(head->n_nodes * sizeof *skin->child);
-    head->loop = head->leaf + skin_make_whole_lines(head->n_leaves * sizeof *skin->leaf);
+    head->around = head->leaf + skin_make_whole_lines(head->n_leaves * sizeof *skin->leaf);
+    head->triangle_bits = head->around + skin_make_whole_lines(3 * (uint64_t)head->n_triangles *
+                                                               sizeof *skin->around);
+    head->edge_bits = head->triangle_bits +
+                      skin_make_whole_lines(head->n_triangles * sizeof *skin->triangle_bits);
+    head->vertex_bits =
+        head->edge_bits + skin_make_whole_lines(head->n_edges * sizeof *skin->edge_bits);
+    head->loop =
+        head->vertex_bits + skin_make_whole_lines(head->n_vertices * sizeof *skin->vertex_bits);
     head->along =
         head->loop + skin_make_whole_lines((4 * (uint64_t)n_nodes + 1) * sizeof *skin->loop);
     head->n_along = ALONG * (uint64_t)head->n_triangles;
@@ -105,7 +110,8 @@ struct making {
     struct third *third; /* of the three edges of each triangle, by edge */
     uint32_t (*corner)[3], (*edge)[2], (*beside)[2], *vertex, *number, (*child)[4];
     struct contact_leaf *leaf;
-    uint32_t n_vertices, n_edges, n_nodes, n_leaves, n_groups; /* so far */
+    uint32_t *around, *triangle_bits, *edge_bits, *vertex_bits;
+    uint32_t n_vertices, n_edges, n_nodes, n_leaves, n_groups, n_around; /* so far */
 };
 
 /* An edge of a triangle, the lower point first, and the third point. */
@@ -175,14 +181,29 @@ static void skin_make_find_beside(const struct making *making, const uint32_t ed
             beside[k] = making->third[low].point;
 }
 
-/* The features that a triangle stands for are the next ones. */
-static void add_features(struct making *making, uint32_t triangle, struct contact_leaf *leaf)
+/* The bit of a point in the last leaf, which gets it if it is new there. */
+static uint32_t bit_of_point(struct making *making, struct contact_leaf *leaf, uint32_t point)
+{
+    uint32_t k = 0;
+    while (k < leaf->n_points && making->around[leaf->point + k] != point)
+        k++;
+    if (k == leaf->n_points) {
+        making->around[making->n_around++] = point;
+        leaf->n_points++;
+    }
+    return UINT32_C(1) << k;
+}
+
+/* The features that a triangle stands for are the next ones. bit: of its corners. */
+static void add_features(struct making *making, uint32_t triangle, const uint32_t bit[3],
+                         struct contact_leaf *leaf)
 {
     const uint32_t *corner = making->from->corner[triangle];
     const unsigned stands = making->from->stands[triangle];
     const unsigned shared = making->from->shared ? making->from->shared[triangle] : 0;
     for (int k = 0; k < 3; k++) {
         if (stands >> k & 1) {
+            making->vertex_bits[making->n_vertices] = bit[k];
             making->vertex[making->n_vertices++] = corner[k];
             leaf->n_vertices++;
         }
@@ -190,6 +211,7 @@ static void add_features(struct making *making, uint32_t triangle, struct contac
             uint32_t *edge = making->edge[making->n_edges];
             edge[0] = corner[k];
             edge[1] = corner[(k + 1) % 3];
+            making->edge_bits[making->n_edges] = bit[k] | bit[(k + 1) % 3];
             uint32_t *beside = making->beside[making->n_edges++];
             skin_make_find_beside(making, edge, beside);
             if (beside[1] == CONTACT_NO_POINT && shared >> k & 1)
@@ -207,11 +229,16 @@ static uint32_t add_leaf(struct making *making, uint32_t first, uint32_t n)
                                   .n_triangles = n,
                                   .vertex = making->n_vertices,
                                   .edge = making->n_edges,
+                                  .point = making->n_around,
                                   .group = making->n_groups};
     for (uint32_t t = first; t < first + n; t++) {
+        uint32_t bit[3];
         memcpy(making->corner[t], making->from->corner[making->order[t]], sizeof making->corner[t]);
         making->number[t] = making->order[t];
-        add_features(making, making->order[t], leaf);
+        for (int k = 0; k < 3; k++)
+            bit[k] = bit_of_point(making, leaf, making->corner[t][k]);
+        making->triangle_bits[t] = bit[0] | bit[1] | bit[2];
+        add_features(making, making->order[t], bit, leaf);
     }
     making->n_groups = contact_edge_group(leaf) + contact_groups(leaf->n_edges);
     return making->n_leaves++;
@@ -287,6 +314,10 @@ static int put_skin(struct making *making, const struct contact_skin_head *head,
     making->number = (void *)(table + head->number);
     making->child = (void *)(table + head->child);
     making->leaf = (void *)(table + head->leaf);
+    making->around = (void *)(table + head->around);
+    making->triangle_bits = (void *)(table + head->triangle_bits);
+    making->edge_bits = (void *)(table + head->edge_bits);
+    making->vertex_bits = (void *)(table + head->vertex_bits);
     skin_make_add_node(making, 0, 0, from->n_triangles);
     const struct contact_skin skin = contact_skin_open(table);
     return contact_loops_make(&skin, head->n_along, (void *)(table + head->loop),
@@ -339,6 +370,10 @@ struct contact_skin contact_skin_open(const void *table)
                                  .n_leaves = head->n_leaves,
                                  .child = (const uint32_t(*)[4])(const void *)(at + head->child),
                                  .leaf = (const void *)(at + head->leaf),
+                                 .around = (const void *)(at + head->around),
+                                 .triangle_bits = (const void *)(at + head->triangle_bits),
+                                 .edge_bits = (const void *)(at + head->edge_bits),
+                                 .vertex_bits = (const void *)(at + head->vertex_bits),
                                  .loop = (const void *)(at + head->loop),
                                  .along = (const void *)(at + head->along)};
 }

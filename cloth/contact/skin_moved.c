@@ -35,14 +35,13 @@ static void mark_corners(const struct contact_skin *skin, unsigned char *moved)
     }
 }
 
-/* Vertices and edges of a leaf are those of its triangles. */
 static bool leaf_moved(const struct contact_skin *skin, const unsigned char *moved,
                        const struct contact_leaf *leaf)
 {
-    const uint32_t *corner = skin->corner[leaf->triangle];
+    const uint32_t *point = skin->around + leaf->point;
     unsigned char is = 0;
-    for (uint32_t i = 0; i < 3 * leaf->n_triangles; i++)
-        is |= moved[corner[i]];
+    for (uint32_t i = 0; i < leaf->n_points; i++)
+        is |= moved[point[i]];
     return is;
 }
 

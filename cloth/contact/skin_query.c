@@ -5,6 +5,7 @@
 #include "cloth/contact/skin_table.h"
 
 #include <math.h>
+#include <string.h>
 
 /* m: the most that positions in a moving frame lose by rounding. */
 static const double ROUNDING = 1e-9;
@@ -446,17 +447,16 @@ enum contact_pair contact_candidate_corners(const struct contact_skin *a,
                                             const struct contact_candidate *candidate,
                                             uint32_t point[4], unsigned char side[4])
 {
-    const bool swapped = candidate->kind == CONTACT_TV;
-    const struct contact_skin *of = swapped ? b : a, *other = swapped ? a : b;
-    const uint32_t first = candidate->of[swapped], second = candidate->of[!swapped];
-    const bool edges = candidate->kind == CONTACT_EE;
-    for (uint32_t k = 0; k < 4; k++) {
-        const bool is_first = k < (edges ? 2u : 1u);
-        side[k] = is_first == swapped;
-        if (edges)
-            point[k] = is_first ? of->edge[first][k] : other->edge[second][k - 2];
-        else
-            point[k] = is_first ? of->vertex[first] : other->corner[second][k - 1];
+    static const unsigned char SIDE[3][4] = {
+        [CONTACT_VT] = {0, 1, 1, 1}, [CONTACT_EE] = {0, 0, 1, 1}, [CONTACT_TV] = {1, 0, 0, 0}};
+    memcpy(side, SIDE[candidate->kind], sizeof SIDE[0]);
+    if (candidate->kind == CONTACT_EE) {
+        memcpy(point, a->edge[candidate->of[0]], sizeof *a->edge);
+        memcpy(point + 2, b->edge[candidate->of[1]], sizeof *b->edge);
+        return CONTACT_EE;
     }
-    return edges ? CONTACT_EE : CONTACT_VT;
+    const bool swapped = candidate->kind == CONTACT_TV;
+    point[0] = (swapped ? b : a)->vertex[candidate->of[swapped]];
+    memcpy(point + 1, (swapped ? a : b)->corner[candidate->of[!swapped]], sizeof *a->corner);
+    return CONTACT_VT;
 }

@@ -35,20 +35,25 @@ PHYS_INLINE void find_height(const struct contact_side *side, const phys_vec *n,
     *height = sum + CONTACT_PICK(sum, sum, 2, 3, 0, 1);
 }
 
-/* The heights of the corners of a leaf. */
+/* The heights of the points of a leaf. */
 PHYS_INLINE void find_heights(const struct contact_side *side, const struct contact_leaf *leaf,
                               const phys_vec *n, struct contact_heights *to)
 {
-    const uint32_t *corner = side->skin->corner[leaf->triangle];
+    const uint32_t *point = side->skin->around + leaf->point;
     phys_vec low = {INFINITY, INFINITY, INFINITY, INFINITY}, high = -low;
-    for (uint32_t i = 0; i < 3 * leaf->n_triangles; i++) {
+    for (uint32_t i = 0; i < leaf->n_points; i++) {
         phys_vec height;
-        find_height(side, n, corner[i], &height);
+        find_height(side, n, point[i], &height);
         const contact_mask is_low = height<low, is_high = height> high;
         contact_choose(&is_low, &height, &low, &low);
         contact_choose(&is_high, &height, &high, &high);
+        to->at[i][0] = height[0];
+        to->at[i][1] = height[1];
     }
-    *to = (struct contact_heights){{low[0], low[1]}, {high[0], high[1]}};
+    for (int end = 0; end < 2; end++) {
+        to->low[end] = low[end];
+        to->high[end] = high[end];
+    }
 }
 
 PHYS_INLINE double least_between(const double a[2], const double b[2])
@@ -100,24 +105,30 @@ PHYS_KERNEL_OF(bool, contact_slab_parts,
     return above > slab->most || below > slab->most;
 }
 
-/* The bits of features, of n points each, that come near to the end of the other leaf. */
-PHYS_INLINE uint32_t near_bits(const struct contact_slab *slab, const phys_vec *end, double sign,
-                               const struct contact_side *side, uint32_t bits, uint32_t n,
-                               const uint32_t *point)
+/* The points of leaf k that come near to the end of the other leaf, a bit each. */
+PHYS_INLINE uint32_t near_points(const struct contact_slab *slab, int k, uint32_t n)
 {
+    const struct contact_heights *of = slab->of + k, *other = slab->of + !k;
+    const bool is_above = slab->above != (k == 1); /* this leaf */
+    const double *end = is_above ? other->high : other->low, sign = is_above ? 1 : -1;
     uint32_t near = 0;
-    for (uint32_t left = bits; left; left &= left - 1) {
-        const uint32_t i = (uint32_t)__builtin_ctz(left);
-        contact_mask far = {-1, -1, -1, -1};
-        PHYS_UNROLL
-        for (uint32_t k = 0; k < n; k++) {
-            phys_vec height;
-            find_height(side, &slab->n, point[(size_t)n * i + k], &height);
-            far &= sign * (height - *end) > slab->most;
-        }
-        near |= (uint32_t) !(far[0] & far[1]) << i;
+    for (uint32_t i = 0; i < n; i++) {
+        const bool begins_far = sign * (of->at[i][0] - end[0]) > slab->most;
+        const bool ends_far = sign * (of->at[i][1] - end[1]) > slab->most;
+        near |= (uint32_t) !(begins_far & ends_far) << i;
     }
     return near;
+}
+
+/* Those of some features that have a near point. of: the points of each, a bit each. */
+PHYS_INLINE uint32_t near_bits(uint32_t bits, const uint32_t *of, uint32_t near)
+{
+    uint32_t is = 0;
+    for (uint32_t left = bits; left; left &= left - 1) {
+        const uint32_t i = (uint32_t)__builtin_ctz(left);
+        is |= (uint32_t)((of[i] & near) != 0) << i;
+    }
+    return is;
 }
 
 PHYS_KERNEL(contact_slab_keep,
@@ -126,13 +137,8 @@ PHYS_KERNEL(contact_slab_keep,
             (slab, k, side, leaf, bits))
 {
     const struct contact_skin *skin = side->skin;
-    const bool is_above = slab->above != (k == 1); /* this leaf */
-    const struct contact_heights *other = slab->of + !k;
-    const double *at = is_above ? other->high : other->low, sign = is_above ? 1 : -1;
-    const phys_vec ends = {at[0], at[1], at[0], at[1]}, *end = &ends;
-    bits->vertices =
-        near_bits(slab, end, sign, side, bits->vertices, 1, skin->vertex + leaf->vertex);
-    bits->triangles =
-        near_bits(slab, end, sign, side, bits->triangles, 3, skin->corner[leaf->triangle]);
-    bits->edges = near_bits(slab, end, sign, side, bits->edges, 2, skin->edge[leaf->edge]);
+    const uint32_t near = near_points(slab, k, leaf->n_points);
+    bits->vertices = near_bits(bits->vertices, skin->vertex_bits + leaf->vertex, near);
+    bits->triangles = near_bits(bits->triangles, skin->triangle_bits + leaf->triangle, near);
+    bits->edges = near_bits(bits->edges, skin->edge_bits + leaf->edge, near);
 }

@@ -14,13 +14,17 @@ struct contact_boxes {
     contact_lanes low[3], high[3];
 };
 
-/* A leaf of the tree: triangles, and those of their features that the skin has. Each list begins at
- * the number given. Its boxes are in groups of four, from `group` on: the triangles, then the
- * vertices, then the edges, each kind in groups of its own. */
+/* A leaf of the tree: triangles, those of their features that the skin has, and their corners, each
+ * once. Each list begins at the number given. Its boxes are in groups of four, from `group` on: the
+ * triangles, then the vertices, then the edges, each kind in groups of its own. */
 struct contact_leaf {
-    uint32_t triangle, vertex, edge, group;
-    uint32_t n_triangles, n_vertices, n_edges;
+    uint32_t triangle, vertex, edge, point, group;
+    uint32_t n_triangles, n_vertices, n_edges, n_points;
 };
+enum {
+    CONTACT_SKIN_LEAF = 8,
+    CONTACT_SKIN_POINTS = 3 * CONTACT_SKIN_LEAF
+}; /* triangles at most; points */
 
 /* The border of a part's triangles, if it is one closed line without repeated points. Points are in
  * the sense of the triangles' corners. n 0: there is no such line, or no room for it, or the part
@@ -56,6 +60,7 @@ struct contact_skin_head {
     uint64_t bytes;
     uint32_t n_points, n_triangles, n_edges, n_vertices, n_nodes, n_leaves;
     uint64_t corner, edge, beside, vertex, number, id, joined, block, row, cloth, held, child, leaf;
+    uint64_t around, triangle_bits, edge_bits, vertex_bits;
     uint64_t loop, along, n_along; /* n_along: there is room for */
 };
 /* Places of a skin of these counts. */
@@ -111,9 +116,10 @@ struct contact_features {
     uint32_t vertices, triangles, edges;
 };
 
-/* Heights of a leaf's corners along a direction, m, at the begin and at the end of a step. */
+/* Heights of a leaf's points along a direction, m, at the begin and at the end of a step. */
 struct contact_heights {
     double low[2], high[2];
+    double at[CONTACT_SKIN_POINTS][2];
 };
 
 /* Two leaves as seen along the normals of the first (skin_slab.c). */

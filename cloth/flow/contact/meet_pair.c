@@ -22,25 +22,14 @@ static const double CLEAR = 0.5;
 
 /* The corners of two features, and their positions. */
 struct corners {
+    const struct contact_candidate *candidate;
     enum contact_pair pair;
     uint32_t point[4];
     unsigned char side[4];
-    phys_vec x[4], y[4];
-    unsigned held;    /* bit k: corner k cannot be cut */
-    double thickness; /* m: that keeps them apart */
+    const phys_vec *x, *y; /* 4 */
+    unsigned held;         /* bit k: corner k cannot be cut */
+    double thickness;      /* m: that keeps them apart */
 };
-
-static void contact_meet_find_corners(const struct meeting *m,
-                                      const struct contact_candidate *candidate, struct corners *to)
-{
-    to->pair = contact_candidate_corners(m->skin, m->skin + 1, candidate, to->point, to->side);
-    to->thickness = m->model->contact.thickness;
-    for (unsigned k = 0; k < 4; k++) {
-        const struct contact_side *side = m->side + to->side[k];
-        to->x[k] = side->x[to->point[k]];
-        to->y[k] = side->y[to->point[k]];
-    }
-}
 
 /* Only listed pairs need it. */
 static void find_held_corners(const struct meeting *m, struct corners *to)
@@ -151,9 +140,8 @@ static void contact_meet_thin(const struct meeting *m, struct corners *corners)
 }
 
 /* Fills a contact, in zeroed memory. places: of the corners; they give the row's origin. */
-static void contact_meet_describe_pair(const struct meeting *m,
-                                       const struct contact_candidate *candidate,
-                                       const struct corners *corners, const phys_vec places[4],
+static void contact_meet_describe_pair(const struct meeting *m, const struct corners *corners,
+                                       const phys_vec places[4],
                                        const struct contact_nearest *nearest,
                                        struct flow_contact *to)
 {
@@ -170,7 +158,7 @@ static void contact_meet_describe_pair(const struct meeting *m,
     to->row.solid = m->body != NULL;
     for (int k = 0; k < 2; k++) {
         to->side[k] = m->args->side[turned ? k : k ^ second];
-        to->feature[k] = candidate->of[k ^ second];
+        to->feature[k] = corners->candidate->of[k ^ second];
     }
     for (uint32_t k = 0; k < 4; k++) {
         const uint32_t from = (k + turned) % 4;
@@ -245,29 +233,29 @@ static bool contact_meet_is_inside(const struct contact_nearest *nearest)
 /* True if two features are a contact at the end of the step. A vertex beside a triangle is a
  * contact only if it is too near: its plane would hold up cloth that slides over an edge. An edge
  * that is nearest at its end is such a vertex. */
-static bool presses(const struct meeting *m, const struct contact_candidate *candidate,
-                    const struct corners *corners, const struct contact_nearest *nearest)
+static bool presses(const struct meeting *m, const struct corners *corners,
+                    const struct contact_nearest *nearest)
 {
     const double part = corners->thickness / m->model->contact.thickness;
     if (!(nearest->gap < part * m->reach))
         return false;
     if (m->body)
         return presses_body(m, corners, nearest);
-    if (candidate->kind != CONTACT_EE)
+    if (corners->pair != CONTACT_EE)
         return contact_meet_is_inside(nearest) || nearest->gap < corners->thickness;
     return contact_meet_is_inside(nearest) &&
-           is_ridge(m, 0, candidate->of[0], &nearest->normal, 1) &&
-           is_ridge(m, 1, candidate->of[1], &nearest->normal, -1);
+           is_ridge(m, 0, corners->candidate->of[0], &nearest->normal, 1) &&
+           is_ridge(m, 1, corners->candidate->of[1], &nearest->normal, -1);
 }
 
 /* Appends a pair that is near at the end of the step. */
-static void list_pair(struct meeting *m, const struct contact_candidate *candidate,
-                      struct corners *corners, const struct contact_nearest *nearest)
+static void list_pair(struct meeting *m, struct corners *corners,
+                      const struct contact_nearest *nearest)
 {
     struct flow_near near;
     memset(&near, 0, sizeof near); /* padding, too: lists are compared byte by byte */
     find_held_corners(m, corners);
-    contact_meet_describe_pair(m, candidate, corners, corners->y, nearest, &near.contact);
+    contact_meet_describe_pair(m, corners, corners->y, nearest, &near.contact);
     for (uint32_t k = 0; k < 4; k++)
         near.part[k] = 1;
     flow_findings_add(&m->findings, &near);
@@ -306,8 +294,7 @@ static void find_pushes(const struct meeting *m, const struct corners *corners,
 
 /* Appends a pair that the step drives into each other. The parts stay 1 if no cut helps: the pair
  * fails again in the next look, and the step is given up after the last one. */
-static void fail_pair(struct meeting *m, const struct contact_candidate *candidate,
-                      struct corners *corners)
+static void fail_pair(struct meeting *m, struct corners *corners)
 {
     double part[4] = {1, 1, 1, 1};
     struct contact_nearest nearest;
@@ -315,7 +302,7 @@ static void fail_pair(struct meeting *m, const struct contact_candidate *candida
     memset(&near, 0, sizeof near);
     find_held_corners(m, corners);
     contact_nearest_of(corners->pair, corners->x, &nearest);
-    contact_meet_describe_pair(m, candidate, corners, corners->x, &nearest, &near.contact);
+    contact_meet_describe_pair(m, corners, corners->x, &nearest, &near.contact);
     near.fails = true;
     near.presses = true;
     near.contact.row.firm = contact_row_firm_for(&near.contact.row, gap_ahead(corners, &nearest));
@@ -327,64 +314,75 @@ static void fail_pair(struct meeting *m, const struct contact_candidate *candida
     flow_findings_add(&m->findings, &near);
 }
 
-static enum contact_passing passing_of(const struct meeting *m, const struct corners *corners)
-{
-    if (!m->sweeps)
-        return CONTACT_PASSES;
-    return contact_pass(corners->pair, corners->x, corners->y, corners->thickness, m->reach);
-}
-
-static void look_at_pair(struct meeting *m, const struct contact_candidate *candidate,
-                         struct corners *corners)
+static void look_at_pair(struct meeting *m, struct corners *corners, enum contact_passing passing)
 {
     struct contact_nearest nearest;
-    enum contact_passing passing = passing_of(m, corners);
     if (passing != CONTACT_PASSES_BY)
         contact_meet_thin(m, corners);
     if (passing == CONTACT_MAY_TOUCH && corners->thickness < m->model->contact.thickness)
-        passing = passing_of(m, corners);
+        passing = contact_pass(corners->pair, corners->x, corners->y, corners->thickness, m->reach);
     if (passing == CONTACT_MAY_TOUCH) {
-        fail_pair(m, candidate, corners);
+        fail_pair(m, corners);
         return;
     }
     m->passes++;
     if (passing == CONTACT_PASSES_BY)
         return;
     contact_nearest_of(corners->pair, corners->y, &nearest);
-    if (presses(m, candidate, corners, &nearest))
-        list_pair(m, candidate, corners, &nearest);
+    if (presses(m, corners, &nearest))
+        list_pair(m, corners, &nearest);
 }
 
 /* True if the two sides do not meet, or the block's feature is attached to the body. */
-static bool contact_meet_is_left_out(const struct meeting *m,
-                                     const struct contact_candidate *candidate)
+static bool contact_meet_is_left_out(const struct meeting *m, const struct corners *corners)
 {
-    uint32_t point[4];
-    unsigned char side[4];
-    const enum contact_pair pair =
-        contact_candidate_corners(m->skin, m->skin + 1, candidate, point, side);
-    if (friction_of(m, pair, point, side) < 0)
+    const uint32_t *point = corners->point;
+    const unsigned char *side = corners->side;
+    if (friction_of(m, corners->pair, point, side) < 0)
         return true;
-    const uint32_t n = pair == CONTACT_EE ? 2 : 1, from = side[0] ? n : 0;
+    const uint32_t n = corners->pair == CONTACT_EE ? 2 : 1, from = side[0] ? n : 0;
     return m->body && flow_is_attached(m->attached, side[0] ? 4 - n : n, point + from,
                                        m->args->side[1] - m->flow->tables.n_blocks);
 }
 
-/* Corners of several candidates are brought before the first is looked at: a processor that has
- * just written halves of a vector waits where it reads the whole. */
+/* Brings the corners of a candidate; false: it is not looked at. */
+static bool bring_corners(const struct meeting *m, const struct contact_candidate *candidate,
+                          struct corners *to, struct contact_moving *moving)
+{
+    *to = (struct corners){.candidate = candidate,
+                           .x = moving->x,
+                           .y = moving->y,
+                           .thickness = m->model->contact.thickness};
+    to->pair = moving->pair =
+        contact_candidate_corners(m->skin, m->skin + 1, candidate, to->point, to->side);
+    if ((m->args->again && !candidate_moved(m, to)) ||
+        (m->leaves_out && contact_meet_is_left_out(m, to)))
+        return false;
+    for (unsigned k = 0; k < 4; k++) {
+        const struct contact_side *side = m->side + to->side[k];
+        moving->x[k] = side->x[to->point[k]];
+        moving->y[k] = side->y[to->point[k]];
+    }
+    return true;
+}
+
+/* Corners of several candidates are brought before they are certified at once. */
 void flow_meeting_visit(void *to, uint32_t n, const struct contact_candidate *candidate)
 {
-    enum { AT_ONCE = 16 };
+    enum { AT_ONCE = 32 };
     struct meeting *m = to;
     struct corners corners[AT_ONCE];
-    for (uint32_t i = 0; i < n; i += AT_ONCE) {
-        const uint32_t some = n - i < AT_ONCE ? n - i : AT_ONCE;
+    struct contact_moving moving[AT_ONCE];
+    enum contact_passing passing[AT_ONCE];
+    for (uint32_t i = 0; i < n;) {
+        uint32_t some = 0;
+        for (; i < n && some < AT_ONCE; i++)
+            some += bring_corners(m, candidate + i, corners + some, moving + some);
+        for (uint32_t k = 0; k < some && !m->sweeps; k++)
+            passing[k] = CONTACT_PASSES;
+        if (m->sweeps)
+            contact_pass_all(some, moving, m->model->contact.thickness, m->reach, passing);
         for (uint32_t k = 0; k < some; k++)
-            contact_meet_find_corners(m, candidate + i + k, corners + k);
-        for (uint32_t k = 0; k < some; k++) {
-            const bool seen = m->args->again && !candidate_moved(m, corners + k);
-            if (!seen && (!m->leaves_out || !contact_meet_is_left_out(m, candidate + i + k)))
-                look_at_pair(m, candidate + i + k, corners + k);
-        }
+            look_at_pair(m, corners + k, passing[k]);
     }
 }

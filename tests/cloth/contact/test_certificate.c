@@ -164,6 +164,25 @@ UNIT_LOOP(passes_by, 0, PAIRS_SORTS_N)
     printf("# %s: %d of %d pass by, %d more are as far\n", sort->name, by, n, far);
 }
 
+/* Pairs get the verdict among others that they get alone. */
+UNIT_LOOP(at_once, 0, PAIRS_SORTS_N)
+{
+    enum { MOST = 13 };
+    for (int i = 0, n = pairs_count() / MOST; i < n; i++) {
+        struct contact_moving moving[MOST];
+        enum contact_passing is[MOST];
+        const size_t some = (size_t)i % MOST + 1;
+        for (size_t k = 0; k < some; k++) {
+            moving[k].pair = KINDS[uniform(0, 1) < 0.5];
+            pairs_draw(moving[k].pair, PAIRS_SORTS + _i, moving[k].x, moving[k].y);
+        }
+        contact_pass_all(some, moving, THICKNESS, 0.002, is);
+        for (size_t k = 0; k < some; k++)
+            PAIRS_CHECK(is[k] ==
+                        contact_pass(moving[k].pair, moving[k].x, moving[k].y, THICKNESS, 0.002));
+    }
+}
+
 /* Steps towards each other without end: each is certified after its cut, and the gap stays. */
 UNIT_TEST(again_and_again)
 {

@@ -37,6 +37,7 @@ struct contact_skin {
     const uint32_t *number;       /* n_triangles: which one of the source's it is */
     const uint32_t *id;           /* n_points */
     const uint32_t *joined; /* n_points: the id of one of those that it is sewn to, or its own */
+    uint32_t ids[2];        /* the least and the largest of both; least > largest: no points */
     const uint32_t *block, *row; /* n_points: whose row each is, */
     const uint32_t *cloth;       /* of which cloth; of several the lowest vertex says it, */
     const unsigned char *held;   /* 1: a pin holds it, where it is or as it moves it */

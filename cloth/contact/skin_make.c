@@ -300,12 +300,26 @@ static void put_points(const struct contact_skin_source *from, const struct cont
     memcpy(table + head->cloth, from->cloth, n * sizeof *from->cloth);
 }
 
+static void find_ids(const struct contact_skin_source *from, uint32_t ids[2])
+{
+    const uint32_t *joined = from->joined ? from->joined : from->id;
+    ids[0] = UINT32_MAX;
+    ids[1] = 0;
+    for (uint32_t i = 0; i < from->n_points; i++) {
+        const uint32_t low = from->id[i] < joined[i] ? from->id[i] : joined[i];
+        const uint32_t high = from->id[i] > joined[i] ? from->id[i] : joined[i];
+        ids[0] = low < ids[0] ? low : ids[0];
+        ids[1] = high > ids[1] ? high : ids[1];
+    }
+}
+
 static int put_skin(struct making *making, const struct contact_skin_head *head, char *table,
                     struct cloth_error *error)
 {
     const struct contact_skin_source *from = making->from;
     memset(table, 0, head->bytes);
     memcpy(table, head, sizeof *head);
+    find_ids(from, ((struct contact_skin_head *)(void *)table)->ids);
     put_points(from, head, table);
     making->corner = (void *)(table + head->corner);
     making->edge = (void *)(table + head->edge);
@@ -362,6 +376,7 @@ struct contact_skin contact_skin_open(const void *table)
                                  .number = (const void *)(at + head->number),
                                  .id = (const void *)(at + head->id),
                                  .joined = (const void *)(at + head->joined),
+                                 .ids = {head->ids[0], head->ids[1]},
                                  .block = (const void *)(at + head->block),
                                  .row = (const void *)(at + head->row),
                                  .cloth = (const void *)(at + head->cloth),

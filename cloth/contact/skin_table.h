@@ -62,6 +62,7 @@ struct contact_skin_head {
     uint64_t corner, edge, beside, vertex, number, id, joined, block, row, cloth, held, child, leaf;
     uint64_t around, triangle_bits, edge_bits, vertex_bits;
     uint64_t loop, along, n_along; /* n_along: there is room for */
+    uint32_t ids[2];
 };
 /* Places of a skin of these counts. */
 void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head *head);
@@ -111,6 +112,12 @@ PHYS_INLINE const struct contact_boxes *contact_boxes_groups(const void *boxes)
 int contact_loops_make(const struct contact_skin *skin, uint64_t room, struct contact_loop *loop,
                        uint32_t *along, struct cloth_error *error);
 
+/* A child of a node; of node CONTACT_ALL, all triangles. */
+enum { CONTACT_ALL = INT32_MAX };
+struct contact_part {
+    uint32_t node, lane;
+};
+
 /* Features of a leaf, a bit each. */
 struct contact_features {
     uint32_t vertices, triangles, edges;
@@ -119,10 +126,10 @@ struct contact_features {
 /* Heights of a leaf's points along a direction, m, at the begin and at the end of a step. */
 struct contact_heights {
     double low[2], high[2];
-    double at[CONTACT_SKIN_POINTS][2];
+    double at[2][CONTACT_SKIN_POINTS] __attribute__((aligned(32)));
 };
 
-/* Two leaves as seen along the normals of the first (skin_slab.c). */
+/* Two leaves as seen along the normals of the first. */
 struct contact_slab {
     uint32_t node, lane; /* the first leaf is that child */
     bool is;             /* its normals have a middle, n */
@@ -133,16 +140,36 @@ struct contact_slab {
 };
 /* The distance, m, beyond which features are surely out of a reach (m). */
 double contact_slab_most(const struct contact_side *a, const struct contact_side *b, double reach);
-/* Makes one of the first leaf, whose `most` stays. Other leaves are then tried one by one. */
-void contact_slab_begin(const struct contact_side *side, uint32_t node, uint32_t lane,
-                        struct contact_slab *slab);
-/* True if a second leaf is out of reach of the first in the whole step. */
-bool contact_slab_parts(const struct contact_side *side, const struct contact_leaf *leaf,
-                        struct contact_slab *slab);
-/* Clears the bits of features of leaf k, 0 or 1, that are out of reach of all of the other one.
- * There are normals (slab->is). */
-void contact_slab_keep(const struct contact_slab *slab, int k, const struct contact_side *side,
-                       const struct contact_leaf *leaf, struct contact_features *bits);
+
+/* The widening of boxes, m. */
+struct contact_widening {
+    contact_lanes below[3], above[3];
+};
+
+/* Two skins whose leaves are met. */
+struct contact_leaves {
+    const struct contact_side *side[2];
+    const struct contact_boxes *node[2], *group[2];
+    struct contact_widening by, back; /* of boxes of the first, of the second */
+    bool self;                        /* both are one */
+    struct contact_slab slab;         /* of the first leaf that was met last */
+};
+
+/* Features of a first leaf that meet some of a second: a bit each, and those by each. */
+struct contact_met {
+    uint32_t is, bits[CONTACT_SKIN_POINTS];
+};
+/* Vertices meet triangles, and triangles vertices. */
+struct contact_met_leaf {
+    struct contact_met vertices, triangles, edges;
+};
+/* Finds the features of two leaves that may be near to each other. False: the leaves are out of
+ * reach in the whole step. The second is for a leaf with itself: its vertices, and each two edges
+ * once. (skin_leaves.c) */
+bool contact_leaves_meet(struct contact_leaves *leaves, struct contact_part a,
+                         struct contact_part b, struct contact_met_leaf *to);
+void contact_leaf_meets_itself(const struct contact_leaves *leaves, struct contact_part part,
+                               struct contact_met_leaf *to);
 
 /* A part of a skin in a step. */
 struct contact_patch {

@@ -93,6 +93,19 @@ uint32_t contact_moved_n(const void *boxes);
 /* The box around x and y of all points, in the room, m; low > high: there are no points. */
 void contact_boxes_root(const void *boxes, double low[3], double high[3]);
 
+/* Some leaves of the skin's tree that follow each other: their triangles, their vertices, and the
+ * points at all of these. There are so many bunches; some may have nothing. (skin_bunch.c) */
+struct contact_bunch {
+    uint32_t triangle, vertex; /* the first ones */
+    uint32_t n_triangles, n_vertices, n_points;
+    const uint32_t *point;
+};
+uint32_t contact_bunches(const struct contact_skin *skin);
+void contact_bunch_of(const struct contact_skin *skin, uint32_t number, struct contact_bunch *to);
+/* The box, m, around a bunch with points that go from x to y, and on by as much again. */
+void contact_bunch_box(const struct contact_bunch *bunch, const phys_vec *x, const phys_vec *y,
+                       double low[3], double high[3]);
+
 /* Two features that may be near to each other, by their numbers in their skins. kind: CONTACT_VT: a
  * vertex of the first skin, a triangle of the second; CONTACT_TV: a triangle of the first, a vertex
  * of the second; CONTACT_EE. */

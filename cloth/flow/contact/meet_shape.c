@@ -13,9 +13,6 @@
 
 #include <math.h>
 
-/* Triangles, or vertices, that follow each other and are left out at once where a box around all of
- * them is out of reach. */
-enum { GROUP = 32 };
 enum { APPROACHES = 8 }; /* steps of a search, which seldom takes more than two */
 
 struct shape_meeting {
@@ -302,21 +299,13 @@ static void look_at_vertices(struct shape_meeting *m)
 
 /* ---- All of a skin ---- */
 
-/* True if n points are out of the shape's reach in the step and, if they and the shape move on as
- * in this step, in the next one. So is all that lies between them. */
-static bool are_apart(const struct shape_meeting *m, uint32_t n, const uint32_t *point)
+/* True if points are out of the shape's reach in the step and, if they and the shape move on as in
+ * this step, in the next one. So is all that lies between them. */
+static bool are_apart(const struct shape_meeting *m, const struct contact_bunch *bunch)
 {
-    phys_vec low = m->x[point[0]], high = low;
-    for (uint32_t i = 0; i < n; i++) {
-        const phys_vec x = m->x[point[i]], y = m->y[point[i]], at[3] = {x, y, y + (y - x)};
-        for (int k = 0; k < 3; k++)
-            for (int c = 0; c < 3; c++) {
-                low[c] = at[k][c] < low[c] ? at[k][c] : low[c];
-                high[c] = at[k][c] > high[c] ? at[k][c] : high[c];
-            }
-    }
-    return contact_solid_apart(&m->solid, (const double[3]){low[0], low[1], low[2]},
-                               (const double[3]){high[0], high[1], high[2]}, m->reach + m->way);
+    double low[3], high[3];
+    contact_bunch_box(bunch, m->x, m->y, low, high);
+    return contact_solid_apart(&m->solid, low, high, m->reach + m->way);
 }
 
 /* True for features of n points that the last look at the step has seen as they are. */
@@ -328,21 +317,23 @@ static bool was_seen(const struct shape_meeting *m, uint32_t n, const uint32_t *
     return !moved;
 }
 
-/* Looks at all triangles, or vertices, that may be in reach, if they were not seen. n_corners:
- * points of each. */
-static void look_at_near(struct shape_meeting *m, uint32_t n, uint32_t n_corners,
-                         const uint32_t *point,
+/* Looks at all triangles, or vertices, that may be in reach, if they were not seen. */
+static void look_at_near(struct shape_meeting *m, bool vertices,
                          void (*look)(struct shape_meeting *m, uint32_t number))
 {
-    for (uint32_t i = 0; i < n; i += GROUP) {
-        const uint32_t some = n - i < GROUP ? n - i : GROUP;
-        const uint32_t *first = point + (size_t)n_corners * i;
-        if (was_seen(m, n_corners * some, first) || are_apart(m, n_corners * some, first))
+    const uint32_t n = vertices ? 1 : 3;
+    const uint32_t *point = vertices ? m->skin.vertex : *m->skin.corner;
+    for (uint32_t i = 0; i < contact_bunches(&m->skin); i++) {
+        struct contact_bunch bunch;
+        contact_bunch_of(&m->skin, i, &bunch);
+        if (!bunch.n_points || was_seen(m, bunch.n_points, bunch.point) || are_apart(m, &bunch))
             continue;
-        for (uint32_t k = 0; k < some; k++) {
-            const uint32_t *at = first + n_corners * k;
-            if (!was_seen(m, n_corners, at) && !are_left_out(m, n_corners, at))
-                look(m, i + k);
+        const uint32_t from = vertices ? bunch.vertex : bunch.triangle;
+        const uint32_t end = from + (vertices ? bunch.n_vertices : bunch.n_triangles);
+        for (uint32_t k = from; k < end; k++) {
+            const uint32_t *at = point + (size_t)n * k;
+            if (!was_seen(m, n, at) && !are_left_out(m, n, at))
+                look(m, k);
         }
     }
 }
@@ -358,14 +349,14 @@ static void list_still_triangle(struct shape_meeting *m, uint32_t triangle)
 static void look_at_places(struct shape_meeting *m)
 {
     if (!m->shape->body)
-        look_at_near(m, m->skin.n_triangles, 3, *m->skin.corner, list_still_triangle);
+        look_at_near(m, false, list_still_triangle);
     look_at_vertices(m);
 }
 
 static void meet_shape_look_at(struct shape_meeting *m)
 {
-    look_at_near(m, m->skin.n_triangles, 3, *m->skin.corner, look_at_triangle);
-    look_at_near(m, m->skin.n_vertices, 1, m->skin.vertex, meet_shape_look_at_vertex);
+    look_at_near(m, false, look_at_triangle);
+    look_at_near(m, true, meet_shape_look_at_vertex);
 }
 
 /* Keeps items of the list that did not move, as in meet.c. */

@@ -273,6 +273,42 @@ UNIT_TEST(lies_anywhere)
     ck_assert(n_seen == seen && order == first);
 }
 
+/* The points where bunches go, and on by as much again, are in their boxes. */
+static void check_box(const struct skin *skin, const struct contact_bunch *bunch, uint32_t point)
+{
+    double low[3], high[3];
+    contact_bunch_box(bunch, skin->x, skin->y, low, high);
+    for (int c = 0; c < 3; c++) {
+        const double from = skin->x[point][c], to = skin->y[point][c];
+        const double least = fmin(from, to + (to - from)), most = fmax(from, to + (to - from));
+        must(low[c] <= least && high[c] >= most);
+    }
+}
+
+/* Each triangle and each vertex is in one bunch, in their order. */
+UNIT_TEST(bunches)
+{
+    random_seed = 7;
+    make(5, PARTS);
+    for (uint32_t p = 0; p < PARTS; p++) {
+        const struct contact_skin *skin = &skins[p].skin;
+        uint32_t triangles = 0, vertices = 0;
+        for (uint32_t i = 0; i < contact_bunches(skin); i++) {
+            struct contact_bunch bunch;
+            contact_bunch_of(skin, i, &bunch);
+            ck_assert(bunch.triangle == triangles && bunch.vertex == vertices);
+            triangles += bunch.n_triangles;
+            vertices += bunch.n_vertices;
+            for (uint32_t k = bunch.triangle; k < triangles; k++)
+                for (int c = 0; c < 3; c++)
+                    check_box(skins + p, &bunch, skin->corner[k][c]);
+            for (uint32_t k = bunch.vertex; k < vertices; k++)
+                check_box(skins + p, &bunch, skin->vertex[k]);
+        }
+        ck_assert(triangles == skin->n_triangles && vertices == skin->n_vertices);
+    }
+}
+
 UNIT_TEST(roots)
 {
     random_seed = 5;

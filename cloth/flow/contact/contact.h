@@ -36,7 +36,8 @@ struct flow_near {
     struct flow_contact contact;
     bool fails, presses; /* of those that fail: it is to be a contact of the next solve */
     double part[4];      /* then: how far each corner may go, */
-    double push[4];      /* and what would part them, m, along the row's normal */
+    double along[4];     /* and where it ends, m, along the normal that it has in the pair; of a
+                          * shape: how far it is to be pushed along the row's normal */
 };
 
 /* A list in an object of bytes that changes its size: the head, then the items. */

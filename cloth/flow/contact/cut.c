@@ -8,6 +8,8 @@
 #include "cloth/flow/contact/cut_run.h"
 #include "cloth/flow/run/step.h"
 
+#include "cloth/contact/push.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,28 +64,59 @@ FLOW_KERNEL(push, FLOW_COLLIDE, struct cut_args,
             (R(table), R(kept_x), RW(x), RW(v), W(halo_x), W(halo_v), SUM(cut_counts),
              REST_R(meetings)))
 
+/* Finds the pushes that part a pair where the step ends, m, along the row's normal, as that is
+ * where the step begins. They are 0 if none do. */
+static void part_pair(const struct flow_near *near, double thickness, double push[4])
+{
+    const struct flow_contact *contact = &near->contact;
+    const bool turned = contact->kind == CONTACT_TV;
+    struct contact_pushed pushed = {.n = 4,
+                                    .first = contact->kind == CONTACT_EE ? 2 : 1,
+                                    .gap = contact_push_gap(contact->row.gap, thickness)};
+    double of[4] = {0};
+    memcpy(push, near->along, sizeof near->along);
+    if (contact->kind == FLOW_CONTACT_SHAPE)
+        return;
+    for (unsigned k = 0; k < 4; k++) { /* corners of a body have no rows, and are held */
+        const unsigned from = (k + turned) % 4;
+        pushed.along[from] = near->along[k];
+        pushed.held |= (k < contact->at.n ? contact->at.held >> k & 1u : 1u) << from;
+    }
+    contact_push_apart(&pushed, of);
+    for (unsigned k = 0; k < 4; k++)
+        push[k] = (turned ? -1 : 1) * of[(k + turned) % 4];
+}
+
 /* Adds the push of a corner to that of its row. A row of several pairs goes as far along the normal
  * of each as that asks for. */
-static void add_push(const struct flow_near *near, uint32_t k, phys_vec *push)
+static void add_push(const struct flow_near *near, double by, phys_vec *push)
 {
-    const double sign = near->push[k] < 0 ? -1 : 1;
+    const double sign = by < 0 ? -1 : 1;
     const phys_vec normal = sign * near->contact.row.normal;
-    const double lacks = sign * near->push[k] - phys_dot(push, &normal);
+    const double lacks = sign * by - phys_dot(push, &normal);
     *push += fmax(lacks, 0) * normal;
 }
 
-static void find_pushes(const struct push_fields *on, phys_vec *push)
+/* Adds the pushes of a pair to the rows of the block. */
+static void add_pair(const struct push_fields *on, const struct flow_near *near, double thickness,
+                     phys_vec *push)
 {
-    const uint32_t block = on->args->block;
+    const struct flow_tie_corners *corners = &near->contact.at;
+    double by[4];
+    part_pair(near, thickness, by);
+    for (uint32_t k = 0; k < corners->n; k++)
+        if (corners->block[k] == on->args->block && by[k] != 0)
+            add_push(near, by[k], push + corners->row[k]);
+}
+
+static void find_pushes(const struct push_fields *on, double thickness, phys_vec *push)
+{
     for (size_t at = 0; at < on->n_meetings; at++) {
         const struct flow_list *list = on->meetings[at].data;
         const struct flow_near *near = (const struct flow_near *)(list + 1);
-        for (uint64_t i = 0; i < list->n; i++) {
-            const struct flow_tie_corners *corners = &near[i].contact.at;
-            for (uint32_t k = 0; near[i].fails && k < corners->n; k++)
-                if (corners->block[k] == block && near[i].push[k] != 0)
-                    add_push(near + i, k, push + corners->row[k]);
-        }
+        for (uint64_t i = 0; i < list->n; i++)
+            if (near[i].fails)
+                add_pair(on, near + i, thickness, push);
     }
 }
 
@@ -98,7 +131,7 @@ static int push_body(const duite_call *call, const struct push_fields *on)
         return duite_fail(call, FLOW_NO_MEMORY, "out of memory for the pushes of a block");
     on->cut_counts[FLOW_CUT_STOP] += flow_stop_is_asked(flow_of(call));
     memset(push, 0, (table.n + 1) * sizeof *push);
-    find_pushes(on, push);
+    find_pushes(on, thickness, push);
     for (uint32_t i = 0; i < table.n; i++) {
         const phys_vec to = on->x[i] + push[i];
         if (phys_dot(push + i, push + i) > 0)

@@ -6,7 +6,6 @@
 #include "cloth/flow/contact/meeting.h"
 
 #include "cloth/contact/certificate.h"
-#include "cloth/contact/push.h"
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/mode.h"
 
@@ -270,28 +269,6 @@ static double gap_ahead(const struct corners *corners, const struct contact_near
     return nearest->gap + phys_dot(&nearest->normal, &way);
 }
 
-/* Finds the pushes that part a pair at the step's end, along the normal of its begin. They stay 0
- * if none do. */
-static void find_pushes(const struct meeting *m, const struct corners *corners,
-                        const struct contact_nearest *nearest, struct flow_near *near)
-{
-    const bool turned = contact_meet_is_turned(m, corners);
-    struct contact_pushed pushed = {
-        .n = 4,
-        .first = corners->pair == CONTACT_EE ? 2 : 1,
-        .held = corners->held,
-        .gap = contact_push_gap(nearest->gap, m->model->contact.thickness)};
-    double push[4];
-    for (int k = 0; k < 4; k++) {
-        const phys_vec from = corners->y[k] - corners->y[0];
-        pushed.along[k] = phys_dot(&nearest->normal, &from);
-    }
-    if (!contact_push_apart(&pushed, push))
-        return;
-    for (uint32_t k = 0; k < 4; k++)
-        near->push[k] = (turned ? -1 : 1) * push[(k + turned) % 4];
-}
-
 /* Appends a pair that the step drives into each other. The parts stay 1 if no cut helps: the pair
  * fails again in the next look, and the step is given up after the last one. */
 static void fail_pair(struct meeting *m, struct corners *corners)
@@ -310,7 +287,11 @@ static void fail_pair(struct meeting *m, struct corners *corners)
                       part);
     for (uint32_t k = 0; k < 4; k++)
         near.part[k] = part[(k + contact_meet_is_turned(m, corners)) % 4];
-    find_pushes(m, corners, &nearest, &near);
+    for (uint32_t k = 0; k < 4; k++) {
+        const uint32_t from = (k + contact_meet_is_turned(m, corners)) % 4;
+        const phys_vec way = corners->y[from] - corners->y[0];
+        near.along[k] = phys_dot(&nearest.normal, &way);
+    }
     flow_findings_add(&m->findings, &near);
 }
 

@@ -121,7 +121,7 @@ static void push_place(const struct shape_meeting *m, uint32_t n, const phys_vec
     for (uint32_t k = 0; k < n; k++) {
         const phys_vec from = y[k] - place;
         const double gap = on->gap + phys_dot(&on->normal, &from);
-        near->push[k] = near->contact.at.held >> k & 1 ? 0 : fmax(apart - gap, 0);
+        near->along[k] = near->contact.at.held >> k & 1 ? 0 : fmax(apart - gap, 0);
     }
 }
 

@@ -257,6 +257,19 @@ module duite
             integer(c_int), value :: rank
             type(*), intent(in), optional :: values(*)
         end function
+        integer(c_int) function duite_split(rt, object, n, counts, parts) bind(C, name='duite_split')
+            import :: c_int, c_ptr, c_size_t, duite_object
+            type(c_ptr), value :: rt
+            type(duite_object), value :: object
+            integer(c_size_t), value :: n
+            integer(c_size_t), intent(in) :: counts(*)
+            type(duite_object), intent(out) :: parts(*)
+        end function
+        integer(c_int) function duite_join(rt, object) bind(C, name='duite_join')
+            import :: c_int, c_ptr, duite_object
+            type(c_ptr), value :: rt
+            type(duite_object), value :: object
+        end function
         integer(c_int) function duite_hint(rt, object, weight, n, neighbours, edge_weights) bind(C, name='duite_hint')
             import :: c_int, c_ptr, c_size_t, c_double, duite_object
             type(c_ptr), value :: rt

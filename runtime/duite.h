@@ -621,6 +621,22 @@ int duite_get_at(duite *rt, duite_object object, int rank, void *values);
 int duite_acquire(duite *rt, duite_object object, duite_mode mode, void **data);
 int duite_release(duite *rt, duite_object object);
 
+/* Parts: the object becomes n objects, one after the other, of counts[i] elements, at least 1 each
+ * and together all. Tasks may write each of them, without waiting for the others. Meanwhile only
+ * the parts may be named. They live where the object does and in its bytes, so nothing is copied,
+ * and duite_param.data is aligned as the elements before a part leave it; a value that comes from
+ * elsewhere (duite_set, another rank) is copied at the join. duite_join makes the object whole
+ * again; its parts are gone. Both stand in fork order like a task that writes the object, and count
+ * as forks. Parts may be split again, and are joined first. A part that is poisoned at the join
+ * poisons the object. A body may split objects that it made or holds by rwp; what it has not joined
+ * when it ends is joined then. Collective; return at once; in a body local. Errors: DUITE_E_OBJECT
+ * (also of a join: the object is not split, or a part is), DUITE_E_ARGUMENT (no parts, nowhere to
+ * put them, counts that do not add up), DUITE_E_SIZE (the object changes its size), DUITE_E_MEMORY;
+ * in a body DUITE_E_RIGHT; DUITE_E_STATE for duite_free of a part. */
+int duite_split(duite *rt, duite_object object, size_t n, const size_t *counts,
+                duite_object *parts);
+int duite_join(duite *rt, duite_object object);
+
 /* Tells mappings about the object: its share of work, and the bytes it exchanges with n existing
  * neighbours (edge_weights NULL: 1 each). An edge may be given from either end; weights given twice
  * add up. A second hint replaces the weight and adds edges. Hints count until the object's home is

@@ -27,7 +27,7 @@ RUNTIME_PAGES = \
 	runtime/man/duite_param.3 runtime/man/duite_prefetch.3 runtime/man/duite_random.3 runtime/man/duite_rank.3 \
 	runtime/man/duite_ranks.3 runtime/man/duite_ready.3 runtime/man/duite_replay.3 runtime/man/duite_replay_while.3 \
 	runtime/man/duite_request.3 runtime/man/duite_resize.3 runtime/man/duite_scheduler.3 runtime/man/duite_scheduler_find.3 \
-	runtime/man/duite_scheduler_names.3 runtime/man/duite_set.3 runtime/man/duite_set_at.3 runtime/man/duite_set_sized.3 runtime/man/duite_start.3 \
+	runtime/man/duite_scheduler_names.3 runtime/man/duite_set.3 runtime/man/duite_set_at.3 runtime/man/duite_split.3 runtime/man/duite_join.3 runtime/man/duite_set_sized.3 runtime/man/duite_start.3 \
 	runtime/man/duite_stop.3 runtime/man/duite_task_graph.3 runtime/man/duite_task_options.3 runtime/man/duite_threads.3 \
 	runtime/man/duite_trace_end.3 runtime/man/duite_trace_step.3 runtime/man/duite_type.3 runtime/man/duite_version.3 \
 	runtime/man/duite_wait.3

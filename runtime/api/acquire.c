@@ -72,11 +72,11 @@ static void acquire_over(struct task_graph *graph, const void *args,
 static const duite_kernel turn_kernels[] = {TURN(DUITE_R, "duite_acquire r"),
                                             TURN(DUITE_W, "duite_acquire w"),
                                             TURN(DUITE_RW, "duite_acquire rw")};
-enum { TURNS = sizeof turn_kernels / sizeof *turn_kernels };
+enum { TURNS = sizeof turn_kernels / sizeof *turn_kernels, OWN = TURNS + 2 };
 
 void api_watch_turns(struct task_graph *graph)
 {
-    graph->own_kernels = graph->n_kernels < TURNS ? graph->n_kernels : graph->n_kernels - TURNS;
+    graph->own_kernels = graph->n_kernels < OWN ? graph->n_kernels : graph->n_kernels - OWN;
     graph->own_over = acquire_over;
 }
 
@@ -85,13 +85,16 @@ const duite_kernel **api_add_kernels(const duite_kernel *const *kernels)
     size_t n = 0;
     while (kernels[n])
         n++;
-    const duite_kernel **all = base_alloc((n + TURNS + 1) * sizeof *all);
+    const duite_kernel **all = base_alloc((n + OWN + 1) * sizeof *all);
     for (size_t i = 0; all && i < n; i++)
         all[i] = kernels[i];
     for (size_t i = 0; all && i < TURNS; i++)
         all[n + i] = &turn_kernels[i];
-    if (all)
-        all[n + TURNS] = NULL;
+    if (all) {
+        all[n + TURNS] = &task_split_kernel;
+        all[n + TURNS + 1] = &task_join_kernel;
+        all[n + OWN] = NULL;
+    }
     return all;
 }
 
@@ -156,7 +159,7 @@ static int turn_come_home(duite *rt, struct api_turn *turn, duite_mode mode)
     struct data_object *object = data_object_here(&rt->graph.table, turn->object);
     struct data_adopted *memory = object ? object->memory : NULL;
     struct data_packet *packet = turn->version->packet;
-    if (!memory || packet == &memory->packet)
+    if (!memory || memory->packet.elsewhere == data_nowhere || packet == &memory->packet)
         return DUITE_OK;
     work_until(rt->pool,
                &(struct work_why){"duite_acquire", "earlier tasks on adopted memory", NULL},

@@ -132,6 +132,25 @@ int api_body_set(struct duite_call_private *body, duite_object object, const voi
     return body_remember(body, code);
 }
 
+int api_body_split(struct duite_call_private *body, duite_object object, size_t n,
+                   const size_t *counts, const duite_object *parts)
+{
+    int code = body_enter(body, "duite_split");
+    if (!code && !parts)
+        code = base_error(DUITE_E_ARGUMENT, "duite_split: nowhere to put the parts");
+    if (!code)
+        code = task_check_call(body, "duite_split", object, DUITE_RWP);
+    if (!code)
+        code = task_split(body->graph, body, body->worker, object, n, counts);
+    return body_remember(body, code);
+}
+
+int api_body_join(struct duite_call_private *body, duite_object object)
+{
+    const int code = body_enter(body, "duite_join");
+    return body_remember(body, code ? code : task_join(body->graph, body, body->worker, object));
+}
+
 /* `text` becomes the task's message if the body returns the code. */
 BODY_ERROR body_too_deep(struct duite_call_private *body, const char *text)
 {

@@ -173,6 +173,9 @@ int api_body_set(struct duite_call_private *body, duite_object object, const voi
 int api_body_get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
                  const char *call);
 int api_body_wait(struct duite_call_private *body);
+int api_body_split(struct duite_call_private *body, duite_object object, size_t n,
+                   const size_t *counts, const duite_object *parts);
+int api_body_join(struct duite_call_private *body, duite_object object);
 
 #pragma GCC visibility pop
 

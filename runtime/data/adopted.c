@@ -9,6 +9,8 @@
 #include <search.h>
 #include <string.h>
 
+char data_nowhere[1];
+
 static pthread_mutex_t tree_lock = PTHREAD_MUTEX_INITIALIZER;
 static void *tree; /* struct data_adopted, by place */
 
@@ -71,6 +73,10 @@ static void adopted_give_back(struct data_adopted *adopted)
     if (adopted->last)
         memcpy(values, data_payload(adopted->last), adopted->packet.bytes);
     data_packet_free(adopted->last);
+    if (adopted->back) {
+        adopted->back(adopted);
+        return;
+    }
     pthread_mutex_lock(&tree_lock);
     tdelete(adopted, &tree, adopted_compare);
     pthread_mutex_unlock(&tree_lock);

@@ -123,12 +123,27 @@ int data_object_new_at(struct data_table *table, duite_type type, size_t count, 
     return DUITE_OK;
 }
 
+int data_object_new_beside(struct data_table *table, duite_type type, size_t count, uint32_t leader,
+                           duite_object *name)
+{
+    const int code = data_object_new(table, type, count, count, false, name);
+    if (code)
+        return code;
+    table->n_unsettled--;
+    data_object_join(table, name->slot, leader);
+    return DUITE_OK;
+}
+
 struct data_object *data_object_missing(const struct data_table *table, duite_object name)
 {
     const struct data_object *object =
         name.slot < table->n_slots ? &table->object[name.slot] : NULL;
     if (!name.slot)
         base_error(DUITE_E_OBJECT, "the object names nothing: was it made?");
+    else if (object && object->split && name.generation + 1 == object->generation)
+        base_error(DUITE_E_OBJECT,
+                   "object %u.%u is split: until duite_join only its parts may be named", name.slot,
+                   name.generation);
     else if (object && name.generation < object->generation)
         base_error(DUITE_E_OBJECT, "object %u.%u was freed", name.slot, name.generation);
     else

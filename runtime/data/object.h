@@ -19,7 +19,7 @@ struct data_object {
     bool sized;          /* its versions differ in size */
     bool fixed;          /* a task of a fixed kernel ran for it, or its memory is the program's:
                             its home does not change */
-    bool adopted;        /* its memory is the program's */
+    bool adopted;        /* its memory is the program's, or another object's */
     uint64_t number;     /* of the current version: writes so far */
     struct data_version *current; /* this rank's copy of the current version, or NULL */
     uint64_t leaves;              /* contributions forked since the last other access;
@@ -32,12 +32,14 @@ struct data_object {
     /* The second line. */
     struct data_sum *sum; /* those that concern this rank, or NULL */
     duite_type type;
+    bool part;                   /* it is one of another object (task/parts.c) */
     size_t count, bytes;         /* at first, when all elements are zero */
     size_t max, room;            /* elements and bytes of the largest version */
-    struct data_adopted *memory; /* at home, of an adopted one */
-    uint64_t : 64; /* of two lines: in the table, which begins at one, each begins at one */
+    struct data_adopted *memory; /* at home, of an adopted one, or of a part */
+    struct task_split *split;    /* into its parts; NULL: it is whole */
 };
-_Static_assert(sizeof(struct data_object) == 2 * BASE_LINE, "objects begin at cache lines");
+_Static_assert(sizeof(struct data_object) == 2 * BASE_LINE,
+               "in the table, which begins at a cache line, each object does");
 
 /* `leaves` of a free slot: a slot without leaves is thus in use, and needs no other check. */
 #define DATA_VACANT UINT64_C(1)
@@ -88,6 +90,9 @@ int data_object_new(struct data_table *table, duite_type type, size_t count, siz
 /* Makes an object of a fixed size whose home is settled. Errors: as above. */
 int data_object_new_at(struct data_table *table, duite_type type, size_t count, int home,
                        duite_object *name);
+/* The same beside a leader that has a home. */
+int data_object_new_beside(struct data_table *table, duite_type type, size_t count, uint32_t leader,
+                           duite_object *name);
 
 /* Zeroes the object in two parts: for all its bytes at once gcc uses a string instruction, which
  * starts more slowly than these few words are written. */

@@ -61,6 +61,8 @@ task_frame_call(struct task_frame *frame, struct task *task, const void *args,
                    : kernel->body(&frame->call);
     task_innermost = body->outer;
     *scope = body->scope;
+    if (*scope && task_nest_of(*scope)->splits)
+        task_join_rest(body);
     if (!(code | body->refused | body->remembered))
         return NULL;
     return task_body_failure(body, code ? code : body->refused ? body->refused : body->remembered);

@@ -47,7 +47,10 @@ void task_held_over(struct task_graph *graph, struct worker *worker, struct task
     const struct data_failure *failure = atomic_load(held_failure(task));
     if (failure)
         task_poison_outputs(task, failure);
-    if (task->kernel >= graph->own_kernels)
+    const duite_kernel *kernel = graph->kernels[task->kernel];
+    if (kernel == &task_join_kernel)
+        task_join_over(task_rest(task, task->n), failure);
+    else if (task->kernel >= graph->own_kernels && kernel != &task_split_kernel)
         graph->own_over(graph, task_rest(task, task->n), failure);
     task_finish(graph, worker, task);
 }

@@ -172,6 +172,8 @@ void task_graph_stop(struct task_graph *graph)
         struct data_object *object = &graph->table.object[slot];
         if (object->memory)
             task_leave_now(object);
+        if (object->split)
+            task_split_drop(object);
         task_forget(graph, NULL, object);
         if (object->sum)
             data_sum_free(object->sum);

@@ -67,6 +67,13 @@ void task_forget(struct task_graph *graph, struct worker *worker, struct data_ob
 int task_leave(struct task_graph *graph, struct worker *worker, struct data_object *object);
 void task_run_leave(struct task *task);
 void task_leave_now(struct data_object *object);
+
+/* Parts. task_join_over: the task of a join is over, with or without its body. task_join_rest:
+ * joins what a body that ends has split. task_split_drop: at stop, of an object that was not
+ * joined; its parts leave on their own. */
+void task_join_over(const void *args, const struct data_failure *failure);
+void task_join_rest(struct duite_call_private *body);
+void task_split_drop(struct data_object *object);
 /* A version of the object with these bytes (values NULL: zeros), for the object alone to hold. NULL
  * without memory. */
 struct data_version *task_value_version(const struct data_object *object, const void *values,

@@ -15,6 +15,10 @@ int task_free_object(struct task_scope *scope, struct worker *worker, duite_obje
     struct data_object *object = task_find_object(scope, name, &right);
     if (!object)
         return DUITE_E_OBJECT;
+    if (object->part)
+        return base_error(DUITE_E_STATE,
+                          "duite_free: object %u.%u is a part of another one: duite_join ends it",
+                          name.slot, name.generation);
     if (!scope->depth) {
         task_mix(graph, task_name_bits(name));
         task_mixed(graph, COMM_CALLED, COMM_CALLED_FREE);

@@ -86,6 +86,7 @@ static inline struct task_scope *nest_new(const struct task *task, size_t n)
     nest->vacant = nest->first_read = 0;
     nest->local = (void *)((char *)nest + exits);
     nest->moved = false;
+    nest->splits = 0;
     nest->size = size;
     return &nest->scope;
 }

@@ -33,6 +33,7 @@ struct task_nest {
     struct data_object *local; /* generation 0: freed, and `hint` links it to the next of these;
                                   else `hint` is 0, or bytes from here to its cell */
     bool moved;                /* `local` is a block of its own */
+    uint32_t splits;           /* objects that are split now */
     size_t size;               /* of this block */
     struct task_exit exit[];   /* n_lent; then the first `room` of local, and the cells */
 };

@@ -102,6 +102,8 @@ void make_free(struct maker *m, unsigned place)
 {
     struct make_scope *scope = m->scope;
 
+    if (scope->part[scope->live[place]])
+        return;
     make_push(m, PROG_FREE, scope->live[place]);
     memmove(&scope->live[place], &scope->live[place + 1],
             (--scope->n_live - place) * sizeof *scope->live);
@@ -237,6 +239,62 @@ static void make_turns(struct maker *m)
         make_push(m, PROG_RELEASE, second);
 }
 
+/* Takes an object out of the list of those alive. */
+static void make_dead(struct make_scope *scope, unsigned object)
+{
+    unsigned place = 0;
+
+    while (scope->live[place] != object)
+        place++;
+    memmove(&scope->live[place], &scope->live[place + 1],
+            (--scope->n_live - place) * sizeof *scope->live);
+}
+
+/* Two or three parts; the last one gets what the others leave. */
+static void make_split(struct maker *m)
+{
+    struct make_scope *scope = m->scope;
+    const unsigned whole = make_draw_object(m);
+    const struct prog_object *object = &scope->object[whole];
+    const unsigned n = object->count > 2 ? 2 + make_below(m, 2) : 2;
+    size_t left = object->count;
+
+    if (object->max || left < 2 || m->n_splits == MAX_SPLITS || scope->n + n > PROG_MAX_TABLE ||
+        scope->n_live + n > MAX_LIVE)
+        return;
+    m->split[m->n_splits++] = *m->n_ops;
+    struct prog_op *op = make_push(m, PROG_SPLIT, whole);
+
+    make_dead(scope, whole);
+    for (op->n = 0; op->n < n; op->n++) {
+        const unsigned after = n - op->n - 1, part = scope->n++;
+        const size_t count = after ? 1 + make_below(m, (unsigned)(left - after)) : left;
+
+        left -= count;
+        op->objects[op->n] = part;
+        scope->object[part] = (struct prog_object){object->type, count, 0, -1, 0};
+        scope->right[part] = DUITE_RWP;
+        scope->made[part] = scope->part[part] = 1;
+        scope->live[scope->n_live++] = part;
+    }
+}
+
+static void make_join(struct maker *m)
+{
+    struct make_scope *scope = m->scope;
+
+    if (!m->n_splits)
+        return;
+    const struct prog_op *split = &m->ops[m->split[--m->n_splits]];
+    struct prog_op *op = make_push(m, PROG_JOIN, split->object);
+
+    op->n = split->n;
+    memcpy(op->objects, split->objects, sizeof op->objects);
+    for (unsigned i = 0; i < op->n; i++)
+        make_dead(scope, op->objects[i]);
+    scope->live[scope->n_live++] = op->object;
+}
+
 static void make_other(struct maker *m)
 {
     const unsigned choice = make_below(m, 16);
@@ -282,6 +340,8 @@ static void make_operations(struct maker *m, size_t n)
             make_burst(m);
         else if (choice < 20 && make_has(m, PROG_MEMORY))
             make_turns(m), m->unsettled = scope->n;
+        else if (choice < 24 && make_has(m, PROG_MEMORY))
+            make_one_in(m, 2) ? make_split(m) : make_join(m), m->unsettled = scope->n;
         else if (choice < 34 && make_has(m, PROG_GRAPHS))
             make_graph_operation(m);
         else if (choice < 78)
@@ -339,6 +399,8 @@ static void make_end(struct maker *m)
     const unsigned left = make_one_in(m, 20) ? 1 : 0;
 
     make_graphs_free(m);
+    while (m->n_splits)
+        make_join(m);
     while (scope->n_live > left)
         make_free(m, scope->n_live - 1);
 }

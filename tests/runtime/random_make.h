@@ -6,7 +6,7 @@
 /* Shared by the files that make programs. */
 
 enum { MAX_LIVE = 20, MAX_OPS = 420, MOST_BURST = 24, MOST_RECORDED = 24 };
-enum { MAX_GRAPHS = 4, MOST_REPEATED = 1000, MOST_ROUNDS = 3 };
+enum { MAX_SPLITS = 3, MAX_GRAPHS = 4, MOST_REPEATED = 1000, MOST_ROUNDS = 3 };
 enum { MAX_DEPTH = 6, MAX_BODIES = 48, MOST_ACTIONS = 20 };
 
 /* The objects that the main program, or a body, may use. */
@@ -18,6 +18,7 @@ struct make_scope {
     duite_mode right[PROG_MAX_TABLE];
     enum prog_law law[PROG_MAX_TABLE]; /* by which it is held under cwp */
     int made[PROG_MAX_TABLE], written[PROG_MAX_TABLE];
+    int part[PROG_MAX_TABLE]; /* it is one of another object, and is not freed */
 };
 
 struct maker {
@@ -37,6 +38,8 @@ struct maker {
     unsigned bodies;          /* that fork, so far */
     int plain;                /* forks postpone nothing */
     int refused;              /* one waits to be told; get_at tells it on one rank only */
+    size_t split[MAX_SPLITS]; /* operations: the last one is joined first */
+    unsigned n_splits;
     size_t graph[MAX_GRAPHS]; /* what each graph recorded last: an operation; SIZE_MAX: freed */
 };
 

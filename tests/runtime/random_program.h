@@ -27,7 +27,7 @@ enum prog_feature {
     PROG_FAILURES, /* bodies fail */
     PROG_REFUSALS, /* forks that are refused */
     PROG_LARGE,    /* large objects */
-    PROG_MEMORY,   /* adopted memory, turns of the main program, sets of one rank */
+    PROG_MEMORY,   /* adopted memory, turns of the main program, sets of one rank, parts */
     PROG_N_FEATURES
 };
 extern const char *const prog_features[PROG_N_FEATURES];
@@ -50,6 +50,8 @@ enum prog_kind {
                      Without one a body fails with it */
     PROG_ACQUIRE, /* by `mode`; what is written stands there at the release */
     PROG_RELEASE,
+    PROG_SPLIT, /* into objects[] */
+    PROG_JOIN,  /* of these */
     PROG_GRAPH, /* records what follows it: `n` operations of the next two kinds */
     PROG_GRAPH_FORK,
     PROG_GRAPH_SET,

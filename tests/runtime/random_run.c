@@ -142,6 +142,15 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
     case PROG_RELEASE:
         prog_call_release(run, op);
         break;
+    case PROG_SPLIT:
+        ask_home(run, op->object);
+        prog_call_split(run, op);
+        for (unsigned i = 0; i < op->n; i++)
+            ask_home(run, op->objects[i]);
+        break;
+    case PROG_JOIN:
+        prog_expect_code(run, "join", duite_join(run->main.rt, *object), DUITE_OK);
+        break;
     case PROG_SET:
         prog_expect_code(run, "set", prog_call_set(&run->main, op), DUITE_OK);
         break;

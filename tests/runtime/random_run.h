@@ -71,6 +71,7 @@ int prog_call_fork(struct run_scope *scope, const struct prog_op *op);
 int prog_call_adopt(struct run *run, const struct prog_op *op);
 void prog_call_acquire(struct run *run, const struct prog_op *op, const struct prog_expect *answer);
 void prog_call_release(struct run *run, const struct prog_op *op);
+void prog_call_split(struct run *run, const struct prog_op *op);
 void prog_check_memory(struct run *run, int wait);
 
 /* An operation on a graph. */

@@ -20,6 +20,7 @@ migrate        | 2 1 3     | objects that move
 migrate_values | 2 1 3     | what they take along
 migrate_values | 2         | the same in checking mode | DUITE_CHECK=accesses
 mpi            | 2 1 3+    | MPI of the program's own
+parts          | 2 1 3     | objects become parts, and whole again
 plans          | 2 1 3     | messages of a round
 plans          | 5 8+ 16+  | messages of a round
 prune          | 2 1 3     | what ranks keep of others' tasks and objects

@@ -19,11 +19,11 @@
  * if the gap is below the thickness, lifts towards it as far as the energy allows. A contact that
  * rests too deep without energy is lifted slowly, with lent energy (contact_row_lent).
  *
- * A contact without room is not lifted: its gap does not open for some steps, though it pushes.
- * Then its load goes to the push of compressed cloth at its gap (contact_row_law), faster from step
- * to step, so that what has room after all is not thrown. Once there it follows that law, as a
- * spring of its slope, until its gap is the thickness. So the force is the same for any length of
- * step, and bounded. Pure functions; N, m, N/m, J. */
+ * A pinched contact (cloth/flow/contact/pinch.c) is not lifted, as it has no room. Its load goes to
+ * the push of compressed cloth at its gap (contact_row_law), faster from step to step, so that what
+ * finds room after all is not thrown. Once there it follows that law, as a spring of its slope,
+ * while it is pinched. So the force is the same for any length of step, and bounded. Pure
+ * functions; N, m, N/m, J. */
 struct contact_row {
     phys_vec normal; /* out of the second side, of length 1 */
     phys_vec origin; /* the point where the step began */
@@ -34,9 +34,9 @@ struct contact_row {
     double thickness, friction;
     double hard;           /* N: the area that it presses times the pressure that halves its gap;
                             * 0: it has no law of compression */
-    double solid;          /* 1: the second side is an obstacle */
-    double held;           /* steps in a row, about, that did not open the gap, though it lacked;
-                            * CONTACT_ROW_PINCHED: it follows the law */
+    double pinched;        /* 1: solids leave it no room; else 0 */
+    double held;           /* for so many steps, halved ones as halves; CONTACT_ROW_FOLLOWS: it
+                            * follows the law */
     double stiffness;      /* k */
     double slid;           /* the stretch of the spring at the end of the step before, uncut, and */
     double grows;          /* the factor by which it grew in that step; 0: as 1 */
@@ -79,19 +79,11 @@ struct contact_row {
 /* A new contact has this times the part of the thickness that is lacking: it stops an approach
  * within about half the thickness. */
 #define CONTACT_ROW_STOPS 2
-/* A gap was held in a step that opened it by less than this part of what the push aimed at. The
- * second one is for a push beyond the law of compression: a belt that carries it gives, if only by
- * its stretch. */
-#define CONTACT_ROW_GIVES   0.5
-#define CONTACT_ROW_CARRIES 0.02
-/* A contact counts such steps if its gap lacks a hundredth or it carries a hundredth of the
- * pressure that halves it: fabrics are measured thick at a hundredth of that which compresses them
- * (KES-C: 49 Pa, 4.9 kPa). So what rests on a floor counts none. */
+/* Part of the thickness: a gap that lacks less has room. Fabrics are measured thick at a hundredth
+ * of the pressure that compresses them (KES-C: 49 Pa, 4.9 kPa). */
 #define CONTACT_ROW_COUNTS 0.01
-/* With so many of them a contact has no room. What lands, or waits for others to rise, is held for
- * fewer. */
-#define CONTACT_ROW_HOLDS   16
-#define CONTACT_ROW_PINCHED 64
+/* With so many steps a contact follows the law in any case: its load was there long before. */
+#define CONTACT_ROW_FOLLOWS 64
 /* The part of the thickness that steps leave open: less of it presses no harder. */
 #define CONTACT_ROW_LEFT 0.1
 /* The stretch across the normal is expected to grow by this factor at most, or to shrink: what
@@ -114,34 +106,48 @@ PHYS_INLINE double contact_row_slope(const struct contact_row *row, double gap)
     return row->hard / (row->thickness * left * left);
 }
 
-PHYS_INLINE bool contact_row_is_pinched(const struct contact_row *row)
+/* m: what the gap, where a step begins, lacks that has no room; at most 0: it has. */
+PHYS_INLINE double contact_row_lacks(const struct contact_row *row)
 {
-    return row->held >= CONTACT_ROW_PINCHED;
+    return (1 - CONTACT_ROW_COUNTS) * row->thickness - row->gap;
 }
 
-/* The change of the load with which a step of a contact without room begins. It grows twofold a
- * step, up to what ordinary contacts rise by. stiffness: of rows that are not firm. */
+/* True if a row may be pinched: it lacks room, or presses as hard as one that does. */
+PHYS_INLINE bool contact_row_is_tight(const struct contact_row *row)
+{
+    return contact_row_lacks(row) > 0 || row->rested > CONTACT_ROW_COUNTS * row->hard;
+}
+
+PHYS_INLINE bool contact_row_follows(const struct contact_row *row)
+{
+    return row->pinched > 0 && row->held >= CONTACT_ROW_FOLLOWS;
+}
+
+/* The change of the load with which a step of a pinched contact begins. It grows twofold a step, up
+ * to what ordinary contacts rise by; what is too much halves. stiffness: of rows that are not firm.
+ */
 PHYS_INLINE double contact_row_change(const struct contact_row *row, double stiffness)
 {
     const double change = contact_row_law(row, row->start) - row->rested;
     const double lacks = row->thickness - row->start;
-    const double grown = ldexp(CONTACT_ROW_LIFTS * stiffness, (int)row->held - CONTACT_ROW_HOLDS);
+    const double grown = ldexp(CONTACT_ROW_LIFTS * stiffness, (int)row->held);
     const double most =
         row->part * lacks * fmin(grown, CONTACT_ROW_RISES * contact_row_slope(row, row->start));
-    return contact_row_is_pinched(row) || fabs(change) < most ? change : copysign(most, change);
+    const double least = fmin(-most, 0.5 * change);
+    return contact_row_follows(row) ? change : fmax(least, fmin(most, change));
 }
 
-/* Begins a step of a contact without room. In a repeated solve one whose pair failed has its load
+/* Begins a step of a pinched contact. In a repeated solve one whose pair failed has its load
  * from the solve before. */
 PHYS_INLINE void contact_row_compress(struct contact_row *row, double stiffness)
 {
     const double firm = row->firm > 1 ? row->firm : 1;
-    const double grown = ldexp(stiffness, (int)row->held - CONTACT_ROW_HOLDS);
+    const double grown = ldexp(stiffness, (int)row->held);
     row->stiffness = fmax(stiffness * firm, fmin(contact_row_slope(row, row->gap), grown));
     row->aim = row->gap;
     if (row->pushed == 0 || !(firm > 1))
         row->load = row->rested + contact_row_change(row, stiffness);
-    if (!contact_row_is_pinched(row))
+    if (!contact_row_follows(row))
         row->energy = fmax(row->energy, 0.5 * row->load * row->load / stiffness);
 }
 
@@ -154,52 +160,27 @@ PHYS_INLINE double contact_row_stored(const struct contact_row *row, double gap,
            (stays ? contact_row_law(row, gap) * (row->thickness - gap) : load * load / row->hold);
 }
 
-/* The count of held steps when one has ended with this gap and push. A contact leaves the law where
- * it hardly lacks anything: what rests there then rests at the thickness. */
-PHYS_INLINE double contact_row_held(const struct contact_row *row, double gap, double push)
+/* The count of steps when one has ended with this gap. */
+PHYS_INLINE double contact_row_held(const struct contact_row *row, double gap)
 {
-    const double lacked = row->thickness - row->start, law = contact_row_law(row, row->start);
-    const double lift =
-        fabs(row->aim - row->start) + fabs(row->load - row->rested) / row->stiffness;
-    const double aimed = fmax(lift, row->part * CONTACT_ROW_LIFTS * lacked);
-    if (!(row->hard > 0 && push > 0 && lacked > 0 && gap < row->thickness))
+    const double change = contact_row_law(row, row->start) - row->rested;
+    if (!(row->pinched > 0 && row->hard > 0 && gap < row->thickness))
         return 0;
-    if (contact_row_is_pinched(row) && !(gap < (1 - CONTACT_ROW_COUNTS) * row->thickness))
-        return 0;
-    if (row->held >= CONTACT_ROW_HOLDS)
-        return contact_row_change(row, row->hold) == law - row->rested ? CONTACT_ROW_PINCHED
-                                                                       : row->held + row->part;
-    if (!(fmax(law, row->rested) > CONTACT_ROW_COUNTS * row->hard))
-        return 0;
-    const double gives = row->rested < law ? CONTACT_ROW_GIVES : CONTACT_ROW_CARRIES;
-    return gap - row->start < gives * aimed ? row->held + row->part : row->held / 2;
+    return contact_row_change(row, row->hold) == change ? CONTACT_ROW_FOLLOWS
+                                                        : row->held + row->part;
 }
 
 /* ---- A step ---- */
 
-/* The lift, m, of one asked for that a contact of stiffness k is lent. It ends at a push of `most`,
- * N. It is slower in shorter steps, which are stiffer and would throw what they lift. */
-PHYS_INLINE double contact_row_lends(const struct contact_row *row, double lift, double most,
-                                     double k)
-{
-    const double slow = row->part * row->part * lift;
-    return row->hard > 0 ? fmin(slow, fmax(most - row->rested, 0) / k) : lift;
-}
-
-/* The lift that a contact is lent whose pair failed. An obstacle lends no more than the bound of
- * the law, as it does not give way. */
-PHYS_INLINE double contact_row_yields(const struct contact_row *row, double lift, double k)
-{
-    return row->solid > 0 ? contact_row_lends(row, lift, contact_row_law(row, 0), k) : lift;
-}
-
-/* The lift that a contact is lent where its load rests. It is lifted no harder than compressed
- * cloth pushes at its gap: two contacts without room, each of which lifts against the other, would
- * push ever harder. */
+/* The lift, m, of one asked for that a contact of stiffness k is lent where its load rests. It is
+ * slower in shorter steps, which are stiffer and would throw what they lift, and no harder than
+ * compressed cloth pushes at its gap: two wrung layers, each of which lifts against the other,
+ * would push ever harder. */
 PHYS_INLINE double contact_row_raises(const struct contact_row *row, double lift, double k)
 {
     const double most = fmax(contact_row_law(row, row->gap), CONTACT_ROW_COUNTS * row->hard);
-    return contact_row_lends(row, lift, most, k);
+    const double slow = row->part * row->part * lift;
+    return row->hard > 0 ? fmin(slow, fmax(most - row->rested, 0) / k) : lift;
 }
 
 /* Begins a step of a contact that may open. */
@@ -210,15 +191,14 @@ PHYS_INLINE void contact_row_lift(struct contact_row *row, double stiffness)
     const double rises = firm > 1 ? CONTACT_ROW_YIELDS : CONTACT_ROW_RISES;
     const double rise = lacks > 0 ? rises * lacks : lacks;
     const double most = (sqrt(2 * k * row->energy) - row->rested) / k;
-    const double lifts = lacks > 0 && row->rested > 0 && most * k > -CONTACT_ROW_EMPTY * row->rested
-                             ? contact_row_raises(row, CONTACT_ROW_LIFTS * lacks, k)
-                             : most;
-    const double allowed =
-        firm > 1 && lacks > 0 ? contact_row_yields(row, rise, k) : (most > lifts ? most : lifts);
-    const double push = row->rested + k * (rise < allowed ? rise : allowed);
+    const bool rests = row->rested > 0 && most * k > -CONTACT_ROW_EMPTY * row->rested;
+    const double lifts =
+        lacks > 0 && rests ? contact_row_raises(row, CONTACT_ROW_LIFTS * lacks, k) : most;
+    const double allowed = firm > 1 && lacks > 0 ? rise : fmax(most, lifts);
+    const double push = row->rested + k * fmin(rise, allowed);
     const double needs = push > 0 ? 0.5 * push * push / k : 0;
     row->energy = fmax(row->energy, needs);
-    row->aim = row->gap + (rise < allowed ? rise : allowed);
+    row->aim = row->gap + fmin(rise, allowed);
     row->stiffness = k;
 }
 
@@ -230,7 +210,11 @@ PHYS_INLINE void contact_row_begin(struct contact_row *row, double stiffness, do
     row->start = row->gap;
     row->slid *= row->part > 0 ? part / row->part : 1;
     row->part = part;
-    if (row->held >= CONTACT_ROW_HOLDS && row->gap < row->thickness)
+    if (row->held > 0 && !(row->pinched > 0)) {
+        row->energy = 0.5 * row->rested * row->rested / row->hold;
+        row->held = 0;
+    }
+    if (row->pinched > 0 && row->hard > 0 && row->gap < row->thickness)
         contact_row_compress(row, stiffness);
     else
         contact_row_lift(row, stiffness);
@@ -274,7 +258,7 @@ PHYS_INLINE double contact_row_across(const struct contact_row *row, const phys_
  * an active set. */
 PHYS_INLINE bool contact_row_acts(const struct contact_row *row, double gap, double push)
 {
-    const double opens = contact_row_is_pinched(row) ? CONTACT_ROW_SPRINGS : CONTACT_ROW_OPENS;
+    const double opens = contact_row_follows(row) ? CONTACT_ROW_SPRINGS : CONTACT_ROW_OPENS;
     const bool stays = push > 0 || (row->load > 0 && gap < (1 + opens) * row->thickness);
     return row->pushed != 0 ? row->pushed > 0 : stays;
 }
@@ -367,8 +351,8 @@ PHYS_INLINE double contact_row_holds(const struct contact_row *row)
     return row->energy + 0.5 * row->hold * phys_dot(&row->slip, &row->slip);
 }
 
-/* Fills the next step's row after a step that ended at this point. Stretch beyond friction's hold
- * becomes sliding. */
+/* Fills the next step's row after a step that ended at this point; whether it is pinched follows.
+ * Stretch beyond friction's hold becomes sliding. */
 PHYS_INLINE void contact_row_end(const struct contact_row *row, const phys_vec *point,
                                  struct contact_row *next)
 {
@@ -385,9 +369,9 @@ PHYS_INLINE void contact_row_end(const struct contact_row *row, const phys_vec *
     next->slip = pull <= most ? stretch : most / pull * stretch;
     next->slip -= phys_dot(&next->normal, &next->slip) * next->normal;
     next->load = next->rested = load;
-    next->held = contact_row_held(row, gap, push);
-    next->energy = contact_row_is_pinched(row) || contact_row_is_pinched(next)
-                       ? contact_row_stored(row, gap, load, contact_row_is_pinched(next))
+    next->held = contact_row_held(row, gap);
+    next->energy = contact_row_follows(row) || next->held >= CONTACT_ROW_FOLLOWS
+                       ? contact_row_stored(row, gap, load, next->held > 0)
                        : contact_row_energy(row, point, load);
     next->hold = row->hold;
     next->part = row->part;

@@ -72,6 +72,7 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/contact/modes.c \
     cloth/flow/contact/pairs.c \
     cloth/flow/contact/pick.c \
+    cloth/flow/contact/pinch.c \
     cloth/flow/contact/project.c \
     cloth/flow/contact/repulsion.c \
     cloth/flow/contact/rows.c \

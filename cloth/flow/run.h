@@ -47,9 +47,9 @@ struct flow_report {
     uint64_t contact_queries_again;  /* of these again in a step, after another solve or a cut; */
     uint64_t contact_graphs;         /* how often the round of the solve was recorded again; */
     uint64_t contacts_now;           /* at the end of the last step accepted */
-    uint64_t contact_pinches;        /* pairs without room: they are compressed (contact/row.h), or
-                                      * nothing kept them apart, so that a step was halved; */
-    char contact_pinch[240];         /* the first of them; on rank 0, else empty */
+    uint64_t contact_pinches;        /* contacts that came to be pinched (flow/contact/pinch.c) and
+                                      * compressed (contact/row.h); */
+    char contact_pinch[240];         /* the first of them; as rank 0 has it */
     double
         contact_cut_momentum; /* kg m/s: changed by pushes and cuts, summed over the steps made */
     uint64_t steps_retaken;   /* how often one by BDF2 gained energy and was made again by implicit

@@ -16,7 +16,7 @@ PLAIN_SH += tests/whole/test_dress.sh tests/whole/test_probes.sh tests/whole/tes
 LONG_SH += tests/whole/test_same_hash_long.sh tests/whole/test_levels_long.sh tests/whole/test_demo.sh \
     tests/whole/test_stretch_limits_long.sh tests/whole/test_same_hash_models_long.sh tests/whole/test_same_hash_contact_long.sh \
     tests/whole/test_closed_forms_long.sh tests/whole/test_solvers_agree_long.sh tests/whole/test_contact_long.sh \
-    tests/whole/test_capstan_long.sh tests/whole/test_contact_scenes_long.sh tests/whole/test_drape_long.sh \
+    tests/whole/test_capstan_long.sh tests/whole/test_pinch_long.sh tests/whole/test_contact_scenes_long.sh tests/whole/test_drape_long.sh \
     tests/whole/test_checkpoint_long.sh tests/whole/test_dressing_long.sh tests/whole/test_paraview_long.sh \
     tests/whole/test_blender_long.sh
 check_PROGRAMS += tests/whole/same_hash

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Cloth without room pushes by the law of compression, P (d / g - 1) on its area, in steps of any length and however long it is pressed. It
-# is named, friction holds it; opened, it flies no faster than the energy in it allows. And what passes many layers in a step takes no more memory than
-its vertices need.
+# Pinched cloth pushes by the law of compression, P (d / g - 1) on its area, in steps of any length and however long it is pressed. It is
+# named, friction holds it; opened, it flies no faster than the energy in it allows. Cloth that gives way is not pinched. And what passes
+# many layers in a step takes no more memory than its vertices need.
 . "${srcdir:-.}/tests/support/tap.sh"
 . "$srcdir/tests/support/probes.sh"
 plan_later
@@ -68,6 +68,84 @@ rests() {
     test "$(value steps)" -lt 600
 }
 ok "it rests in steps that are seldom halved" rests
+# What a flap does beside it changes no force.
+even() { # h: the force after 1 s and in the end
+    run flap.yaml --set time.end="${2:-2}" --set 'cloths[0].mesh={grid: {width: 0.08, height: 0.08, nx: 9, ny: 9}}' --set time.h="$1" || return 1
+    near "force with a flap in the end, h = $1, N" "$(rows 'END { printf "%.17g", c("low.cy") }')" "${force:=$(after 1 'c("low.cy")')}" 0.02
+}
+for h in 0.001 0.004 0.01; do ok "a flap waves beside it, h = $h" even $h; done
+if test "${DUITE_LONG:-}" = 1; then
+    for h in 0.001 0.004 0.01; do ok "ten seconds beside a flap, h = $h" even $h 10; done
+fi
+
+# Pinned cloth is as solid as a box: one gap has what both leave, the law's 5 kPa at half of the thickness.
+pinch held 0.0015 0
+holds() { # h
+    run held.yaml --report report.json --check-intersections --set 'cloths[0].pins=[{box: [[-1, -1, -1], [1, 1, 1]]}]' --set time.h="$1" \
+        --set 'obstacles[1].box.motion={times: [0, 0.1], translate: [[0, 0, 0], [0, -0.001, 0]]}' || return 1
+    test "$(value intersections)" = 0 && near "force of pinned cloth, h = $1, N" "$(rows 'END { printf "%.17g", c("high.cy") }')" -8 0.02 &&
+        grep -E '"contact_pinch": "vertices [0-9]+ .pinned. of .a. and obstacles.1., a box' report.json
+}
+for h in 0.001 0.01; do ok "cloth that pins hold, h = $h" holds $h; done
+
+# ---- Cloth that gives way
+
+free() { # SCENE: it presses, and is never pinched
+    run "$1.yaml" --report report.json --check-intersections || return 1
+    grep -E '"(contact_pinch|contact_pinches|contacts|steps_halved)"' report.json
+    test "$(value intersections)" = 0 && test "$(value contact_pinches)" = 0 && test "$(value contacts)" -gt 10
+}
+cat > belt.yaml << 'END'
+schema: 1
+gravity: [0, 0, 0]
+cloths:
+  - material: m
+    mesh: {grid: {width: 0.3, height: 0.02, nx: 61, ny: 3}}
+    transform: {translate: [0, 0.0512, 0]}
+    loads:
+      - {box: [[-0.16, 0, -1], [-0.14, 1, 1]], force: [0, -1, 0], curve: {keys: [[0, 0.01], [0.4, 1]]}}
+      - {box: [[0.14, 0, -1], [0.16, 1, 1]], force: [0, -1, 0], curve: {keys: [[0, 0.01], [0.4, 1]]}}
+materials: {m: {density: 0.5, stretch: 20000, bend: 0, damping: {stiffness: 0.003, mass: 20}}}
+contact: {mode: certified, self: off, thickness: 0.001, friction: 0.3}
+time: {h: 0.005, end: 0.8, stretch_growth: 0}
+obstacles: [{cylinder: {centre: [0, 0, 0], axis: [0, 0, 1], radius: 0.05, length: 0.2}}, {plane: {point: [0, -1, 0], normal: [0, 1, 0]}}]
+END
+ok "a belt that is pulled tight around a cylinder" free belt
+cat > curtain.yaml << 'END'
+schema: 1
+cloths:
+  - {mesh: {grid: {width: 0.4, height: 0.4, nx: 17, ny: 17}}, material: m, transform: {rotate: [0.7071067811865476, 0, 0, 0.7071067811865476]}, pins: [{box: [[-1, 0.199, -1], [1, 0.201, 1]]}]}
+materials: {m: {density: 1, model: triangles, stretch: 1000, shear: 370, poisson: 0.35, bending: {rigidity: 0.000128}, friction: 0}}
+obstacles: [{sphere: {centre: [-0.12, 0, 0], radius: 0.1, motion: {times: [0, 0.3], translate: [[0, 0, 0], [0.3, 0, 0]]}}}]
+contact: {mode: certified, self: on, thickness: 0.001}
+time: {h: 0.00833333333, end: 0.3, fps: 60}
+END
+ok "a curtain that a ball goes through" free curtain
+
+# ---- Layers
+
+# Four sheets between the boxes of above have half of their thicknesses. Each is pinched, from box to box; a box is in the first name.
+pinch pile 0.0025 0
+press() { # OPTION...
+    run pile.yaml --report report.json --check-intersections --set obstacles[1].box.centre="[-0.05, 0.057, 0]" \
+        --set 'obstacles[1].box.motion={times: [0, 0.2], translate: [[0, 0, 0], [0, -0.0045, 0]]}' --set time.end=1.2 "$@" || return 1
+    grep contact_pinch report.json
+    test "$(value intersections)" = 0 && grep -Eq '"contact_pinch": "vertices [0-9]+ of .[a-d]. and obstacles.[01]., a box, at 0[.][0-9]* s"' report.json
+}
+awk '/^cloths/ { for (i = 0; i < 4; i++) printf "%s{name: %c, material: m, mesh: {grid: {width: 0.04, height: 0.04, nx: %d, ny: %d}}, transform: {translate: [0, %g, 0]}}%s", i ? ", " : "cloths: [", 97 + i, 5 + i % 2, 5 + i % 2, 0.0015 * (i + 1), i < 3 ? "" : "]\n"; next } { print }' pile.yaml > piled && mv piled pile.yaml
+ok "four sheets between two boxes" press
+# It goes on from a checkpoint on two ranks, and reports what it would have on one without it.
+goes_on() {
+    set -- pile.yaml --quiet --set obstacles[1].box.centre="[-0.05, 0.057, 0]" --set 'obstacles[1].box.motion={times: [0, 0.2], translate: [[0, 0, 0], [0, -0.0045, 0]]}' --set grain=40
+    limited "$DUITE_CLOTH" "$@" --end 0.6 --report whole.json && rm -rf part && ranks 2 "$DUITE_CLOTH" "$@" --end 0.4 --output part --checkpoint 100 &&
+        ranks 2 "$DUITE_CLOTH" "$@" --end 0.6 --restart part --report report.json || return 1
+    for key in state_hash contact_pinches contact_pinch steps; do
+        echo "$key: $(value $key), $(value $key whole.json)"
+        test "$(value $key)" = "$(value $key whole.json)" || return 1
+    done
+    test "$(value blocks)" -gt 2 && test "$(value contact_pinches)" -gt 0
+}
+ok "it goes on from a checkpoint, on two ranks" goes_on
 
 # Eight sheets at 100 m/s, which pass each other in the first step: in it 15 pairs fail a vertex.
 layers() {

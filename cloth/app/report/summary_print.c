@@ -82,7 +82,7 @@ static void print_contact(FILE *file, const struct model *model, const struct fl
         fprintf(file, "  ways cut         %" PRIu64 ", all in steps that were given up\n",
                 report->contact_cuts);
     if (report->contact_pinches)
-        fprintf(file, "  pinched          %" PRIu64 " pairs without room; first %s\n",
+        fprintf(file, "  pinched          %" PRIu64 " contacts; first %s\n",
                 report->contact_pinches, report->contact_pinch);
 }
 

@@ -128,20 +128,31 @@ static int describe_failing(struct flow_state *state, size_t size, char *text)
     return i < meetings->n ? describe_first_of(state, meetings->all + i, size, text) : DUITE_OK;
 }
 
-/* Describes the first contact without room in the accepted state; on rank 0 only. */
+/* Contacts from a pinched one to the nearest solid; else UINT32_MAX. */
+static uint32_t certified_length_of(const struct flow_contact *contact)
+{
+    const uint32_t *chain = contact->chain;
+    if (!(contact->row.pinched > 0))
+        return UINT32_MAX;
+    return chain[0] < chain[1] ? chain[0] : chain[1];
+}
+
+/* Describes the pinched contact of the accepted state that is nearest to a solid, the first of
+ * those; on rank 0 only. */
 static int describe_pinched(struct flow_state *state, size_t size, char *text)
 {
     int code = DUITE_OK;
-    bool found = false;
+    uint32_t least = UINT32_MAX;
     text[0] = 0;
-    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code && !found; b++) {
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code && least > 1; b++) {
         struct flow_list *list;
         code = get_list(state, state->block[b].contacts, &list);
         const struct flow_contact *contact = (const struct flow_contact *)(list + 1);
-        for (uint64_t i = 0; !code && !found && i < list->n; i++) {
-            found = contact_row_is_pinched(&contact[i].row);
-            if (found)
+        for (uint64_t i = 0; !code && i < list->n; i++) {
+            const uint32_t length = certified_length_of(contact + i);
+            if (length < least)
                 certified_describe_pair(state, contact + i, size, text);
+            least = length < least ? length : least;
         }
         free(list);
     }
@@ -160,14 +171,13 @@ static int say_why(struct flow_state *state, uint64_t n, const char *what, const
 }
 
 /* Adds n pinches to the report, with the first of all. */
-static int note_pinches(struct flow_state *state, uint64_t n,
-                        int (*describe)(struct flow_state *state, size_t size, char *text))
+static int note_pinches(struct flow_state *state, uint64_t n)
 {
     struct flow_report *report = state->report;
     const bool first = !report->contact_pinches && n;
     char pair[200] = "";
     report->contact_pinches += n;
-    const int code = first ? describe(state, sizeof pair, pair) : DUITE_OK;
+    const int code = first ? describe_pinched(state, sizeof pair, pair) : DUITE_OK;
     if (pair[0])
         snprintf(report->contact_pinch, sizeof report->contact_pinch, "%s, at %g s", pair,
                  flow_attempt_args(state).time);
@@ -177,12 +187,12 @@ static int note_pinches(struct flow_state *state, uint64_t n,
 /* Pairs fail that cannot be cut further: the step is halved, or the run ends. */
 static int note_failing(struct flow_state *state, uint64_t fails)
 {
-    if (flow_attempt_is_last(state))
-        return say_why(state, fails,
-                       "pairs of features cannot be kept apart: obstacles or pins pinch the cloth, "
-                       "or are too fast",
-                       model_contact_cure(state->flow->model));
-    return note_pinches(state, fails, describe_failing);
+    return flow_attempt_is_last(state)
+               ? say_why(state, fails,
+                         "pairs of features cannot be kept apart: obstacles or pins pinch the "
+                         "cloth, or are too fast",
+                         model_contact_cure(state->flow->model))
+               : DUITE_OK;
 }
 
 /* ---- The begin of a step ---- */
@@ -365,7 +375,7 @@ static int note_settled(struct flow_state *state, const double status[FLOW_STATU
     if (state->contact.cut_run > state->report->contact_cut_run)
         state->report->contact_cut_run = state->contact.cut_run;
     state->report->contact_cut_momentum += state->contact.cut_momentum;
-    return note_pinches(state, (uint64_t)status[FLOW_PINCHES], describe_pinched);
+    return note_pinches(state, (uint64_t)status[FLOW_PINCHES]);
 }
 
 /* ---- In tasks ---- */

@@ -9,9 +9,10 @@
 /* Certified contact of a step, as its main program drives it. In reading order: certified.c is the
  * step: solve, look, solve again or cut. pairs.c finds which sides are near each other. meet.c is
  * the task of two sides: it certifies pairs that may touch and lists near ones (find.c). touch.c
- * makes the contacts of a block from these lists; they are state. index.c lists contacts by the
- * blocks of their corners. rows.c brings contacts to the blocks that have their corners, and into
- * the system of the step. cut.c cuts ways. stop.c gives a step up.
+ * makes the contacts of a block from these lists; they are state. pinch.c says which of them have
+ * no room. index.c lists contacts by the blocks of their corners. rows.c brings contacts to the
+ * blocks that have their corners, and into the system of the step. cut.c cuts ways. stop.c gives a
+ * step up.
  *
  * A side is a block of cloth or an obstacle. Sides have numbers: blocks, then obstacles. */
 
@@ -25,6 +26,9 @@ struct flow_contact {
     uint32_t point[4];   /* corners in the skins, as enum contact_pair orders them; CONTACT_TV:
                           * first those of the triangle */
     uint32_t first;      /* so many of them are of the first side */
+    uint32_t chain[2];   /* contacts from a solid to each side, this one the last of them; 0: there
+                          * is no such chain (pinch.c) */
+    double lack[2];      /* m: the sum of what these lack */
     struct flow_tie_corners at;
     struct contact_row row;
 };
@@ -100,6 +104,18 @@ size_t flow_contact_drop_aslant(struct flow_contact *list, size_t n, unsigned ch
 /* A vertex above an edge or a vertex has the same nearest point on each triangle there. Their
  * springs would add up, so only the first is a contact. */
 size_t flow_contact_drop_repeated(struct flow_contact *list, size_t n);
+
+/* The contacts that a step had: a block's own, and n lists of others. */
+struct flow_contacts_before {
+    const struct flow_list *own;
+    size_t n;
+    const duite_param *other;
+};
+/* Finds the chains of n contacts, and which of them are pinched, by contacts of the step before:
+ * all that may have corners where these have some. Returns false without memory. Local. (pinch.c)
+ */
+bool flow_contact_find_pinched(const struct flow *flow, const struct flow_contacts_before *before,
+                               struct flow_contact *contact, size_t n);
 
 /* Functions of the main program. Collective; they return what the runtime does. */
 

@@ -154,7 +154,6 @@ static void contact_meet_describe_pair(const struct meeting *m, const struct cor
     to->row.gap = nearest->gap;
     to->row.thickness = corners->thickness;
     to->row.friction = friction_of(m, corners->pair, corners->point, corners->side);
-    to->row.solid = m->body != NULL;
     for (int k = 0; k < 2; k++) {
         to->side[k] = m->args->side[turned ? k : k ^ second];
         to->feature[k] = corners->candidate->of[k ^ second];

@@ -61,7 +61,6 @@ static void describe_place(const struct shape_meeting *m, uint32_t n, const uint
     to->row.gap = on->gap;
     to->row.thickness = m->model->contact.thickness;
     to->row.friction = friction_at(m, n, point);
-    to->row.solid = 1;
     for (int k = 0; k < 2; k++)
         to->side[k] = m->args->side[k];
     for (uint32_t k = 0; k < n; k++) {

@@ -20,7 +20,7 @@ void flow_contact_take(struct flow_state *state)
     contact->root = cloth_alloc(n_blocks + n_obstacles, FLOW_ROOT * sizeof *contact->root, trouble);
     contact->solid = cloth_alloc(n_obstacles, sizeof *contact->solid, trouble);
     contact->found = cloth_alloc(n_blocks, sizeof *contact->found, trouble);
-    contact->mark = cloth_alloc(n_blocks, sizeof *contact->mark, trouble);
+    contact->mark = cloth_alloc(n_blocks + n_obstacles, sizeof *contact->mark, trouble);
     contact->said = cloth_alloc(flow_field_numbers(state, FLOW_FIELD_tie_said, 0), 1, trouble);
 }
 
@@ -60,8 +60,9 @@ int flow_contact_room(struct flow_state *state, uint32_t n)
     meetings->count = cloth_alloc(meetings->room, FLOW_COUNTS * sizeof *meetings->count, trouble);
     meetings->counted =
         cloth_alloc(meetings->room, FLOW_COUNTS * sizeof *meetings->counted, trouble);
-    contact->refs = cloth_alloc(2 * (size_t)meetings->room + FLOW_MAX_PARAMETERS,
-                                sizeof *contact->refs, trouble);
+    contact->refs =
+        cloth_alloc(2 * (size_t)meetings->room + state->head.n_blocks + FLOW_MAX_PARAMETERS,
+                    sizeof *contact->refs, trouble);
     return flow_memory_agree(state);
 }
 

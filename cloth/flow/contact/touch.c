@@ -25,10 +25,11 @@ struct touch_args {
                       * ones stay, pressed, with failing pairs */
     double stiffness, part; /* as contact_row_begin has them */
     double from, to;        /* s: of the step */
+    size_t n_others;        /* lists of other blocks' contacts */
 };
 
 /* The present contacts, the next ones, the energy of these; each meeting's list and, with another
- * block, its points. */
+ * block, its points; contacts of other blocks that may share corners with these. */
 FLOW_KERNEL(touch, FLOW_COLLIDE, struct touch_args,
             (R(contacts), W(contacts_next), R(skin_x), SUM(contact_energy), SUM(status),
              REST_R(meetings)))
@@ -38,7 +39,8 @@ struct touching {
     const duite_call *call;
     const struct touch_fields *on;
     const struct touch_args *args;
-    bool carries; /* as the mode does (mode.h) */
+    size_t n_meetings; /* their lists and points */
+    bool carries;      /* as the mode does (mode.h) */
     const struct flow_contact *before;
     size_t n_before;
     struct flow_contact *after;
@@ -46,7 +48,7 @@ struct touching {
     unsigned char *used; /* n_before, then n: those before that live on; those after that have a
                           * multiplier of their own */
     double lent;         /* J: to those before */
-    double pinched;      /* those before that were not */
+    double pinched;      /* those before that begin to follow the law of compression */
 };
 
 /* ---- Order ---- */
@@ -108,7 +110,7 @@ static const phys_vec *ends_of(const struct touching *t, uint32_t side)
     const struct touch_fields *on = t->on;
     if (side == t->args->block)
         return own_ends(t);
-    for (size_t at = 0; at < on->n_meetings; at++) {
+    for (size_t at = 0; at < t->n_meetings; at++) {
         const struct flow_list *list = on->meetings[at].data;
         const bool points = is_between_blocks(t->call, list);
         if (points && (list->side[0] == side || list->side[1] == side))
@@ -205,7 +207,7 @@ static void touch_hand_over(struct touching *t, size_t from, size_t to)
     find_solved_row(t, before, &row);
     contact_row_end(&row, &point, after);
     t->lent += contact_row_lent(&row, &point, before->row.energy, after->energy);
-    t->pinched += contact_row_is_pinched(after) && !contact_row_is_pinched(&row);
+    t->pinched += after->held >= CONTACT_ROW_FOLLOWS && !(row.held >= CONTACT_ROW_FOLLOWS);
     t->used[from] = t->used[t->n_before + to] = 1;
 }
 
@@ -271,7 +273,8 @@ static void begin_all(struct touching *t)
     }
 }
 
-static void end_accept(struct touching *t)
+/* Returns false without memory. */
+static bool end_accept(struct touching *t)
 {
     qsort(t->after, t->n, sizeof *t->after, compare_contacts);
     t->n = flow_contact_drop_aslant(t->after, t->n, t->used + t->n_before);
@@ -295,6 +298,9 @@ static void end_accept(struct touching *t)
     }
     if (!(t->args->to > t->args->from))
         begin_all(t);
+    const struct flow_contacts_before lists = {t->on->contacts, t->args->n_others,
+                                               t->on->meetings + t->n_meetings};
+    return flow_contact_find_pinched(flow_of(t->call), &lists, t->after, t->n);
 }
 
 static void sum_held_energy(const struct touching *t, double held[FLOW_HELD])
@@ -310,7 +316,7 @@ static void sum_held_energy(const struct touching *t, double held[FLOW_HELD])
 static void take_meetings(struct touching *t)
 {
     const struct touch_fields *on = t->on;
-    for (size_t at = 0; at < on->n_meetings; at++) {
+    for (size_t at = 0; at < t->n_meetings; at++) {
         const struct flow_list *list = on->meetings[at].data;
         const struct flow_near *near = (const struct flow_near *)(list + 1);
         for (uint64_t i = 0; i < list->n; i++) {
@@ -334,6 +340,7 @@ static int touch_body(const duite_call *call, const struct touch_fields *on)
     struct touching t = {.call = call,
                          .on = on,
                          .args = args,
+                         .n_meetings = on->n_meetings - args->n_others,
                          .before = (const struct flow_contact *)(before + 1),
                          .carries = carries,
                          .n_before = carries ? before->n : 0,
@@ -342,9 +349,11 @@ static int touch_body(const duite_call *call, const struct touch_fields *on)
     if (!t.used)
         return duite_fail(call, FLOW_NO_MEMORY, "out of memory for contacts");
     take_meetings(&t);
-    if (args->accept)
-        end_accept(&t);
-    else
+    if (args->accept && !end_accept(&t)) {
+        free(t.used);
+        return duite_fail(call, FLOW_NO_MEMORY, "out of memory for contacts");
+    }
+    if (!args->accept)
         end_again(&t);
     if (args->accept)
         sum_held_energy(&t, on->contact_energy);
@@ -373,6 +382,18 @@ static size_t list_meetings(const struct flow_state *state, uint32_t block, duit
     return (size_t)(end - to);
 }
 
+/* The same of the contacts of other blocks, for those that may be pinched. */
+static size_t list_others(const struct flow_state *state, uint32_t block, duite_object *to)
+{
+    unsigned char *keeps = state->contact.mark;
+    size_t n = 0;
+    flow_contact_keepers(state, block, keeps);
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
+        if (keeps[b] && b != block)
+            to[n++] = state->block[b].contacts;
+    return n;
+}
+
 static int fork_touch(struct flow_state *state, struct touch_args *args)
 {
     const uint32_t block = args->block, found = state->contact.found[block];
@@ -380,7 +401,10 @@ static int fork_touch(struct flow_state *state, struct touch_args *args)
     flow_contact_keep(state, block, FLOW_FIELD_contacts_next, before + found);
     args->room = flow_kept_list(state, block, FLOW_FIELD_contacts_next)->room;
     duite_object *rest = flow_contact_rest(state);
-    const struct flow_with with = {.n = list_meetings(state, block, rest), .rest = rest};
+    const size_t n = list_meetings(state, block, rest);
+    args->n_others =
+        args->accept && state->flow->may_pinch ? list_others(state, block, rest + n) : 0;
+    const struct flow_with with = {.n = n + args->n_others, .rest = rest};
     return flow_fork_with(state, &flow_kernel_touch, args, &with);
 }
 

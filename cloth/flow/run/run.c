@@ -64,6 +64,7 @@ static int build_source(struct flow *flow, int ranks, struct cloth_error *error)
     flow->release = flow_source_release(&flow->source);
     flow->contact_stiffness = flow_source_stiffness(&flow->source);
     flow->vertex_mass = flow_source_mass(&flow->source);
+    flow->may_pinch = flow_source_may_pinch(&flow->source);
     flow->feels_contact = model_feels_contact(flow->model);
     flow_preconditioner_choose(flow, flow->source.blocks.n_blocks);
     if (flow_watched_header(&flow->source.watched, flow->model, &flow->header, error) ||

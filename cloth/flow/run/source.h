@@ -418,6 +418,9 @@ double flow_source_release(const struct flow_source *source);
  * vertex, kg. Local. */
 double flow_source_stiffness(const struct flow_source *source);
 double flow_source_mass(const struct flow_source *source);
+/* True if contact is certified, and solids may press on both sides of a cloth: several obstacles,
+ * one that is not convex, or pins. (contact/pinch.c) */
+bool flow_source_may_pinch(const struct flow_source *source);
 
 /* Orders the loads that vary by place, when blocks are there; those of unused vertices are dropped.
  * Then: the first of them at or after a place. Local. */

@@ -80,8 +80,8 @@ enum {
 enum { FLOW_MAX_LEVELS = 8, FLOW_MAX_NODES = 16 };
 
 /* Numbers that rank 0 finds from its source, and all ranks have. inertia, kg m^2; release, J;
- * contact_stiffness, N/m; vertex_mass, kg: of flow_source_inertia and the like. feels_contact: a
- * probe reports the force of contact. */
+ * contact_stiffness, N/m; vertex_mass, kg; may_pinch: of flow_source_inertia and the like.
+ * feels_contact: a probe reports the force of contact. */
 #define FLOW_NUMBERS(X)                                                                            \
     X(uint64_t, n_steps)                                                                           \
     X(uint64_t, partition_hash)                                                                    \
@@ -91,6 +91,7 @@ enum { FLOW_MAX_LEVELS = 8, FLOW_MAX_NODES = 16 };
     X(double, vertex_mass)                                                                         \
     X(uint32_t, n_vertices)                                                                        \
     X(uint32_t, n_triangles)                                                                       \
+    X(bool, may_pinch)                                                                             \
     X(bool, feels_contact)
 #define FLOW_MEMBER(type, name) type name;
 struct flow_numbers {

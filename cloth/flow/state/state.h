@@ -54,7 +54,7 @@ enum {
     FLOW_SLOPE,   /* of a Newton step: dv.b before it, */
     FLOW_CHANGE,  /* dv.M dv, */
     FLOW_WHOLE,   /* (v - base_v).M (v - base_v) after it */
-    FLOW_PINCHES, /* contacts that have no room from this step on */
+    FLOW_PINCHES, /* pinched contacts that follow the law from this step on */
     FLOW_DUE,     /* a checkpoint is due */
     FLOW_STATUS
 };
@@ -220,7 +220,7 @@ struct flow_contact_state {
     double *root;    /* a block, then an obstacle that is a body: the box around its skin over the
                       * step, low and high, m */
     uint32_t *found; /* a block: contacts that the last look found */
-    unsigned char *mark; /* a block: room */
+    unsigned char *mark; /* a side: room */
     unsigned char *said; /* the records of all blocks' ties */
     duite_object *refs;  /* room for the lists of meetings of any task */
     uint64_t near;       /* how many contacts there are at the end of the step */

@@ -80,7 +80,7 @@ const struct scene_rule scene_contact_keys[] = {
      .needs = NEEDS_MET},
     {"pressure", SCENE_NUMBER, "Pa", "5000", .range = SCENE_POSITIVE,
      INTO(struct model_contact, pressure),
-     .about = "by which the thickness of cloth without room is half of it",
+     .about = "by which the thickness of pinched cloth is half of it",
      .needs = NEEDS_CERTIFIED},
     {"friction", SCENE_NUMBER, .fallback = "0", .range = SCENE_COEFFICIENT,
      INTO(struct model_contact, friction),

@@ -35,8 +35,9 @@ int contact_scene_read(struct model *model, const char *name, const char *self, 
  * all steps; frame: seconds for each 1 / fps that was simulated; step: for each step that was made;
  * intersections: the most in a frame; contacts: the most at a time; solves, iterations, queries (of
  * two sides), pairs (certified): for each step that was made; halved: steps; cuts: of vertices;
- * pinches: pairs; moved: tasks and objects that went to other ranks; memory: the most bytes of the
- * process. */
+ * pinches: contacts; force, force_early: N, upwards on the obstacle of the last probe, at the end
+ * and after a second; moved: tasks and objects that went to other ranks; memory: the most bytes of
+ * the process. */
 extern const struct serve_run contact_scene_runs[];
 
 /* The sphere's sheet after ms= of its run, kept by threads= and quick=. look times=: seconds of the
@@ -67,6 +68,6 @@ const struct measure_series *contact_plan_scene(struct measure *measure,
 
 extern const struct bench_case contact_self, contact_frames, contact_part, contact_iterations,
     contact_twist, contact_instructions, contact_intersections, contact_maps, contact_peers,
-    contact_ring, contact_memory;
+    contact_ring, contact_pinch, contact_memory;
 
 #endif

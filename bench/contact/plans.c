@@ -47,7 +47,7 @@ static const struct {
               {"cuts", "cuts", "cuts"},
               {"queries", "queries", "queries_per_step"},
               {"pairs", "pairs", "pairs_per_step"},
-              {"pinches", "pairs", "pinches"}};
+              {"pinches", "contacts", "pinches"}};
 enum { N_COUNTS = sizeof COUNTS / sizeof *COUNTS };
 
 const struct measure_series *contact_plan_scene(struct measure *measure,
@@ -149,6 +149,24 @@ static void plan_ring(struct measure *measure, const struct bench_options *optio
 const struct bench_case contact_ring = {
     "ring", "peers/ring.yaml: a sheet of 1,681 vertices is drawn through eight capsules in 0.4 s",
     plan_ring, contact_scene_runs, 2};
+
+static void plan_pinch(struct measure *measure, const struct bench_options *options)
+{
+    const struct measure_series *late = contact_plan_scene(measure, options, "pinch", "force");
+    const struct measure_series *early = scene(measure, options, 0, "name=pinch", "force_early");
+    const struct measure_series *one = contact_plan_scene(measure, options, "pinch_h1", "force");
+    const struct measure_series *ten = contact_plan_scene(measure, options, "pinch_h10", "force");
+    measure->cold = true;
+    measure_value(measure, late, 1, "N", "pinch_force");
+    measure_ratio(measure, late, early, "pinch_force_growth");
+    measure_ratio(measure, one, ten, "pinch_force_h1_vs_h10");
+}
+
+const struct bench_case contact_pinch = {
+    "pinch",
+    "peers/pinch.yaml: the force of a sheet without room on a box, after ten seconds against one "
+    "second, and in steps of 1 ms against 10 ms; the growth counts in steps of 5 ms",
+    plan_pinch, contact_scene_runs, 1};
 
 /* ---- Memory ---- */
 

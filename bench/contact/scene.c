@@ -48,6 +48,9 @@ static const struct part {
              {"peers_ribbon", 0.5, 0.01, 25, 2, 20, "ribbon", &BOWL, ""},
              {"peers_layers", 0.1, 0.02, 50, 6, 6, "layers", NULL, ""},
              {"ring", 0.45, 0.02, 1, 12, 12, "ring", NULL, ""},
+             {"pinch", 10, 1.1, 1, 11, 11, "pinch", NULL, ""},
+             {"pinch_h1", 10, 1.1, 1, 11, 11, "pinch", NULL, "time.h=0.001"},
+             {"pinch_h10", 10, 1.1, 1, 11, 11, "pinch", NULL, "time.h=0.01"},
              {"cross", 0.015, 0.005, 2, 8, 8, "cross", NULL, ""},
              {"cross_still", 0.015, 0.005, 2, 8, 8, "cross", NULL, "cloths[0].velocity=[0, 0, 0]"}};
 enum { N_PARTS = sizeof PARTS / sizeof *PARTS };
@@ -108,6 +111,8 @@ int contact_scene_read(struct model *model, const char *name, const char *self, 
 
 /* ---- Frames ---- */
 
+static const double EARLY = 1; /* s: what is pressed rests */
+
 struct frame {
     double time, *position;
 };
@@ -115,6 +120,8 @@ struct frame {
 struct film {
     struct frame *frame;
     size_t n, room, n_vertices;
+    double force,
+        force_early; /* N: upwards, on the obstacle of the last probe; NAN: there is none */
 };
 
 static int keep(void *context, uint64_t frame, double time, const double *position,
@@ -135,6 +142,18 @@ static int keep(void *context, uint64_t frame, double time, const double *positi
     if (!copy)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for a frame");
     film->frame[film->n++] = (struct frame){time, memcpy(copy, position, bytes)};
+    return 0;
+}
+
+/* The columns of a probe of an obstacle are the last three of a row. */
+static int keep_force(void *context, uint64_t step, double time, size_t n, const double *values,
+                      struct cloth_error *error)
+{
+    struct film *film = context;
+    (void)step, (void)error;
+    film->force = n < 3 ? NAN : values[n - 2];
+    if (isnan(film->force_early) && time > EARLY)
+        film->force_early = film->force;
     return 0;
 }
 
@@ -179,13 +198,15 @@ enum {
     QUERIES,
     PAIRS,
     PINCHES,
+    FORCE,
+    FORCE_EARLY,
     MOVED,
     MEMORY,
     WHATS
 };
 static const char *const WHAT[WHATS] = {
-    "wall",   "frame", "step",    "intersections", "contacts", "solves", "iterations",
-    "halved", "cuts",  "queries", "pairs",         "pinches",  "moved",  "memory"};
+    "wall", "frame",   "step",  "intersections", "contacts", "solves",      "iterations", "halved",
+    "cuts", "queries", "pairs", "pinches",       "force",    "force_early", "moved",      "memory"};
 
 /* What the run with these settings told, and has not been asked for yet: NAN of what has. */
 struct told {
@@ -244,7 +265,7 @@ static int start(struct serve_request *request, struct flow *flow, duite **rt)
 static int run_model(struct serve_request *request, const struct model *model, struct film *film,
                      struct flow_report *report)
 {
-    const struct flow_output output = {.context = film, .frame = keep};
+    const struct flow_output output = {.context = film, .frame = keep, .row = keep_force};
     struct cloth_error error = {0};
     struct flow *flow = NULL;
     duite *rt = NULL;
@@ -263,7 +284,7 @@ static int run(struct serve_request *request, struct told *told)
 {
     struct model model = {0};
     struct flow_report report = {0};
-    struct film film = {0};
+    struct film film = {.force = NAN, .force_early = NAN};
     char name[20], self[8];
     const bool quick = serve_number(request, "quick") != 0;
     serve_word(request, "name", name, sizeof name);
@@ -277,6 +298,8 @@ static int run(struct serve_request *request, struct told *told)
         code = check(told, &report);
     if (!code) {
         tell(told, &report, model.fps);
+        told->value[FORCE] = film.force;
+        told->value[FORCE_EARLY] = film.force_early;
         code = look(&film, &model, told->value + INTERSECTIONS);
     }
     free_film(&film);

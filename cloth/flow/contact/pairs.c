@@ -18,9 +18,9 @@
  * nothing. */
 static const double SPARE = 20;
 enum { LEAST_ROOM = 256 }; /* items of a list, which doubles where it is short */
-/* Failing pairs a vertex of the blocks that they are of: with more, cloth passes many layers or the
- * whole of itself in the step, and its contacts would be far more than the cloth. A wrung sheet has
- * 8.4, two sheets that pass each other 7. */
+/* Failing pairs a vertex of the blocks and bodies that they are of: with more, cloth passes many
+ * layers or the whole of itself in the step, and its contacts would be far more than the cloth. A
+ * wrung sheet has 8.4, two sheets that pass each other 7. */
 enum { MOST_FAILING = 10 };
 
 /* ---- Boxes ---- */
@@ -357,23 +357,35 @@ static void pairs_sum_up(struct flow_state *state, struct flow_seen *seen)
     }
 }
 
-/* True if more pairs fail than their blocks can hold. */
+/* The vertices of a block, or of a body; of other obstacles 0. */
+static uint32_t pairs_count_vertices(const struct flow_state *state, uint32_t side)
+{
+    const uint32_t n_blocks = state->flow->tables.n_blocks;
+    const struct model *model = state->flow->model;
+    if (side < n_blocks)
+        return state->flow->tables.block[side].skin.n_vertices;
+    const struct contact_body *body =
+        contact_bodies_at(&model->bodies, model->obstacles[side - n_blocks].body);
+    return body ? body->n_vertices : 0;
+}
+
+/* True if more pairs fail than their sides can hold. A body that is finer than the cloth on it has
+ * many pairs a vertex of the cloth. */
 static bool pairs_is_hopeless(const struct flow_state *state)
 {
     const struct flow_meetings *meetings = &state->contact.meetings;
-    const uint32_t n_blocks = state->flow->tables.n_blocks;
+    const uint32_t n_sides = pairs_count_sides(state);
     unsigned char *fails = state->contact.mark;
     double n_fails = 0, n_vertices = 0;
-    memset(fails, 0, n_blocks);
+    memset(fails, 0, n_sides);
     for (uint32_t i = 0; i < meetings->n; i++) {
         const double n = meetings->count[FLOW_COUNTS * (size_t)i + FLOW_COUNT_FAILS];
         n_fails += n;
         for (int k = 0; k < 2 && n > 0; k++)
-            if (meetings->all[i].side[k] < n_blocks)
-                fails[meetings->all[i].side[k]] = 1;
+            fails[meetings->all[i].side[k]] = 1;
     }
-    for (uint32_t b = 0; b < n_blocks; b++)
-        n_vertices += fails[b] ? state->flow->tables.block[b].skin.n_vertices : 0;
+    for (uint32_t side = 0; side < n_sides; side++)
+        n_vertices += fails[side] ? pairs_count_vertices(state, side) : 0;
     return n_fails > MOST_FAILING * n_vertices;
 }
 

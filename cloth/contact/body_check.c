@@ -98,7 +98,8 @@ static int fail_open(const struct contact_making *making, size_t first, size_t n
     return cloth_fail(making->error, CLOTH_E_INPUT,
                       "the mesh is not closed: the edge between vertices %u and %u has %zu "
                       "triangle%s where 2 are expected, as %zu edge%s in all (vertices count from "
-                      "1); fill the holes, or join the parts",
+                      "1); fill the holes, or join the parts; an open surface may be a cloth whose "
+                      "vertices are all pinned",
                       (uint32_t)(ends >> 32) + 1, (uint32_t)ends + 1, n, n == 1 ? "" : "s", others,
                       others == 1 ? " has" : "s have");
 }

@@ -89,6 +89,30 @@ ok "one hash" ranks 3 "$same_hash" rings.yaml few 0 time.end=0.12
 stands() { ranks 2 "$same_hash" ball.yaml few 0 time.end=0.08; }
 ok "one hash on a body that stands still" stands
 
+# An open surface is a cloth that is held: a bowl that turns and rises below a sheet.
+awk 'BEGIN {
+    n = 16; m = 8; pi = 3.14159265358979
+    for (j = 0; j <= m; j++) for (i = 0; i < (j ? n : 1); i++) { t = j / m * pi / 2; p = 2 * pi * i / n
+        print "v", 0.2 * sin(t) * cos(p), -0.2 * cos(t), 0.2 * sin(t) * sin(p) }
+    for (i = 0; i < n; i++) print "f", 1, 2 + i, 2 + (i + 1) % n
+    for (j = 0; j < m - 1; j++) for (i = 0; i < n; i++) { a = 2 + j * n + i; b = 2 + j * n + (i + 1) % n; print "f", a, a + n, b + n, b }
+}' > bowl.obj
+cat > bowl.yaml << 'END'
+schema: 1
+cloths:
+  - {name: sheet, mesh: {grid: {width: 0.5, height: 0.5, nx: 20, ny: 20}}, material: silk, transform: {translate: [0, 0.02, 0]}}
+  - name: bowl
+    mesh: {file: bowl.obj}
+    material: silk
+    pins: [{box: [[-1, -1, -1], [1, 1, 1]], motion: {times: [0, 1], translate: [[0, 0, 0], [0, 0.1, 0]], rotate: [{axis: [0, 1, 0], turns: 0}, {axis: [0, 1, 0], turns: 1}]}}]
+contact: {mode: certified, self: on}
+time: {h: 0.01, end: 0.5, fps: 25}
+grain: 60
+END
+caught() { through bowl.yaml && echo "$(value contacts) contacts" && test "$(value intersections)" = 0 && test "$(value contacts)" -gt 20; }
+ok "a sheet falls into an open bowl that turns" caught
+ok "one hash" ranks 2 "$same_hash" bowl.yaml few 0 time.end=0.2
+
 # Over the head of the body of others, in decimetres.
 real=$srcdir/../shared/data/body/female_generic.obj
 if test -r "$real" && ! quick; then

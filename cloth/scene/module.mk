@@ -21,7 +21,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/schema/tables.h \
 	cloth/scene/schema/store.c \
 	cloth/scene/schema/words.c \
-	cloth/scene/schema/fabrics.c \
+	cloth/scene/schema/fabrics.c cloth/scene/schema/instruments.c \
 	cloth/scene/schema/faults.c \
 	cloth/scene/schema/check.h \
 	cloth/scene/schema/check.c \

@@ -15,8 +15,10 @@ int scene_check(struct scene_tree *tree);
 int scene_fill(void *structure, const struct scene_rule *rule, struct scene_tree *tree, int node);
 
 /* Completes a tree before it is checked: adds materials that cloths name and the scene lacks, and
- * to materials with `like` the keys that they lack. Error: CLOTH_E_MEMORY. */
+ * to materials with `kes`, `fast` or `like` the keys that they lack; the second function those of
+ * one material by its sheet of an instrument. Error: CLOTH_E_MEMORY. */
 int scene_fabrics_fill(struct scene_tree *tree);
+int scene_instruments_fill(struct scene_tree *tree, int material);
 
 /* ---- Places and faults (faults.c) ---- */
 

@@ -121,7 +121,8 @@ int scene_fabrics_fill(struct scene_tree *tree)
     for (size_t i = 0; !code && is_map && i < scene_tree_length(tree, materials); i++) {
         const int material = scene_tree_pair(tree, materials, i).value;
         const int fabric = named_by(tree, material, "like");
-        code = fabric >= 0 && fill_fabric(tree, material, fabrics[fabric]);
+        code = scene_instruments_fill(tree, material) ||
+               (fabric >= 0 && fill_fabric(tree, material, fabrics[fabric]));
     }
     return code;
 }

@@ -51,6 +51,33 @@ static const struct scene_rule correction_keys[] = {
      .about = "at most in a step"},
     {0}};
 
+/* ---- Sheets of instruments (instruments.c) ---- */
+
+static const struct scene_rule measured = {.type = SCENE_NUMBER, .range = SCENE_POSITIVE,
+                                           ITEM(double)};
+#define SHEET(name, in, text) \
+    {name, SCENE_NUMBER_OR_LIST, in, .range = SCENE_POSITIVE, .length = 2, .inside = &measured, \
+     .about = text}
+static const struct scene_rule kes_keys[] = {
+    SHEET("EMT", "%", "strain at 500 gf/cm: of warp and weft, as all of these, or one for both"),
+    SHEET("LT", NULL, "linearity of the extension; else 1"),
+    SHEET("RT", "%", "resilience of the extension"),
+    SHEET("G", "gf/cm degree", "shear stiffness"),
+    SHEET("2HG", "gf/cm", "hysteresis of shear at 0.5 degrees"),
+    SHEET("B", "gf cm^2/cm", "bending rigidity"),
+    SHEET("2HB", "gf cm/cm", "hysteresis of bending"),
+    SHEET("MIU", NULL, "friction of the surface"),
+    {"W", SCENE_NUMBER, "mg/cm^2", .range = SCENE_POSITIVE, .about = "weight"},
+    {0}};
+static const struct scene_rule fast_keys[] = {
+    SHEET("E5", "%", "strain at 5 gf/cm: of warp and weft, as all of these, or one for both"),
+    SHEET("EB5", "%", "strain on the bias at 5 gf/cm"),
+    SHEET("G", "N/m", "shear rigidity; else 123 / EB5"),
+    SHEET("C", "mm", "bending length"),
+    SHEET("B", "uN m", "bending rigidity; else by W and C"),
+    {"W", SCENE_NUMBER, "g/m^2", .range = SCENE_POSITIVE, .about = "weight"},
+    {0}};
+
 /* The list of two takes the member that follows, too. */
 #define STRETCH_AND_WEFT \
     .field = {offsetof(struct model_material, stretch), sizeof(double[2]), \
@@ -60,6 +87,11 @@ _Static_assert(offsetof(struct model_material, weft_excess) ==
 static const struct scene_rule material_keys[] = {
     {"like", SCENE_CHOICE, .words = scene_fabrics,
      .about = "a measured one, whose values stand where none are given"},
+    {"kes", SCENE_MAP, .inside = kes_keys, .apart = true,
+     .about = "what Kawabata's instruments print, which gives values where none are given",
+     .section = "Sheets of instruments"},
+    {"fast", SCENE_MAP, .inside = fast_keys, .apart = true,
+     .about = "the same of the FAST instruments", .section = "Sheets of instruments"},
     {"density", SCENE_NUMBER, "kg/m^2", .range = SCENE_POSITIVE,
      INTO(struct model_material, density),
      .about = "mass of an area; optional where all its cloths have mass_per_vertex"},

@@ -259,6 +259,40 @@ UNIT_TEST(cloths_of_every_mesh)
     free(text);
 }
 
+/* By the sheets of instruments: 500 gf/cm are 490.3 N/m. */
+UNIT_TEST(materials_of_instruments)
+{
+    UNIT_OWNED(model_free)
+    struct model model = scene_read_changed(
+        "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
+        "  cotton: {kes: {W: 20, EMT: [5, 4], LT: [1, 0.8], RT: [60, 40], G: 0.5, B: [0.1, 0.05], "
+        "2HB: 0.06, MIU: 0.2}}\n"
+        "  wool: {fast: {W: 200, E5: [0.5, 1], EB5: 3, C: [20, 10]}, friction: 0.4}\n"
+        "  own: {kes: {W: 20, EMT: 5, G: 1, 2HG: 2}, shear: 7, like: denim}\n");
+    const struct model_material *kes = model.materials, *fast = kes + 1, *own = kes + 2;
+    const double second = 4.903325 / (0.04 * pow(0.01, 1 / 1.5)); /* n = 2 / 0.8 - 1 */
+    ck_assert_int_eq(kes->model, MODEL_TRIANGLES);
+    ck_assert_double_eq_tol(kes->density, 0.2, 1e-12);
+    ck_assert_double_eq_tol(kes->stretch, 9806.65, 1e-4);
+    ck_assert_double_eq_tol(model_weft(kes), second, 1e-6 * second);
+    ck_assert_double_eq_tol(kes->shear, 28.094, 1e-3);
+    ck_assert_double_eq_tol(kes->rigidity[0], 9.80665e-6, 1e-14);
+    ck_assert_double_eq_tol(kes->rigidity[1], 4.903325e-6, 1e-14);
+    ck_assert_double_eq_tol(kes->damping_stiffness, 0.5 / (M_PI * M_PI), 1e-9);
+    ck_assert_double_eq_tol(model_damping_bending(kes), 0.06 / (2.5 * M_PI * M_PI * 0.075), 1e-9);
+    ck_assert_double_eq(kes->friction, 0.2);
+    ck_assert_double_eq_tol(fast->density, 0.2, 1e-12);
+    ck_assert_double_eq_tol(fast->stretch, 980.665, 1e-6);
+    ck_assert_double_eq_tol(model_weft(fast), 490.3325, 1e-6);
+    ck_assert_double_eq_tol(fast->shear, 41, 1e-9);
+    ck_assert_double_eq_tol(fast->rigidity[0], 1.5696e-5, 1e-12);
+    ck_assert_double_eq(fast->friction, 0.4);
+    ck_assert_double_eq_tol(own->stretch, 9806.65, 1e-4);
+    ck_assert_double_eq(own->shear, 7);
+    ck_assert_double_eq_tol(own->rigidity[0], 1.954e-5, 1e-12);
+    ck_assert_double_eq_tol(own->damping_stiffness, 2 / (8 * M_PI * M_PI), 1e-9);
+}
+
 /* A figure of 1.8 m that stands along z, in centimetres. */
 UNIT_TEST(files_of_other_units_and_axes)
 {

@@ -14,12 +14,13 @@ make=${MAKE:-make}
 unset MAKEFLAGS MFLAGS MAKELEVEL
 plan_later
 
-system() { # unpacked, not configured: no program of it runs
+system() { # unpacked, not configured: no program of it runs; links lead to its own files
     debootstrap --foreign --arch=arm64 --variant=minbase \
         --include=libopenmpi-dev,libmetis-dev,libhwloc-dev,libxxhash-dev,uthash-dev,libyaml-dev,check,libgmp-dev "$release" "$root" "$mirror" || return
     for package in "$root"/var/cache/apt/archives/*.deb; do
         dpkg-deb --fsys-tarfile "$package" | tar -x --keep-directory-symlink -C "$root" || return
     done
+    find "$root/usr/lib" -lname '/*' | while read -r link; do ln -sfn "$root$(readlink "$link")" "$link" || return; done
 }
 
 build() {
@@ -28,7 +29,7 @@ build() {
         "$scratch/tree/configure" --quiet --host=aarch64-linux-gnu CC="aarch64-linux-gnu-gcc --sysroot=$root" \
             MPI_CFLAGS="-I$lib/openmpi/include" MPI_LIBS="-L$lib/openmpi/lib -lmpi" MPIRUN="${MPIRUN:-mpirun}" \
             PKG_CONFIG_SYSROOT_DIR="$root" PKG_CONFIG_LIBDIR="$lib/pkgconfig:$root/usr/share/pkgconfig" &&
-        "$make" -j2 all check-programs
+        "$make" -j2 && "$make" -j2 check-programs
 }
 
 emulate() { # a script takes the place of each program, and runs it

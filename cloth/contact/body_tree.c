@@ -105,6 +105,8 @@ static void refit_part(const struct contact_facet *facet, const phys_vec *x,
                 low = fmin(low, at);
                 high = fmax(high, at);
             }
+        /* GCC 12 for arm64 fails over it as a loop. */
+        PHYS_UNROLL
         for (int i = 0; !leaf && i < 4; i++) {
             low = fmin(low, (double)nodes[child].low[c][i]);
             high = fmax(high, (double)nodes[child].high[c][i]);

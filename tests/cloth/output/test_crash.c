@@ -5,6 +5,7 @@
 #include "tests/support/unit.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -48,12 +49,12 @@ int fsync(int file)
 
 int unlink(const char *path)
 {
-    return strikes() ? -1 : (int)syscall(SYS_unlink, path);
+    return strikes() ? -1 : unlinkat(AT_FDCWD, path, 0);
 }
 
 int rename(const char *from, const char *to)
 {
-    return strikes() ? -1 : (int)syscall(SYS_rename, from, to);
+    return strikes() ? -1 : renameat(AT_FDCWD, from, AT_FDCWD, to);
 }
 
 /* Runs 3 frames of run 2, to die at call n. settles: a thread brings them to the disk. Returns

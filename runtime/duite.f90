@@ -263,7 +263,7 @@ module duite
             type(duite_object), value :: object
             integer(c_size_t), value :: n
             integer(c_size_t), intent(in) :: counts(*)
-            type(duite_object), intent(out) :: parts(*)
+            type(duite_object), intent(inout) :: parts(*)
         end function
         integer(c_int) function duite_join(rt, object) bind(C, name='duite_join')
             import :: c_int, c_ptr, duite_object

@@ -113,6 +113,32 @@ static int nest(duite *rt)
     return value[0] == 4 * ranks && sum[0] == 4 * ranks;
 }
 
+/* Memory of the test's own, in parts and in turns. It must be given back, or the next run is
+ * refused it. */
+static int lend(duite *rt)
+{
+    static int32_t memory[COUNT];
+    static const size_t COUNTS[] = {10, COUNT - 10};
+    const int32_t three = 3, one = 1;
+    duite_object object, part[2];
+    int32_t values[COUNT];
+    void *data;
+    if (duite_adopt(rt, 0, DUITE_I32, COUNT, memory, NULL, NULL, &object) == DUITE_E_ARGUMENT)
+        return 0;
+    duite_fork(rt, &SET, &three, 1, &object);
+    if (!duite_split(rt, object, 2, COUNTS, part)) {
+        duite_fork(rt, &SET, &one, 1, &part[0]);
+        duite_fork_at(rt, ranks - 1, &ADD, NULL, 1, &part[1]);
+        if (!duite_acquire(rt, part[1], DUITE_RW, &data) && data)
+            *(int32_t *)data += 2;
+        duite_release(rt, part[1]);
+        duite_join(rt, object);
+    }
+    const int code = duite_get(rt, object, values);
+    duite_free(rt, object);
+    return code || (values[0] == 1 && values[10] == 6 && values[11] == 3);
+}
+
 /* One run; returns whether it ended as it may. */
 static int run(void)
 {
@@ -130,7 +156,7 @@ static int run(void)
     duite_colocate(rt, a[2], a[1]);
     work(rt, a);
     grow(rt);
-    fine = right(rt, a) && nest(rt);
+    fine = right(rt, a) && nest(rt) && lend(rt);
     code = duite_wait(rt);
     for (int i = 1; i < OBJECTS; i++)
         duite_free(rt, a[i]);

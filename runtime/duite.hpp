@@ -79,6 +79,20 @@ class calls
             first = values[0];
         return code;
     }
+    /* Parts of an object, one after the other, until join() makes it whole again. */
+    template <typename T> std::vector<ref<T>> split(ref<T> whole, const std::vector<std::size_t> &counts)
+    {
+        std::vector<std::size_t> sizes;
+        std::vector<duite_object> names(counts.size(), DUITE_NO_OBJECT);
+        std::vector<ref<T>> parts;
+        for (const std::size_t count : counts)
+            sizes.push_back(count * unit<T>);
+        told(duite_split(rt_, whole.name, sizes.size(), sizes.data(), names.data()));
+        for (std::size_t i = 0; i < names.size(); i++)
+            parts.push_back({names[i], counts[i]});
+        return parts;
+    }
+    template <typename T> int join(ref<T> whole) { return told(duite_join(rt_, whole.name)); }
 #ifdef DUITE_THROWS
     template <typename T> std::vector<T> get(ref<T> from)
     {

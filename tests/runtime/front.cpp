@@ -174,6 +174,26 @@ void turns(duite::runtime &rt)
     CHECK(rt.get(x, first) == DUITE_OK && first == 1);
 }
 
+void parts(duite::runtime &rt)
+{
+    duite::object<point> p(rt, 3);
+    duite::object<std::int64_t> x(rt, 5);
+    std::vector<std::int64_t> got;
+    const std::vector<duite::ref<std::int64_t>> two = rt.split(x, {2, 3});
+    rt.fork(FILL, 1, two[0]);
+    rt.fork(FILL, 10, two[1]);
+    rt.fork(TWICE, two[1]);
+    CHECK(rt.join(x) == DUITE_OK);
+    rt.get(x, got);
+    CHECK((got == std::vector<std::int64_t>{1, 2, 20, 22, 24}));
+    const auto each = rt.split(p, {1, 2}); // structures, too
+    rt.set(each[1], std::vector<point>(2, point{1, 2, 3}));
+    rt.join(p);
+    std::vector<point> all;
+    rt.get(p, all);
+    CHECK(all[0].y == 0 && all[1].y == 2 && all[2].z == 3);
+}
+
 void adopted(duite::runtime &rt)
 {
     std::vector<std::int64_t> mine(3, 4), got;
@@ -303,6 +323,7 @@ int main()
     values(rt);
     structures(rt);
     turns(rt);
+    parts(rt);
     adopted(rt);
     events(rt);
     graphs(rt);

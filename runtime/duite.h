@@ -41,7 +41,7 @@ enum duite_code {
     DUITE_E_ARGUMENT = -1, /* an argument that makes no sense: NULL, unknown type, too large */
     DUITE_E_MEMORY = -2,   /* out of memory */
     DUITE_E_OBJECT = -3,   /* no such object: never made, or already freed */
-    DUITE_E_KERNEL = -4,   /* a kernel that was not listed at start, or one that is malformed */
+    DUITE_E_KERNEL = -4, /* a kernel that was neither listed nor added, or one that is malformed */
     DUITE_E_ACCESS =
         -5, /* number of objects or type does not fit the kernel; one object twice in a task */
     DUITE_E_MPI = -6, /* an MPI call failed, or MPI gives less thread support than SERIALIZED */
@@ -207,11 +207,12 @@ typedef int duite_body(const duite_call *call);
 
 /* Tasks that fork. With call->rt, and on its own thread, a body may call the following. Objects:
  * duite_new, duite_new_sized, duite_free, duite_set, duite_set_sized, duite_get, duite_get_count.
- * Tasks: duite_fork, duite_fork_with (without a rank), duite_wait, duite_resize, duite_contribute,
- * duite_fail, duite_event_new, duite_complete. Also calls that describe the runtime (duite_rank and
- * the like). All others are DUITE_E_STATE, as is any call from a thread of the program's own. In a
- * body the calls are local: children run on the rank of the task, unless a balancer delegates them,
- * and no other rank knows of them.
+ * Tasks: duite_fork, duite_fork_with (without a rank), duite_wait, duite_wait_for, duite_resize,
+ * duite_contribute, duite_fail, duite_event_new, duite_complete, duite_await_mpi, duite_mpi_begin,
+ * duite_mpi_end. Also calls that describe the runtime (duite_rank and the like). All others are
+ * DUITE_E_STATE, as is any call from a thread of the program's own. In a body the calls are local:
+ * children run on the rank of the task, unless a balancer delegates them, and no other rank knows
+ * of them.
  *
  * Objects: a body names those it was given (param[i].object) and those it made. The table at
  * duite_mode lists the modes it may fork its children with. Other modes are DUITE_E_RIGHT, as are
@@ -222,15 +223,15 @@ typedef int duite_body(const duite_call *call);
  * descendants, then the next task of the one that forked it. The children's result in a parameter
  * is passed on as soon as it is there, without waiting for the rest of them.
  *
- * duite_get waits for the value that the children forked so far leave, duite_wait for all of them
- * with their descendants. The body's later work comes after them in the order. Meanwhile its thread
- * runs other tasks that come earlier, on the same stack: a body must not wait with a lock held. A
- * level of waiting bodies takes some 1.2 kB of it and what the bodies keep there: a stack of 8 MB
- * (ulimit -s) has room for 5,000. Bodies that wait side by side add no levels. If three quarters of
- * the stack are used, a wait returns DUITE_E_DEPTH without waiting. A duite_wait returns the first
- * error, in the reference order, of the descendants since the body's last wait. The next wait of
- * the main program returns it, too. A failed child poisons only its results: its parent fails only
- * if it returns a code.
+ * duite_get and duite_wait_for wait for what the children forked so far leave, duite_wait for all
+ * of them with their descendants. The body's later work comes after them in the order. Meanwhile
+ * its thread runs other tasks that come earlier, on the same stack: a body must not wait with a
+ * lock held. A level of waiting bodies takes some 1.2 kB of it and what the bodies keep there: a
+ * stack of 8 MB (ulimit -s) has room for 5,000. Bodies that wait side by side add no levels. If
+ * three quarters of the stack are used, a wait returns DUITE_E_DEPTH without waiting. A duite_wait
+ * returns the first error, in the reference order, of the descendants since the body's last wait.
+ * The next wait of the main program returns it, too. A failed child poisons only its results: its
+ * parent fails only if it returns a code.
  *
  * Errors of calls that return at once are remembered for the body's next get or wait; without one,
  * the task fails with the first error. */
@@ -261,8 +262,9 @@ void *duite_contribute(const duite_call *call, size_t i);
 
 enum { DUITE_MAX_ACCESS = 64 }; /* max. modes that a kernel lists */
 
-/* A task's body with the access modes of its parameters. A kernel is constant, alive from start to
- * stop, and listed at start in the same order on every rank. Names are unique. */
+/* A task's body with the access modes of its parameters. A kernel is constant, alive until stop,
+ * and listed at start in the same order on every rank, or added (duite_kernel_add). Names are
+ * unique. */
 typedef struct duite_kernel {
     const char *name;
     duite_body *body;
@@ -282,6 +284,15 @@ typedef struct duite_kernel {
                    such a task are forked when they are replayed */
 } duite_kernel;
 
+/* Adds a kernel after the start: one of a library that was loaded into the running program. From
+ * then on it is like those that were listed, and so are laws that it names and the program has not:
+ * both stay alive until stop. Waits, like duite_wait, for all tasks forked so far on all ranks; the
+ * next wait returns their errors. Ranks that add other kernels, or none, are DUITE_E_DIFFERENT. On
+ * any other error there is no such kernel, on all ranks. Collective. Errors: DUITE_E_KERNEL
+ * (malformed, or its name is taken), DUITE_E_LAW, DUITE_E_ARGUMENT (NULL), DUITE_E_DIFFERENT,
+ * DUITE_E_MEMORY. */
+int duite_kernel_add(duite *rt, const duite_kernel *kernel);
+
 /* Replicated kernels: for small results that every rank needs, such as the scalars of an iteration.
  * Their tasks run on all ranks, each on copies of its inputs, so that no rank waits for a message
  * with the result. In a recorded graph they run only where the result is read; as children of a
@@ -293,12 +304,12 @@ typedef struct duite_kernel {
 /* ---- Events ----
  *
  * A task of a kernel with `events` may wait for what happens outside of duite (a file, a device, a
- * request of MPI, a thread of the program) without keeping a worker: its body makes an event,
- * starts the work and returns. The task ends when its body is over and all its events are
- * completed; only then others see its results. Until then its parameters' data stay where they are
- * and may be read and written by their modes; `call`, args and the calls of a body end with the
- * body. Such tasks run on the rank that duite_fork says. Checking mode calls their bodies once,
- * with the parameters themselves. */
+ * request of MPI, a thread of the program) without keeping a worker: its body makes an event (or
+ * hands requests of MPI over), starts the work and returns. The task ends when its body is over and
+ * all its events are completed; only then others see its results. Until then its parameters' data
+ * stay where they are and may be read and written by their modes; `call`, args and the calls of a
+ * body end with the body. Such tasks run on the rank that duite_fork says. Checking mode calls
+ * their bodies once, with the parameters themselves. */
 
 /* Names something that is to happen: a value, freely copied, of this rank. */
 typedef struct duite_event {
@@ -317,6 +328,18 @@ int duite_event_new(const duite_call *call, duite_event *event);
  * (options.window). Local. Errors: DUITE_E_ARGUMENT (no runtime), DUITE_E_OBJECT (completed
  * already, or never made). */
 int duite_complete(duite *rt, duite_event event, int code);
+
+/* Hands n requests of MPI over, which the body began: the task ends when they are over. Workers
+ * test them between tasks and as they idle. `requests` become MPI_REQUEST_NULL (a program that uses
+ * a persistent one again keeps a copy); the data that they send or receive must live as long, as
+ * those of parameters do. Unless MPI has MPI_THREAD_MULTIPLE, the body begins them between
+ * duite_mpi_begin and duite_mpi_end. A request that fails fails the task with DUITE_E_MPI and MPI's
+ * reason, if its communicator returns errors (MPI_ERRORS_RETURN). The report of a standstill names
+ * tasks that wait for requests. If the work of all ranks ends early, requests without a partner are
+ * left as they are. In a body; local. Errors: DUITE_E_ARGUMENT (a number < 0, NULL, or a request
+ * that is MPI_REQUEST_NULL), DUITE_E_STATE (its kernel has no `events`), DUITE_E_MEMORY; the
+ * requests then stay the body's. */
+int duite_await_mpi(const duite_call *call, int n, MPI_Request *requests);
 
 /* ---- Start and stop ---- */
 
@@ -510,7 +533,11 @@ int duite_abandon(duite **rt);
  * other calls of the main program are refused and remembered (DUITE_E_STATE). So all ranks call
  * duite_wait first. Else a rank in duite_get may need a value that this rank has not sent, and a
  * call of MPI that waits for that rank never returns. Ranks outside take a rank that stays longer
- * than lost_seconds for lost. Local. Errors: DUITE_E_STATE (begun twice, ended without begin). */
+ * than lost_seconds for lost.
+ *
+ * In a body the two stand around calls of MPI that wait for no rank, such as MPI_Isend
+ * (duite_await_mpi). Meanwhile the body may not wait; a body that returns before the end fails with
+ * DUITE_E_STATE. Local. Errors: DUITE_E_STATE (begun twice, ended without begin). */
 int duite_mpi_begin(duite *rt);
 int duite_mpi_end(duite *rt);
 
@@ -605,6 +632,33 @@ int duite_get(duite *rt, duite_object object, void *values);
  * object is poisoned, so a program may not branch on the result. Collective. Errors: as of
  * duite_get; DUITE_E_ARGUMENT also if there is no such rank. */
 int duite_get_at(duite *rt, duite_object object, int rank, void *values);
+
+/* duite_get in two calls: begin returns at once, end waits until `values`, which stay untouched by
+ * the program in between, have the object as the tasks forked before the begin left it. Meanwhile
+ * tasks may change the object, and it may be freed. Several gets of an object end in the order in
+ * which they began; one that never ends is DUITE_E_NOT_FREED at duite_stop. With options.window the
+ * begin may wait like a fork. Collective. Errors: of the end as of duite_get, and DUITE_E_STATE (no
+ * such get was begun); of the begin DUITE_E_OBJECT, DUITE_E_ARGUMENT (nowhere to put the values;
+ * the get is to be ended all the same), DUITE_E_MEMORY. */
+int duite_get_begin(duite *rt, duite_object object, void *values);
+int duite_get_end(duite *rt, duite_object object);
+
+/* Waits for the values of n objects as the tasks forked so far leave them, on all ranks, while
+ * other tasks go on; no value is moved or copied. Contributions (cw) that come afterwards combine
+ * apart, as after a duite_get. Returns on all ranks the same error: that of the first cause in fork
+ * order of which one of the objects is poisoned (in a body: of the first poisoned object in the
+ * list). A failure of other tasks is left to the next duite_wait. Collective; in a body local.
+ * Errors: that of the failed task, DUITE_E_OBJECT, DUITE_E_ARGUMENT (the objects are NULL),
+ * DUITE_E_DIFFERENT; in a body DUITE_E_RIGHT, DUITE_E_DEPTH. */
+int duite_wait_for(duite *rt, size_t n, const duite_object *objects);
+
+/* *there becomes 1 if duite_wait_for of these objects need not wait for tasks on any rank, else 0;
+ * and 1 if the call fails. The same on all ranks, which wait for each other to come to the call but
+ * not for tasks: the program may branch on it, though not so that its results depend on time. If
+ * they are not there the main thread runs tasks that are ready, for a moment. Poisoned values are
+ * there. Collective. Errors: DUITE_E_OBJECT, DUITE_E_ARGUMENT (the objects are NULL, nowhere to put
+ * the answer), DUITE_E_DIFFERENT, DUITE_E_MEMORY. */
+int duite_test(duite *rt, size_t n, const duite_object *objects, int *there);
 
 /* The main program's own turn on an object, in the order of the forks, without a copy: on the
  * object's home (duite_home) *data points to its value, which the program may read (DUITE_R),

@@ -46,6 +46,6 @@ struct twin_traffic {
 int twin_solve(struct sheet *sheet, uint32_t count, double *seconds, struct twin_traffic *traffic);
 
 extern const struct bench_case ranks_cg, ranks_stencil, ranks_loaded, ranks_forks, ranks_memory,
-    ranks_delegate, ranks_tree, ranks_migrate;
+    ranks_delegate, ranks_tree, ranks_migrate, ranks_await;
 
 #endif

@@ -5,19 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct bench_case *const CASES[] = {&tasks_stencil,
-                                                 &tasks_chain,
-                                                 &tasks_independent,
-                                                 &tasks_fib_case,
-                                                 &tasks_tree,
-                                                 &tasks_tiles,
-                                                 &tasks_growth,
-                                                 &tasks_bytes,
-                                                 &tasks_granularity,
-                                                 &tasks_wake,
-                                                 &tasks_instructions,
-                                                 &tasks_adopt,
-                                                 NULL};
+static const struct bench_case *const CASES[] = {&tasks_stencil,  &tasks_chain, &tasks_independent,
+                                                 &tasks_fib_case, &tasks_tree,  &tasks_tiles,
+                                                 &tasks_growth,   &tasks_bytes, &tasks_granularity,
+                                                 &tasks_wake,     &tasks_event, &tasks_instructions,
+                                                 &tasks_adopt,    NULL};
 enum { N_CASES = sizeof CASES / sizeof *CASES - 1 };
 
 /* For two cores and the full sizes. */
@@ -38,6 +30,7 @@ static const struct measure_target TARGETS[] = {
     {"bytes_per_pending_task", 192, false},
     {"granularity_50_w2_vs_mpi", 1.2, false},
     {"granularity_50_w16_vs_mpi", 4.5, false},
+    {"event_ns", 500, false},
     {"instructions_per_task_stencil", 1000, false},
     {"instructions_per_task_chain", 750, false},
     {"instructions_per_task_independent", 700, false},
@@ -61,6 +54,7 @@ static const duite_kernel *const KERNELS[] = {&tasks_gate,
                                               &tasks_tree_node,
                                               &tasks_wake_up,
                                               &tasks_adopt_change,
+                                              &tasks_event_hold,
                                               &tasks_tiles_kernels[TILES_POTRF],
                                               &tasks_tiles_kernels[TILES_TRSM_L],
                                               &tasks_tiles_kernels[TILES_SYRK],

@@ -25,7 +25,8 @@ struct tasks_session {
     atomic_int gate;          /* tasks_gate runs until it is not 0 */
     atomic_uint waiting;      /* gates that run */
     _Atomic uint64_t woken;
-    double began; /* when a task began, once woken says so */
+    double began;      /* when a task began, once woken says so */
+    struct held *held; /* what the tasks of `event` are to fill */
 };
 
 /* Starts the runtime as the request wants it (threads=, scheduler=), with the kernels of all cases.
@@ -82,11 +83,11 @@ struct subject_shape tasks_twin(void);
 /* ---- Cases ---- */
 
 extern const struct bench_case tasks_stencil, tasks_chain, tasks_independent, tasks_fib_case,
-    tasks_tree, tasks_tiles, tasks_growth, tasks_bytes, tasks_granularity, tasks_wake,
+    tasks_tree, tasks_tiles, tasks_growth, tasks_bytes, tasks_granularity, tasks_wake, tasks_event,
     tasks_instructions, tasks_adopt;
 extern const duite_kernel tasks_stencil_combine, tasks_stencil_empty, tasks_stencil_padded,
     tasks_chain_next, tasks_adopt_change, tasks_independent_mark, tasks_granularity_point,
-    tasks_wake_up, tasks_fib, tasks_fib_flow, tasks_fib_put, tasks_fib_add, tasks_tree_node,
-    tasks_tiles_kernels[TILES_ROUTINES];
+    tasks_wake_up, tasks_event_hold, tasks_fib, tasks_fib_flow, tasks_fib_put, tasks_fib_add,
+    tasks_tree_node, tasks_tiles_kernels[TILES_ROUTINES];
 
 #endif

@@ -76,7 +76,8 @@ enum { TURNS = sizeof turn_kernels / sizeof *turn_kernels, OWN = TURNS + 2 };
 
 void api_watch_turns(struct task_graph *graph)
 {
-    graph->own_kernels = graph->n_kernels < OWN ? graph->n_kernels : graph->n_kernels - OWN;
+    graph->n_own = graph->n_kernels < OWN ? 0 : OWN;
+    graph->own_kernels = graph->n_kernels - graph->n_own;
     graph->own_over = acquire_over;
 }
 

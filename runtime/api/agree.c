@@ -1,6 +1,6 @@
 /* A start succeeds on all ranks or on none, with the same kernels, laws, seed and policies on all.
  * Each rank sends one word of fixed size; all compare all words, so all find the same first
- * difference. */
+ * difference. A kernel that is added later is part of the fingerprint of calls. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/error.h"
@@ -11,22 +11,25 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+static uint64_t kernel_hash(const duite_kernel *k, uint64_t hash)
+{
+    uint64_t args_size = k->args_size;
+    hash = XXH64(k->name, strlen(k->name) + 1, hash);
+    hash = XXH64(k->access, sizeof k->access, hash);
+    hash = XXH64(&k->variadic, sizeof k->variadic, hash);
+    uint64_t replicated = k->replicated != 0;
+    hash = XXH64(&args_size, sizeof args_size, hash);
+    hash = XXH64(&replicated, sizeof replicated, hash);
+    uint64_t events = k->events != 0;
+    hash = XXH64(&events, sizeof events, hash);
+    return data_law_hash_kernel(k, hash);
+}
+
 static uint64_t start_hash_kernels(const struct task_graph *graph)
 {
     uint64_t hash = 0;
-    for (uint32_t i = 0; i < graph->n_kernels; i++) {
-        const duite_kernel *k = graph->kernels[i];
-        uint64_t args_size = k->args_size;
-        hash = XXH64(k->name, strlen(k->name) + 1, hash);
-        hash = XXH64(k->access, sizeof k->access, hash);
-        hash = XXH64(&k->variadic, sizeof k->variadic, hash);
-        uint64_t replicated = k->replicated != 0;
-        hash = XXH64(&args_size, sizeof args_size, hash);
-        hash = XXH64(&replicated, sizeof replicated, hash);
-        uint64_t events = k->events != 0;
-        hash = XXH64(&events, sizeof events, hash);
-        hash = data_law_hash_kernel(k, hash);
-    }
+    for (uint32_t i = 0; i < graph->n_kernels; i++)
+        hash = kernel_hash(graph->kernels[i], hash);
     return hash;
 }
 
@@ -126,4 +129,50 @@ int api_agree_at_start(duite *rt, const duite_options *options, int code)
         comm_ring(rt->comm, all[0].lost_seconds, all[((size_t)rt->graph.rank + n - 1) % n].host);
     base_free(all);
     return code;
+}
+
+/* ---- Kernels that are added ---- */
+
+/* Whoever looks at kernels without a task is kept away: reports, and sentences about ranks that
+ * differ. */
+static int kernel_add(duite *rt, const duite_kernel *kernel)
+{
+    struct task_graph *graph = &rt->graph;
+    work_hold_reports(rt->pool);
+    comm_guests_hold(&graph->guests, rt);
+    int code = task_kernel_add(graph, kernel);
+    if (!code && rt->comm)
+        comm_set_kernels(rt->comm, graph->kernels, graph->n_kernels);
+    comm_guests_let_go(&graph->guests);
+    work_let_reports_go(rt->pool);
+    if (!code)
+        code = work_kernel_added(rt->pool);
+    if (!code)
+        trace_kernels(rt->trace);
+    return code;
+}
+
+/* No task is left on any rank while a rank adds it, and none is forked before all ranks have it:
+ * the task might be delegated to one that has not. */
+int duite_kernel_add(duite *rt, const duite_kernel *kernel)
+{
+    const struct work_why why = {"duite_kernel_add", "the other ranks to add the kernel", NULL};
+    struct comm_word own = {0};
+    int code = api_enter(rt, why.call);
+    if (code)
+        return code;
+    if (!kernel)
+        return api_remember(rt,
+                            base_error(DUITE_E_ARGUMENT, "duite_kernel_add: the kernel is NULL"));
+    const int wrong = task_kernel_check(&rt->graph, kernel);
+    if (wrong == DUITE_E_MEMORY)
+        return api_remember(rt, wrong);
+    task_mix(&rt->graph, wrong ? (uint64_t)wrong : kernel_hash(kernel, 0));
+    code = api_meet(rt, why.call, NULL);
+    if (code)
+        return code;
+    code = wrong ? task_kernel_check(&rt->graph, kernel) : kernel_add(rt, kernel);
+    if (code)
+        return api_remember(rt, code);
+    return rt->comm ? api_collective(rt, &why, COMM_AGREES, &own) : DUITE_OK;
 }

@@ -151,6 +151,16 @@ int api_body_join(struct duite_call_private *body, duite_object object)
     return body_remember(body, code ? code : task_join(body->graph, body, body->worker, object));
 }
 
+/* A body that waits with MPI held could wait for ever. */
+static int body_enter_wait(const struct duite_call_private *body, const char *call)
+{
+    if (task_holds_mpi(body))
+        return base_error(DUITE_E_STATE,
+                          "%s: a task of kernel %s waits between duite_mpi_begin and duite_mpi_end",
+                          call, body->graph->kernels[body->task->kernel]->name);
+    return body_enter(body, call);
+}
+
 /* `text` becomes the task's message if the body returns the code. */
 BODY_ERROR body_too_deep(struct duite_call_private *body, const char *text)
 {
@@ -199,7 +209,7 @@ static int body_get(struct duite_call_private *body, duite_object object, void *
 {
     struct data_version *version = NULL;
     size_t bytes = 0, size;
-    int code = body_enter(body, call);
+    int code = body_enter_wait(body, call);
     if (!code && !values && !count)
         code = base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the answer", call);
     if (!code)
@@ -226,7 +236,7 @@ int api_body_get(struct duite_call_private *body, duite_object object, void *val
 {
     struct data_version *version =
         values && body_may_call(body) ? task_see_given(body, object) : NULL;
-    if (!version || body->remembered)
+    if (!version || (body->remembered | body->refused))
         return get_any(body, object, values, count, call);
     if (!data_version_ready(version))
         work_inside(body->worker, body->scope, version_is_there, version);
@@ -238,6 +248,26 @@ int api_body_get(struct duite_call_private *body, duite_object object, void *val
     return DUITE_OK;
 }
 
+/* Of several errors, that of the first object in the list. */
+int api_body_wait_for(struct duite_call_private *body, size_t n, const duite_object *objects)
+{
+    char text[1024];
+    int code = n && !objects ? base_error(DUITE_E_ARGUMENT, "duite_wait_for: the objects are NULL")
+                             : DUITE_OK;
+    snprintf(text, sizeof text, "%s", duite_message());
+    for (size_t i = 0; i < n && objects; i++) {
+        size_t count;
+        const int own = body_get(body, objects[i], NULL, &count, "duite_wait_for");
+        if (own && !code)
+            snprintf(text, sizeof text, "%s", duite_message());
+        code = code ? code : own;
+    }
+    const int before = body_recall(body);
+    if (before)
+        return before;
+    return code ? base_error(code, "%s", text) : DUITE_OK;
+}
+
 static bool body_is_alone(void *context)
 {
     return task_alone(context);
@@ -246,9 +276,11 @@ static bool body_is_alone(void *context)
 int api_body_wait(struct duite_call_private *body)
 {
     struct task_scope *scope = body->scope;
+    int code = DUITE_OK;
+    if (task_holds_mpi(body))
+        return body_enter_wait(body, "duite_wait");
     if (!scope)
         return body_recall(body);
-    int code = DUITE_OK;
     if (!task_alone(scope))
         code = work_inside(body->worker, scope, body_is_alone, scope);
     if (!task_alone(scope))
@@ -257,6 +289,30 @@ int api_body_wait(struct duite_call_private *body)
     code = body_recall(body);
     const struct data_failure *failure = code ? NULL : task_first_failure(scope);
     return failure ? task_failure_error(body->graph, failure) : code;
+}
+
+/* ---- MPI and events ---- */
+
+/* body->refused makes sure that the end of a body which still holds MPI is seen. */
+int api_body_mpi_begin(struct duite_call_private *body)
+{
+    if (task_holds_mpi(body))
+        return base_error(DUITE_E_STATE, "duite_mpi_begin: it was called before in this body");
+    comm_guests_hold(&body->graph->guests, body);
+    if (!body->refused)
+        body->refused = DUITE_E_STATE;
+    return DUITE_OK;
+}
+
+int api_body_mpi_end(struct duite_call_private *body)
+{
+    if (!task_holds_mpi(body))
+        return base_error(DUITE_E_STATE,
+                          "duite_mpi_end: duite_mpi_begin was not called in this body");
+    comm_guests_let_go(&body->graph->guests);
+    if (body->refused == DUITE_E_STATE)
+        body->refused = DUITE_OK;
+    return DUITE_OK;
 }
 
 /* From any thread. */

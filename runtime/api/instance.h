@@ -39,6 +39,7 @@ struct duite {
     char message[1024]; /* of `remembered` */
     struct recorded_graph *recorded; /* by slot, from 1 on */
     size_t n_recorded, recorded_capacity;
+    struct api_get *gets;         /* begun and not ended, the first one first */
     struct api_turn *turns;       /* objects that the program has acquired, the last one first */
     struct plan_record *building; /* the one that build forks into, or NULL */
     uint64_t graphs_recorded;
@@ -112,6 +113,15 @@ void api_throttle(duite *rt);
  * before it. *first, if not NULL: the word of the first failure of all ranks, searched for only if
  * there is one. */
 int api_meet(duite *rt, const char *call, struct comm_word *first);
+/* The words of all ranks meet: *own, this rank's, becomes that of the first failure of all, if
+ * there is one. */
+int api_first_failure(duite *rt, const char *call, struct comm_word *own);
+/* This rank makes a call that waits, as all do; `kind` must be the same on all. */
+int api_enter_wait(duite *rt, const char *kind, const char *call);
+/* Works until the copy is there, or communication broke and its task is over. */
+void api_wait_for_copy(duite *rt, const struct work_why *why, struct task_copy *copy);
+/* Returns the remembered error, once. */
+int api_recall(duite *rt);
 /* A collective call, with comm_words as its result. The fingerprint of own is filled in here. There
  * are several ranks. Errors: those of communication. */
 int api_collective(duite *rt, const struct work_why *why, enum comm_collective kind,
@@ -137,6 +147,12 @@ void api_trace_begin(duite *rt, const duite_options *options);
  * that want it. */
 int api_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
             const char *call);
+
+/* ---- wait_for.c ---- */
+
+/* DUITE_E_NOT_FREED if gets are left that were begun; frees them, no task is left. */
+int api_gets_left(const duite *rt);
+void api_gets_stop(duite *rt);
 
 /* ---- graphs.c ---- */
 
@@ -176,6 +192,9 @@ int api_body_wait(struct duite_call_private *body);
 int api_body_split(struct duite_call_private *body, duite_object object, size_t n,
                    const size_t *counts, const duite_object *parts);
 int api_body_join(struct duite_call_private *body, duite_object object);
+int api_body_wait_for(struct duite_call_private *body, size_t n, const duite_object *objects);
+int api_body_mpi_begin(struct duite_call_private *body);
+int api_body_mpi_end(struct duite_call_private *body);
 
 #pragma GCC visibility pop
 

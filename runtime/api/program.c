@@ -71,24 +71,30 @@ int api_settle(duite *rt)
 
 int duite_mpi_begin(duite *rt)
 {
+    struct duite_call_private *body = api_body(rt);
+    if (body)
+        return api_body_mpi_begin(body);
     const int code = api_enter(rt, "duite_mpi_begin");
     if (code)
         return code;
-    comm_hold(rt->comm);
+    comm_guests_hold(&rt->graph.guests, rt);
     rt->mpi_held = true;
     return DUITE_OK;
 }
 
 int duite_mpi_end(duite *rt)
 {
+    struct duite_call_private *body = api_body(rt);
+    if (body)
+        return api_body_mpi_end(body);
     if (!rt)
         return base_error(DUITE_E_ARGUMENT, "duite_mpi_end: no runtime");
     if (!work_may_fork(rt->pool))
-        return base_error(DUITE_E_STATE, "duite_mpi_end is for the main thread, outside of bodies");
+        return base_error(DUITE_E_STATE, "duite_mpi_end is for the main thread and bodies");
     if (!rt->mpi_held)
         return base_error(DUITE_E_STATE, "duite_mpi_end: duite_mpi_begin was not called");
     rt->mpi_held = false;
-    comm_let_go(rt->comm);
+    comm_guests_let_go(&rt->graph.guests);
     return DUITE_OK;
 }
 

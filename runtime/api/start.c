@@ -103,6 +103,7 @@ static int instance_start_graph(duite *rt, const duite_options *options)
                                                .n_kernels = rt->graph.n_kernels,
                                                .monitor = &rt->monitor,
                                                .report = options->trace ? &work_report : NULL});
+    comm_guests_start(&rt->graph.guests, rt->comm, task_guest_over, &rt->graph);
     return code;
 }
 
@@ -192,16 +193,17 @@ struct instance_leftovers {
     struct work_stillness still;
 };
 
-/* True if no task is left, or if a rank is lost and nothing moves. Tasks that wait for transfers
- * which MPI cannot finish then stay where they are. */
+/* True if no task is left; or if nothing moves and a rank is lost, or requests of the program wait
+ * for partners whose bodies never ran. Tasks that wait for transfers which MPI cannot finish then
+ * stay where they are. */
 static bool instance_has_nothing_left(void *context)
 {
     struct instance_leftovers *leftovers = context;
     duite *rt = leftovers->rt;
     if (!work_unfinished(rt->pool) && !offload_count(&rt->graph))
         return true;
-    return comm_is_lost(rt->comm) && !task_events_pending(&rt->graph) &&
-           work_stands_still(rt->pool, &leftovers->still);
+    return (comm_is_lost(rt->comm) || comm_guests_are_here(&rt->graph.guests)) &&
+           !task_events_pending(&rt->graph) && work_stands_still(rt->pool, &leftovers->still);
 }
 
 void api_give_up(duite *rt)
@@ -227,6 +229,8 @@ static void instance_end(duite *rt)
     base_marks_stop(rt->marks);
     plan_memo_stop(rt->memo);
     api_graphs_stop(rt); /* closes their channels */
+    api_gets_stop(rt);
+    comm_guests_stop(&rt->graph.guests);
     bool whole = comm_stop(rt->comm);
     trace_free(rt->trace, whole);
     if (whole)
@@ -296,7 +300,8 @@ static int instance_not_freed(const duite *rt)
             return base_error(
                 DUITE_E_NOT_FREED, "%u objects were not freed; the first is %u.%u, %zu bytes",
                 table->n_alive, slot, table->object[slot].generation, table->object[slot].bytes);
-    return api_graphs_left(rt);
+    const int code = api_graphs_left(rt);
+    return code ? code : api_gets_left(rt);
 }
 
 int duite_stop(duite **out)

@@ -9,8 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Returns the remembered error, once. */
-static int wait_recall(duite *rt)
+int api_recall(duite *rt)
 {
     int code = rt->remembered;
     rt->remembered = DUITE_OK;
@@ -49,8 +48,7 @@ int api_collective(duite *rt, const struct work_why *why, enum comm_collective k
     return comm_error(rt->comm);
 }
 
-/* This rank makes a call that blocks, as all do; `kind` must be the same on all. */
-static int wait_enter(duite *rt, const char *kind, const char *call)
+int api_enter_wait(duite *rt, const char *kind, const char *call)
 {
     struct comm_word own = {0};
     if (!rt->comm)
@@ -64,8 +62,7 @@ static int wait_enter(duite *rt, const char *kind, const char *call)
                : DUITE_OK;
 }
 
-/* Works until the copy is there. */
-static void wait_for_copy(duite *rt, const struct work_why *why, struct task_copy *copy)
+void api_wait_for_copy(duite *rt, const struct work_why *why, struct task_copy *copy)
 {
     comm_waits(rt->comm, true);
     work_until(rt->pool, why, copy_is_done, copy);
@@ -87,11 +84,11 @@ int api_get(duite *rt, duite_object object, int rank, void *values, size_t *coun
     if (code == DUITE_E_MEMORY)
         return api_remember(rt, code);
     if (!code)
-        code = wait_enter(rt, call, call);
+        code = api_enter_wait(rt, call, call);
     if (code || !here)
         return code;
     const struct data_key key = task_version_of(&rt->graph, object);
-    wait_for_copy(rt, &(struct work_why){call, NULL, &key}, &copy);
+    api_wait_for_copy(rt, &(struct work_why){call, NULL, &key}, &copy);
     if (comm_is_broken(rt->comm))
         return comm_error(rt->comm);
     if (!values && !count) /* checked only now: the other ranks count on this one */
@@ -115,7 +112,7 @@ static int get_and_recall(duite *rt, duite_object object, int rank, void *values
     const uint64_t from = rt->trace ? base_ticks() : 0;
     code = api_get(rt, object, rank, values, count, call);
     trace_get(rt->trace, object, rank, from);
-    int before = wait_recall(rt);
+    int before = api_recall(rt);
     return before ? before : code;
 }
 
@@ -167,7 +164,7 @@ static int wait_for_own_tasks(duite *rt, const char *call)
     work_tick(rt->pool);
     int code = api_check_turns(rt, call);
     if (!code)
-        code = wait_enter(rt, "duite_wait", call);
+        code = api_enter_wait(rt, "duite_wait", call);
     if (code)
         return code;
     comm_waits(rt->comm, true);
@@ -177,17 +174,38 @@ static int wait_for_own_tasks(duite *rt, const char *call)
     return DUITE_OK;
 }
 
-/* The word whose failure is first in fork order; of equal ones, that of the lower rank's task. */
+static bool word_is_earlier(const struct comm_word *one, const struct comm_word *other)
+{
+    const struct data_failure *a = &one->failure, *b = &other->failure;
+    if (!one->failed || !other->failed)
+        return one->failed;
+    if (a->number != b->number)
+        return a->number < b->number;
+    const int order = memcmp(a->path, b->path, sizeof a->path);
+    return order ? order < 0 : a->rank < b->rank;
+}
+
+/* The word whose failure is first in the reference order; of equal ones, that of the lower rank's
+ * task. */
 static const struct comm_word *wait_first_word(const duite *rt)
 {
     const struct comm_word *words = comm_words(rt->comm), *first = words;
-    for (const struct comm_word *one = words + 1; one < words + rt->graph.n_ranks; one++) {
-        const bool same = one->failed == first->failed;
-        if (one->failed && (!first->failed || one->failed < first->failed ||
-                            (same && one->failure.rank < first->failure.rank)))
+    for (const struct comm_word *one = words + 1; one < words + rt->graph.n_ranks; one++)
+        if (word_is_earlier(one, first))
             first = one;
-    }
     return first;
+}
+
+int api_first_failure(duite *rt, const char *call, struct comm_word *own)
+{
+    const struct work_why why = {call, "the tasks of other ranks", NULL};
+    int code = rt->comm ? api_collective(rt, &why, COMM_AGREES, own) : DUITE_OK;
+    if (!rt->comm || code || !comm_words(rt->comm)->failed)
+        return code;
+    code = api_collective(rt, &why, COMM_GATHERS, own);
+    if (!code)
+        *own = *wait_first_word(rt);
+    return code;
 }
 
 int api_meet(duite *rt, const char *call, struct comm_word *first)
@@ -197,12 +215,10 @@ int api_meet(duite *rt, const char *call, struct comm_word *first)
     if (code)
         return code;
     struct comm_word own = wait_last_word(rt);
-    if (rt->comm)
+    if (first)
+        code = api_first_failure(rt, call, &own);
+    else if (rt->comm)
         code = api_collective(rt, &why, COMM_AGREES, &own);
-    if (rt->comm && !code && first && comm_words(rt->comm)->failed) {
-        code = api_collective(rt, &why, COMM_GATHERS, &own);
-        own = code ? own : *wait_first_word(rt);
-    }
     if (first)
         *first = own;
     return code;
@@ -220,7 +236,7 @@ int api_wait(duite *rt, const char *call)
     code = api_meet(rt, call, &first);
     if (code)
         return code;
-    code = wait_recall(rt);
+    code = api_recall(rt);
     const struct data_failure *failure = &first.failure;
     if (code || !first.failed)
         return code;
@@ -267,7 +283,7 @@ static int counters_gather(duite *rt, duite_counters *counters)
     struct comm_word own = {0};
     duite_counters sum = {0}, of;
     _Static_assert(sizeof of <= sizeof own.number, "a word has room for the counters of a rank");
-    int code = wait_enter(rt, why.call, why.call);
+    int code = api_enter_wait(rt, why.call, why.call);
     if (!rt->comm || code)
         return code;
     code = api_collective(rt, &why, COMM_AGREES, &own);

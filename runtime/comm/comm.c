@@ -50,6 +50,12 @@ int comm_start(struct comm **out, MPI_Comm mpi, const struct comm_setup *setup)
     return comm_prepare(comm);
 }
 
+void comm_set_kernels(struct comm *comm, const duite_kernel *const *kernels, uint32_t n)
+{
+    comm->setup.kernels = kernels;
+    comm->setup.n_kernels = n;
+}
+
 void comm_open(struct comm *comm, bool requests)
 {
     if (!comm)

@@ -71,6 +71,9 @@ void comm_ring(struct comm *comm, double seconds, const char *host);
  * it while it starts. All ranks call this or none. NULL is fine. */
 void comm_open(struct comm *comm, bool requests);
 
+/* The kernels from now on. Under the lock (comm_hold). */
+void comm_set_kernels(struct comm *comm, const duite_kernel *const *kernels, uint32_t n);
+
 /* Frees everything; no other thread and no task is left. Collective: all ranks have agreed
  * (COMM_AGREES) that nothing is on its way; or communication is broken, and this waits until that
  * is so. False if MPI may still use its communicator, which then must not be freed. */

@@ -35,6 +35,11 @@ enum comm_call_kind {
     ROW(GET, "duite_get")                                                                          \
     ROW(GET_AT, "duite_get_at")                                                                    \
     ROW(GET_COUNT, "duite_get_count")                                                              \
+    ROW(GET_BEGIN, "duite_get_begin")                                                              \
+    ROW(GET_END, "duite_get_end")                                                                  \
+    ROW(WAIT_FOR, "duite_wait_for")                                                                \
+    ROW(TEST, "duite_test")                                                                        \
+    ROW(KERNEL_ADD, "duite_kernel_add")                                                            \
     ROW(WAIT, "duite_wait")                                                                        \
     ROW(STOP, "duite_stop")                                                                        \
     ROW(ACQUIRE, "duite_acquire")                                                                  \

@@ -15,7 +15,7 @@ struct duite_call_private {
     const duite_param *param; /* as the runtime keeps them */
     struct task_scope *scope; /* what its children may use, or NULL as long as it has none */
     int refused;       /* code of a duite_resize or duite_contribute that failed, or 0: the body
-                          then fails at least with it */
+                          then fails at least with it; DUITE_E_STATE: it holds MPI */
     int remembered;    /* the first error of its calls that it may not have looked at */
     char message[204]; /* of `remembered` */
     char text[sizeof((struct data_failure *)0)->text]; /* its message about its failure */
@@ -33,6 +33,12 @@ static inline struct duite_call_private *task_running(const struct task_graph *g
 {
     struct duite_call_private *body = task_innermost;
     return body && body->graph == graph ? body : NULL;
+}
+
+/* True between the body's duite_mpi_begin and duite_mpi_end. */
+static inline bool task_holds_mpi(const struct duite_call_private *body)
+{
+    return comm_guests_are_held(&body->graph->guests, body);
 }
 
 /* True if a body, running or just over, forked a task or made an object. */

@@ -1,17 +1,21 @@
 /* Events: a task of a kernel with `events` is HELD. It ends when its body is over and all events
  * that the body made are completed. task->pending counts both; the last one ends the task. A thread
- * of the program cannot end tasks, so it hands the task to the workers by the shared queue. */
+ * of the program cannot end tasks, so it hands the task to the workers by the shared queue.
+ * Requests of MPI that a body hands over are one event, which the worker that finds them over
+ * completes. */
 #include "runtime/task/event.h"
 
 #include "runtime/base/memory.h"
 #include "runtime/task/internal.h"
 
 #include <sched.h>
+#include <stdio.h>
 
 /* The generation of a slot is odd while its event is not completed. */
 struct task_event {
     struct task *task;
     uint32_t generation, vacant; /* vacant: the next slot without an event, or 0 */
+    int requests;                /* of MPI, which complete it; 0: the program does */
 };
 
 /* ---- The held task ---- */
@@ -50,7 +54,7 @@ void task_held_over(struct task_graph *graph, struct worker *worker, struct task
     const duite_kernel *kernel = graph->kernels[task->kernel];
     if (kernel == &task_join_kernel)
         task_join_over(task_rest(task, task->n), failure);
-    else if (task->kernel >= graph->own_kernels && kernel != &task_split_kernel)
+    else if (task->kernel - graph->own_kernels < graph->n_own && kernel != &task_split_kernel)
         graph->own_over(graph, task_rest(task, task->n), failure);
     task_finish(graph, worker, task);
 }
@@ -73,26 +77,25 @@ static struct task_event *event_take(struct task_events *events, uint32_t *slot)
     struct task_event *event = events->event + *slot;
     events->vacant = event->vacant;
     event->generation++;
-    events->pending++;
     return event;
 }
 
-int duite_event_new(const duite_call *call, duite_event *event)
+/* An event of the body's task, which so many requests of MPI complete, or with 0 the program. */
+static int event_make(const duite_call *call, const char *name, int requests, duite_event *event)
 {
     struct task *task = call->own->task;
     struct task_graph *graph = call->own->graph;
     uint32_t slot;
-    if (!event)
-        return base_error(DUITE_E_ARGUMENT, "duite_event_new: nowhere to put the event");
     *event = (duite_event){0, 0};
     if (task->state != TASK_HELD)
-        return base_error(DUITE_E_STATE,
-                          "duite_event_new: kernel %s does not say that its tasks have events",
-                          graph->kernels[task->kernel]->name);
+        return base_error(DUITE_E_STATE, "%s: kernel %s does not say that its tasks have events",
+                          name, graph->kernels[task->kernel]->name);
     pthread_mutex_lock(&graph->lock);
     struct task_event *own = event_take(&graph->events, &slot);
     if (own) {
         own->task = task;
+        own->requests = requests;
+        graph->events.pending += !requests;
         *event = (duite_event){slot, own->generation};
         atomic_fetch_add_explicit(&task->pending, 1, memory_order_relaxed);
     }
@@ -100,19 +103,28 @@ int duite_event_new(const duite_call *call, duite_event *event)
     return own ? DUITE_OK : base_no_memory("an event");
 }
 
-/* Takes the event out of the table. NULL: it is not there. */
-static struct task *event_remove(struct task_graph *graph, duite_event name)
+int duite_event_new(const duite_call *call, duite_event *event)
+{
+    if (!event)
+        return base_error(DUITE_E_ARGUMENT, "duite_event_new: nowhere to put the event");
+    return event_make(call, "duite_event_new", 0, event);
+}
+
+/* Takes the event out of the table, one that requests of MPI complete or one of the program's.
+ * NULL: it is not there. */
+static struct task *event_remove(struct task_graph *graph, duite_event name, bool requests)
 {
     struct task_events *events = &graph->events;
     struct task *task = NULL;
     pthread_mutex_lock(&graph->lock);
     struct task_event *event = name.slot < events->n ? events->event + name.slot : NULL;
-    if (event && event->generation == name.generation && name.generation % 2) {
+    if (event && event->generation == name.generation && name.generation % 2 &&
+        requests == (event->requests != 0)) {
         task = event->task;
         event->generation++;
         event->vacant = events->vacant;
         events->vacant = name.slot;
-        events->pending--;
+        events->pending -= !requests;
     }
     pthread_mutex_unlock(&graph->lock);
     return task;
@@ -135,7 +147,7 @@ void task_events_settle(struct task_graph *graph)
 int task_complete(struct task_graph *graph, duite_event event, int code)
 {
     atomic_fetch_add_explicit(&graph->events.inside, 1, memory_order_relaxed);
-    struct task *task = event_remove(graph, event);
+    struct task *task = event_remove(graph, event, false);
     if (task && code) {
         struct data_failure failure = {.code = code, .text = "its event was completed with it"};
         task_held_fail(task, task_fail_task(task, NULL, &failure));
@@ -164,6 +176,64 @@ void task_events_look(struct task_graph *graph, task_event_seen *seen, void *con
     for (uint32_t slot = 1; slot < events->n; slot++)
         if (events->event[slot].generation % 2)
             seen(context, events->event[slot].task,
-                 (duite_event){slot, events->event[slot].generation});
+                 (duite_event){slot, events->event[slot].generation}, events->event[slot].requests);
     pthread_mutex_unlock(&graph->lock);
+}
+
+/* ---- Requests of MPI ---- */
+
+static int await_check(int n, const MPI_Request *requests)
+{
+    if (n < 0 || (n && !requests))
+        return base_error(DUITE_E_ARGUMENT, "duite_await_mpi: %d requests %s", n,
+                          n < 0 ? "cannot be" : "at NULL");
+    for (int i = 0; i < n; i++)
+        if (requests[i] == MPI_REQUEST_NULL)
+            return base_error(DUITE_E_ARGUMENT,
+                              "duite_await_mpi: request %d of %d is MPI_REQUEST_NULL: it never "
+                              "began, is over, or was handed over before",
+                              i + 1, n);
+    return DUITE_OK;
+}
+
+int duite_await_mpi(const duite_call *call, int n, MPI_Request *requests)
+{
+    struct task_graph *graph = call->own->graph;
+    int code = await_check(n, requests);
+    if (code || !n)
+        return code;
+    struct comm_guest *guest = comm_guest_new(n, requests);
+    if (!guest)
+        return base_no_memory("requests of MPI");
+    code = event_make(call, "duite_await_mpi", n, &guest->event);
+    if (code) {
+        base_free(guest);
+        return code;
+    }
+    for (int i = 0; i < n; i++)
+        requests[i] = MPI_REQUEST_NULL;
+    comm_guest_add(&graph->guests, guest);
+    queue_wake_one(graph->pool, DUITE_NO_QUEUE); /* an idle worker polls; this one may be busy */
+    return DUITE_OK;
+}
+
+void task_guest_over(void *context, struct worker *worker, struct comm_guest *guest)
+{
+    struct task_graph *graph = context;
+    struct task *task = event_remove(graph, guest->event, true);
+    if (task && guest->failed) {
+        struct data_failure failure = {.code = DUITE_E_MPI};
+        snprintf(failure.text, sizeof failure.text, "request %d of the %d that it awaits: %.120s",
+                 guest->failed, guest->n, guest->text);
+        task_held_fail(task, task_fail_task(task, NULL, &failure));
+    }
+    base_free(guest);
+    if (!task || !held_release(task))
+        return;
+    if (worker) {
+        task->state = TASK_ENDED;
+        task_held_over(graph, worker, task);
+    } else {
+        event_pass_on(graph, task);
+    }
 }

@@ -29,9 +29,13 @@ int task_complete(struct task_graph *graph, duite_event event, int code);
 /* Waits until no thread is in task_complete any more. All tasks are over. */
 void task_events_settle(struct task_graph *graph);
 
-/* How many events are not completed; shows them all. Any thread. */
+/* For comm_guests: requests that a task of the graph waits for are over. */
+comm_guest_over task_guest_over;
+
+/* How many events the program has not completed. Shows these, and those that complete with n
+ * requests of MPI; else n is 0. Any thread. */
 uint32_t task_events_pending(struct task_graph *graph);
-typedef void task_event_seen(void *context, const struct task *task, duite_event event);
+typedef void task_event_seen(void *context, const struct task *task, duite_event event, int n);
 void task_events_look(struct task_graph *graph, task_event_seen *seen, void *context);
 
 #pragma GCC visibility pop

@@ -1,5 +1,5 @@
-/* The life of the graph itself, its kernels, and the failures of tasks, which are kept until stop
- * so that poison can point at them. */
+/* The life of the graph itself, and the failures of tasks, which are kept until stop so that poison
+ * can point at them. */
 #include "runtime/task/internal.h"
 
 #include "runtime/base/error.h"
@@ -12,140 +12,6 @@ struct task_failure {
     struct task_failure *next;
     struct data_failure failure;
 };
-
-/* A replicated kernel leaves the same values on all ranks, and has no other effect. */
-static int kernel_check_replicated(const duite_kernel *kernel)
-{
-    const char *why = kernel->side_effects ? "has side effects"
-                      : kernel->events     ? "has events, which would complete once for each rank"
-                                           : NULL;
-    for (uint32_t i = 0; i <= DUITE_MAX_ACCESS && !why; i++) {
-        duite_mode mode = i < DUITE_MAX_ACCESS ? kernel->access[i] : kernel->variadic;
-        if (mode == DUITE_CW)
-            why = "accumulates (cw), which would count once for each rank";
-        else if (task_postponed(mode))
-            why = "has a postponed mode: its children would run once for each rank";
-    }
-    return kernel->replicated && why
-               ? base_error(DUITE_E_KERNEL, "kernel %s is replicated, but %s", kernel->name, why)
-               : DUITE_OK;
-}
-
-static int kernel_check(const duite_kernel *kernel, uint32_t index, struct task_fixed *fixed)
-{
-    if (!kernel->name || !kernel->name[0])
-        return base_error(DUITE_E_KERNEL, "kernel %u of the list has no name", index);
-    if (!kernel->body)
-        return base_error(DUITE_E_KERNEL, "kernel %s has no body", kernel->name);
-    *fixed = (struct task_fixed){.kernel = kernel,
-                                 .index = index,
-                                 .hash = task_fork_hash(task_fork_what(index, TASK_ANYWHERE)),
-                                 .few = kernel->variadic == DUITE_NONE && !kernel->replicated &&
-                                        !kernel->events};
-    bool contributes = false;
-    for (uint32_t i = 0; i < DUITE_MAX_ACCESS; i++) {
-        duite_mode mode = kernel->access[i];
-        if ((int)mode < DUITE_NONE || mode > DUITE_CWP)
-            return base_error(DUITE_E_KERNEL, "kernel %s: parameter %u has no such mode: %d",
-                              kernel->name, i, (int)mode);
-        if (mode != DUITE_NONE && i != fixed->n)
-            return base_error(DUITE_E_KERNEL, "kernel %s: parameter %u has a mode after DUITE_NONE",
-                              kernel->name, i);
-        fixed->n += mode != DUITE_NONE;
-        fixed->postponed += task_postponed(mode);
-        fixed->few &= !task_postponed(mode);
-        contributes |= mode == DUITE_CW;
-    }
-    if ((int)kernel->variadic < DUITE_NONE || kernel->variadic > DUITE_CWP)
-        return base_error(DUITE_E_KERNEL, "kernel %s: `variadic` has no such mode: %d",
-                          kernel->name, (int)kernel->variadic);
-    const size_t grains = task_grains(fixed->n, kernel->args_size);
-    fixed->few &= fixed->n <= TASK_FEW && grains <= UINT32_MAX;
-    fixed->plain = fixed->few && !contributes;
-    fixed->grains = (uint32_t)grains;
-    fixed->owner[0] = task_owner(kernel->access, kernel->variadic, fixed->n);
-    fixed->owner[1] = task_owner(kernel->access, kernel->variadic, (size_t)fixed->n + 1);
-    return kernel_check_replicated(kernel);
-}
-
-static int kernel_check_unique(const duite_kernel *const kernels[], uint32_t index)
-{
-    for (uint32_t i = 0; i < index; i++)
-        if (!strcmp(kernels[i]->name, kernels[index]->name))
-            return base_error(DUITE_E_KERNEL, "two kernels of the list have the name %s",
-                              kernels[i]->name);
-    return DUITE_OK;
-}
-
-/* Finds out once what each fork of a plain kernel needs. */
-static int kernel_prepare(const struct task_graph *graph, uint32_t index)
-{
-    struct task_fixed *fixed = &graph->fixed[index];
-    const uint32_t n = fixed->n;
-    struct task *head;
-    if (!fixed->plain)
-        return DUITE_OK;
-    fixed->direct = graph->n_ranks == 1;
-    fixed->head = head = base_alloc(sizeof *head + n * sizeof head->access[0]);
-    if (!head)
-        return base_no_memory("the list of kernels");
-    *head = (struct task){.pending = n + 1,
-                          .n = n,
-                          .kernel = index,
-                          .grains = fixed->grains,
-                          .type = TASK_BODY,
-                          .placed = fixed->owner[0] != TASK_NOBODY};
-    for (uint32_t i = 0; i < n; i++)
-        head->access[i] = (struct task_access){
-            .waiter = {.back = (uint32_t)(sizeof *head + i * sizeof head->access[0]),
-                       .mode = fixed->kernel->access[i]}};
-    return DUITE_OK;
-}
-
-/* The places of all kernels by their addresses; at most half of them are taken. */
-static int kernels_index(struct task_graph *graph)
-{
-    graph->kernel_mask = 3;
-    while (graph->kernel_mask < 2 * (uint64_t)graph->n_kernels)
-        graph->kernel_mask = 2 * graph->kernel_mask + 1;
-    graph->kernel_place =
-        base_alloc_zero(((size_t)graph->kernel_mask + 1) * sizeof *graph->kernel_place);
-    if (!graph->kernel_place)
-        return base_no_memory("the list of kernels");
-    for (uint32_t i = 0; i < graph->n_kernels; i++) {
-        uint32_t at = task_kernel_hash(graph->kernels[i]);
-        while (graph->kernel_place[at & graph->kernel_mask])
-            at++;
-        graph->kernel_place[at & graph->kernel_mask] = &graph->fixed[i];
-    }
-    return DUITE_OK;
-}
-
-static int kernels_take(struct task_graph *graph, const duite_kernel *const *kernels,
-                        const duite_law *const *laws)
-{
-    size_t n = 0;
-    while (kernels[n])
-        n++;
-    graph->kernels = base_alloc(n * sizeof graph->kernels[0]);
-    graph->fixed = base_alloc_zero(n * sizeof *graph->fixed);
-    if (!graph->kernels || !graph->fixed)
-        return base_no_memory("the list of kernels");
-    memcpy(graph->kernels, kernels, n * sizeof graph->kernels[0]);
-    graph->n_kernels = (uint32_t)n;
-    for (uint32_t i = 0; i < n; i++) {
-        int code = kernel_check(graph->kernels[i], i, &graph->fixed[i]);
-        if (!code)
-            code = kernel_check_unique(graph->kernels, i);
-        if (!code)
-            code = data_law_check_kernel(graph->kernels[i], laws);
-        if (!code)
-            code = kernel_prepare(graph, i);
-        if (code)
-            return code;
-    }
-    return kernels_index(graph);
-}
 
 int task_graph_start(struct task_graph *graph, int rank, int n_ranks,
                      const duite_kernel *const *kernels, const duite_law *const *laws)
@@ -163,7 +29,7 @@ int task_graph_start(struct task_graph *graph, int rank, int n_ranks,
         code = base_no_memory("the history of calls");
     if (!code)
         code = data_laws_check(laws);
-    return code ? code : kernels_take(graph, kernels, laws);
+    return code ? code : task_kernels_start(graph, kernels, laws);
 }
 
 void task_graph_stop(struct task_graph *graph)
@@ -188,11 +54,7 @@ void task_graph_stop(struct task_graph *graph)
     }
     base_free(graph->history);
     base_free(graph->events.event);
-    for (uint32_t i = 0; i < graph->n_kernels; i++)
-        base_free(graph->fixed[i].head);
-    base_free(graph->fixed);
-    base_free(graph->kernels);
-    base_free(graph->kernel_place);
+    task_kernels_stop(graph);
     data_table_stop(&graph->table);
     pthread_mutex_destroy(&graph->lock);
 }

@@ -93,6 +93,12 @@ int task_gather(struct task_scope *scope, struct worker *worker, struct data_obj
                 struct data_piece *leaf);
 void task_run_gather(struct task *task);
 
+/* The kernels of a graph that starts, or stops (kernels.c). Errors: DUITE_E_KERNEL, DUITE_E_LAW,
+ * memory; the stop is due all the same. */
+int task_kernels_start(struct task_graph *graph, const duite_kernel *const *kernels,
+                       const duite_law *const *laws);
+void task_kernels_stop(struct task_graph *graph);
+
 /* The place where a search for a kernel begins in the table of kernel addresses. */
 static inline uint32_t task_kernel_hash(const duite_kernel *kernel)
 {

@@ -70,6 +70,40 @@ int task_copy(struct task_graph *graph, struct worker *worker, duite_object name
                                      : DUITE_E_MEMORY;
 }
 
+int task_close(struct task_graph *graph, struct worker *worker, duite_object name)
+{
+    struct data_object *object = data_object_find(&graph->table, name);
+    if (!object)
+        return DUITE_E_OBJECT;
+    task_mix(graph, task_name_bits(name));
+    return object->leaves ? task_reduce(&graph->root, worker, object) : DUITE_OK;
+}
+
+/* The value that this rank makes or keeps for all; a copy of another rank's may still be on its
+ * way. NULL: there is none. */
+static struct data_version *value_held(const struct task_graph *graph,
+                                       const struct data_object *object)
+{
+    return object->holder == graph->rank ? object->current : NULL;
+}
+
+int task_await(struct task_graph *graph, struct worker *worker, duite_object name,
+               struct task_copy *copy)
+{
+    const int code = task_close(graph, worker, name);
+    const struct data_object *object = code ? NULL : data_object_here(&graph->table, name);
+    if (object && value_held(graph, object))
+        return object_read(graph, worker, object, TASK_COPY, copy);
+    atomic_store_explicit(&copy->done, 1, memory_order_relaxed);
+    return code;
+}
+
+bool task_is_there(const struct task_graph *graph, duite_object name)
+{
+    const struct data_version *value = value_held(graph, &graph->table.object[name.slot]);
+    return !value || data_version_ready(value);
+}
+
 int task_see(struct duite_call_private *body, const char *call, duite_object name,
              struct data_version **version, size_t *size)
 {

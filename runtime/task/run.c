@@ -143,7 +143,13 @@ int duite_fail_text(const duite_call *call, int code, const char *text)
 const struct data_failure *task_body_failure(const struct duite_call_private *body, int code)
 {
     struct data_failure failure = {.code = code};
-    if (!body->text[0] && code == body->remembered)
+    const bool holds_mpi = task_holds_mpi(body);
+    if (holds_mpi)
+        comm_guests_let_go(&body->graph->guests);
+    if (holds_mpi && !body->text[0])
+        snprintf(failure.text, sizeof failure.text,
+                 "it returned between duite_mpi_begin and duite_mpi_end");
+    else if (!body->text[0] && code == body->remembered)
         memcpy(failure.text, body->message, sizeof failure.text);
     else
         memcpy(failure.text, body->text, sizeof failure.text);

@@ -1,6 +1,7 @@
 #ifndef DUITE_TASK_TASK_H
 #define DUITE_TASK_TASK_H
 
+#include "runtime/comm/guests.h"
 #include "runtime/comm/history.h"
 #include "runtime/comm/message.h"
 #include "runtime/data/object.h"
@@ -214,7 +215,8 @@ typedef void task_own_over(struct task_graph *graph, const void *args,
 struct task_events {
     struct task_event *event;
     size_t capacity;
-    uint32_t n, vacant, pending;
+    uint32_t n, vacant;
+    uint32_t pending;        /* the program is to complete; without those of requests of MPI */
     _Atomic uint32_t inside; /* threads in task_complete */
 };
 
@@ -257,19 +259,27 @@ struct task_graph {
     pthread_mutex_t lock; /* of the rest, and of the failures of scopes */
     struct task_failure *failures;
     struct task_events events;
-    uint32_t own_kernels; /* the first kernel of the runtime's own */
+    struct comm_guests guests;   /* requests of MPI that tasks wait for */
+    const duite_law **laws;      /* of the program, ended by NULL */
+    uint32_t own_kernels, n_own; /* the first kernel of the runtime's own, and how many there are */
     task_own_over *own_over;
     struct data_sum *unclosed; /* sums of ended tasks, kept for want of memory */
 };
 
-/* Checks `kernels`, which NULL ends, and copies the list; checks `laws`, likewise or NULL, and does
- * not keep it. The runner of the tasks sets `pool`, `comm`, `check` and
- * `offloaded_over`. Errors: DUITE_E_KERNEL,
+/* Checks `kernels`, which NULL ends, and `laws`, likewise or NULL, and copies the lists. The runner
+ * of the tasks sets `pool`, `comm`, `check` and `offloaded_over`. Errors: DUITE_E_KERNEL,
  * DUITE_E_LAW, memory; task_graph_stop is due all the same. */
 int task_graph_start(struct task_graph *graph, int rank, int n_ranks,
                      const duite_kernel *const *kernels, const duite_law *const *laws);
 /* Frees everything, also objects that were not freed. No task is left. */
 void task_graph_stop(struct task_graph *graph);
+
+/* Checks a kernel that is to be added, with the laws that it names. Errors: DUITE_E_KERNEL,
+ * DUITE_E_LAW, memory. */
+int task_kernel_check(const struct task_graph *graph, const duite_kernel *kernel);
+/* Adds it, with its laws. No task is left on any rank, and no other thread looks at kernels.
+ * Errors: memory; nothing has changed then. */
+int task_kernel_add(struct task_graph *graph, const duite_kernel *kernel);
 
 /* ---- Main thread, collective; the homes of all objects are settled ---- */
 
@@ -359,6 +369,14 @@ int task_join(struct task_graph *graph, struct duite_call_private *body, struct 
  * waits for copy->done on the ranks it goes to. Main thread only. */
 int task_copy(struct task_graph *graph, struct worker *worker, duite_object object, int to,
               struct task_copy *copy);
+/* The same without bytes, and without a transfer: copy->done is set once the value is there, or at
+ * once on ranks that do not hold it. */
+int task_await(struct task_graph *graph, struct worker *worker, duite_object object,
+               struct task_copy *copy);
+/* Combines the object's contributions, which an access that comes now would not be part of. Then
+ * task_is_there tells whether the value is there, or another rank holds it. */
+int task_close(struct task_graph *graph, struct worker *worker, duite_object object);
+bool task_is_there(const struct task_graph *graph, duite_object object);
 
 /* ---- Any worker ---- */
 

@@ -94,6 +94,16 @@ static bool file_write_kernels(struct trace *trace)
     return fine;
 }
 
+void trace_kernels(struct trace *trace)
+{
+    if (!trace || trace->fd < 0)
+        return;
+    pthread_mutex_lock(&trace->lock);
+    if (!file_write_kernels(trace))
+        trace->header.lost++;
+    pthread_mutex_unlock(&trace->lock);
+}
+
 static bool rings_new(struct trace *trace)
 {
     unsigned n = trace->header.workers;

@@ -36,7 +36,8 @@ struct trace_header {
 
 /* The content of a section. */
 enum trace_section_kind {
-    TRACE_KERNELS = 1, /* `worker` of them: a trace_kernel each, then their names, ended by 0 */
+    TRACE_KERNELS = 1, /* `worker` of them: a trace_kernel each, then their names, ended by 0; again
+                          with all of them when the program adds one */
     TRACE_EVENTS,      /* trace_event, of one worker, in the order of their ends */
     TRACE_PROGRAM,     /* 32-bit words, see below; rank 0 only; `worker` 1: the last one fills */
     TRACE_CLOCK,       /* trace_clock: one at the start, one at the end */

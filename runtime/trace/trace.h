@@ -136,6 +136,8 @@ void trace_fork(struct trace *trace, const duite_kernel *kernel, const struct ta
 void trace_set(struct trace *trace, duite_object name);
 void trace_get(struct trace *trace, duite_object name, int rank, uint64_t from);
 void trace_wait(struct trace *trace, uint64_t from);
+/* The graph has a kernel more: all kernels once again. On every rank. */
+void trace_kernels(struct trace *trace);
 void trace_graph(struct trace *trace, uint32_t name, const struct plan_record *record);
 /* A replay, before it begins. rounds: how many at most. */
 void trace_replay(struct trace *trace, uint32_t name, const struct plan_record *record,

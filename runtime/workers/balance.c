@@ -64,6 +64,14 @@ int work_balance_start(struct work_balance **out, struct work_pool *pool)
     return DUITE_OK;
 }
 
+int work_kernel_added(struct work_pool *pool)
+{
+    struct work_balance *balance = pool->balance;
+    return !balance || work_cost_grow(&balance->cost, pool->setup.graph->n_kernels)
+               ? DUITE_OK
+               : base_no_memory("a kernel");
+}
+
 void work_balance_stop(struct work_pool *pool)
 {
     struct work_balance *balance = pool->balance;

@@ -3,6 +3,8 @@
 
 #include "runtime/base/memory.h"
 
+#include <string.h>
+
 enum { MEMORY_SHIFT = 3 }; /* of means: the last 2^3 bodies count most */
 
 /* ---- Ticks spent for blocks ---- */
@@ -58,6 +60,22 @@ bool work_cost_start(struct work_cost *cost, unsigned workers, uint32_t kernels,
                                .spent = by_block ? base_alloc_zero(workers * sizeof *cost->spent)
                                                  : NULL};
     return cost->mean && (cost->spent || !by_block);
+}
+
+bool work_cost_grow(struct work_cost *cost, uint32_t kernels)
+{
+    const size_t row = (kernels / 8 + 2) * 8;
+    if (kernels <= cost->row)
+        return true;
+    _Atomic uint64_t *mean = base_alloc_zero(cost->workers * row * sizeof *mean);
+    if (!mean)
+        return false;
+    for (unsigned i = 0; i < cost->workers; i++)
+        memcpy(&mean[i * row], &cost->mean[i * cost->row], cost->row * sizeof *mean);
+    base_free(cost->mean);
+    cost->mean = mean;
+    cost->row = row;
+    return true;
 }
 
 void work_cost_stop(struct work_cost *cost)

@@ -40,6 +40,8 @@ struct work_cost {
 /* False without memory; work_cost_stop is due all the same. */
 bool work_cost_start(struct work_cost *cost, unsigned workers, uint32_t kernels, bool by_block);
 void work_cost_stop(struct work_cost *cost);
+/* There are so many kernels now; no body runs. False without memory: nothing has changed. */
+bool work_cost_grow(struct work_cost *cost, uint32_t kernels);
 
 /* Notes the ticks that the body of a task took on `worker`, the caller. */
 void work_cost_learn(struct work_cost *cost, unsigned worker, const struct task *task,

@@ -1,6 +1,7 @@
 /* An idle worker spins, then gives way, then sleeps until it is woken. One idle worker of a rank is
- * the poller: it looks for messages and sleeps for short pauses only, so no message waits while a
- * worker idles. A poller that gets busy leaves that to another worker.
+ * the poller: it looks for messages, and for requests of the program that are over. It sleeps for
+ * short pauses only, so no message waits while a worker idles. A poller that gets busy leaves that
+ * to another worker.
  *
  * On a core of its own a worker gives way by sched_yield. On a crowded core, which busy programs
  * use as well, it does not. There sched_yield would give each of the others a slice (15 to 60 ms
@@ -29,12 +30,26 @@ enum { LOST_FACTOR = 100 };
 
 /* ---- The poller ---- */
 
-/* Makes the idle worker the poller if there is none. Returns whether it is the poller. */
+static bool guests_are_here(const struct work_pool *pool)
+{
+    return comm_guests_are_here(&pool->setup.graph->guests);
+}
+
+static void poller_leave(struct worker *worker)
+{
+    worker->polls = false;
+    atomic_exchange_explicit(&worker->pool->poller, 0, memory_order_seq_cst);
+}
+
+/* Makes the idle worker the poller if there is none. Returns whether it is the poller. One rank
+ * needs one only for requests of the program. */
 static bool poller_take(struct worker *worker)
 {
     struct work_pool *pool = worker->pool;
-    if (pool->setup.comm && !worker->polls &&
-        !atomic_load_explicit(&pool->poller, memory_order_relaxed))
+    const bool needed = pool->setup.comm || guests_are_here(pool);
+    if (!needed && worker->polls)
+        poller_leave(worker);
+    if (needed && !worker->polls && !atomic_load_explicit(&pool->poller, memory_order_relaxed))
         worker->polls = !atomic_exchange_explicit(&pool->poller, 1, memory_order_relaxed);
     return worker->polls;
 }
@@ -44,8 +59,7 @@ void work_idle_over(struct worker *worker)
     work_stir(worker);
     if (!worker->polls)
         return;
-    worker->polls = false;
-    atomic_exchange_explicit(&worker->pool->poller, 0, memory_order_seq_cst);
+    poller_leave(worker);
     queue_wake_one(&worker->pool->queues, DUITE_NO_QUEUE);
 }
 
@@ -103,7 +117,7 @@ static uint64_t poller_yield_ticks(const struct worker *worker)
     const struct work_pool *pool = worker->pool;
     if (!worker->polls)
         return 0;
-    if (comm_awaits(pool->setup.comm))
+    if (guests_are_here(pool) || (pool->setup.comm && comm_awaits(pool->setup.comm)))
         return pool->await_ticks;
     return pool->spin_ticks ? 0 : pool->yield_ticks;
 }

@@ -197,7 +197,8 @@ bool work_is_crowded(struct worker *worker, uint64_t now);
 
 /* ---- wait.c ---- */
 
-/* Sends what was posted and, now and then, receives and grants tasks. There are several ranks. */
+/* Sends what was posted and, now and then, receives and grants tasks, and tests requests of the
+ * program. */
 void work_serve(struct worker *worker, uint64_t now);
 
 /* The worker finds no task: wakes the main thread if it waits and enough tasks are over. */

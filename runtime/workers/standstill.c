@@ -269,12 +269,17 @@ static void report_channel(void *context, const struct comm_channel *channel)
 
 /* ---- Events ---- */
 
-static void report_event(void *context, const struct task *task, duite_event event)
+static void report_event(void *context, const struct task *task, duite_event event, int requests)
 {
     struct report *report = context;
-    report_line(report,
-                "%s ends when the program completes event %u.%u (duite_complete; duite_release)",
-                report_words(report, task).text, event.slot, event.generation);
+    if (requests)
+        report_line(report, "%s waits for %d requests of MPI that it handed over (duite_await_mpi)",
+                    report_words(report, task).text, requests);
+    else
+        report_line(
+            report,
+            "%s ends when the program completes event %u.%u (duite_complete; duite_release)",
+            report_words(report, task).text, event.slot, event.generation);
 }
 
 /* ---- All of it ---- */
@@ -391,6 +396,16 @@ void work_standstill_stop(struct work_pool *pool)
     base_monitor_remove(pool->setup.monitor, &pool->standstill.look);
     base_free(pool->standstill.inside);
     pthread_mutex_destroy(&pool->standstill.lock);
+}
+
+void work_hold_reports(struct work_pool *pool)
+{
+    pthread_mutex_lock(&pool->standstill.lock);
+}
+
+void work_let_reports_go(struct work_pool *pool)
+{
+    pthread_mutex_unlock(&pool->standstill.lock);
 }
 
 void work_standstill_passes(struct work_pool *pool)

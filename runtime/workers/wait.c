@@ -101,7 +101,8 @@ void work_throttle(struct work_pool *pool, uint64_t max)
 void work_serve(struct worker *worker, uint64_t now)
 {
     const struct work_pool *pool = worker->pool;
-    if (now - worker->polled < pool->poll_ticks && !comm_has_posts(pool->setup.comm))
+    struct comm *comm = pool->setup.comm;
+    if (now - worker->polled < pool->poll_ticks && !(comm && comm_has_posts(comm)))
         return;
     worker->polled = now;
     work_poll(worker);
@@ -113,6 +114,16 @@ void work_tick(struct work_pool *pool)
 {
     if (pool->setup.comm)
         work_serve(&pool->queues.worker[0], base_ticks());
+}
+
+void work_turn(struct work_pool *pool)
+{
+    struct worker *worker = &pool->queues.worker[0];
+    struct task *task = work_find(worker);
+    if (task)
+        work_run(worker, task);
+    else
+        work_poll(worker);
 }
 
 struct worker *work_main(struct work_pool *pool)

@@ -55,12 +55,16 @@ struct task *work_find(struct worker *worker)
 
 bool work_poll(struct worker *worker)
 {
-    struct comm *comm = worker->pool->setup.comm;
-    return comm && comm_poll(comm, worker);
+    const struct work_setup *setup = &worker->pool->setup;
+    struct comm_guests *guests = &setup->graph->guests;
+    const bool any = comm_guests_are_here(guests) && comm_guests_poll(guests, worker);
+    return (setup->comm && comm_poll(setup->comm, worker)) || any;
 }
 
 void work_look(struct worker *worker, const struct work_wish *wish)
 {
+    if (comm_guests_are_here(&worker->pool->setup.graph->guests))
+        work_serve(worker, base_ticks());
     struct task *task = work_find(worker);
     if (task) {
         work_busy_again(worker);

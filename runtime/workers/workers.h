@@ -85,6 +85,9 @@ bool work_stands_still(struct work_pool *pool, struct work_stillness *still);
 int work_inside(struct worker *worker, const struct task_scope *scope, bool (*done)(void *context),
                 void *context);
 
+/* Runs a ready task and those inline after it, or looks for messages. Main thread. */
+void work_turn(struct work_pool *pool);
+
 /* Sends what was posted and, now and then, polls: the main thread calls it as it forks. */
 void work_tick(struct work_pool *pool);
 
@@ -100,6 +103,13 @@ const char *work_endless(const struct work_pool *pool);
 /* If more than `max` tasks are unfinished: works until at most 3/4 of `max` are, or communication
  * broke. Main thread. */
 void work_throttle(struct work_pool *pool, uint64_t max);
+
+/* Between these two no report of a standstill is made. Main thread. */
+void work_hold_reports(struct work_pool *pool);
+void work_let_reports_go(struct work_pool *pool);
+
+/* The graph has a kernel more; no task is left. Errors: memory. */
+int work_kernel_added(struct work_pool *pool);
 
 /* Counts of all workers of this rank. Exact when no task is left. */
 void work_count(struct work_pool *pool, duite_counters *counters);

@@ -79,6 +79,7 @@ independent_growth <= 1.5
 bytes_per_pending_task <= 192
 granularity_50_w2_vs_mpi <= 1.2
 granularity_50_w16_vs_mpi <= 4.5
+event_ns <= 500
 instructions_per_task_stencil <= 1000
 instructions_per_task_chain <= 750
 instructions_per_task_independent <= 700

@@ -29,6 +29,7 @@ delegate_speedup_r2 >= 1.7
 tree_speedup_r2 >= 1.5
 migrate_vs_balanced <= 1.15
 migrate_steps <= 20
+await_mpi_vs_twin <= 1.1
 END
 }
 

@@ -45,11 +45,12 @@ static int build(duite *rt, void *context)
     return duite_fork_at(rt, 0, &ADD, NULL, 1, context);
 }
 
-enum call { GET, GET_AT, COUNT, WAIT, COUNT_ALL, REPLAY_WHILE, STOP, N_CALLS };
+enum call { GET, GET_AT, COUNT, WAIT, COUNT_ALL, REPLAY_WHILE, STOP, N_CALLS, WAIT_FOR, TEST };
 
 static int make(enum call call, duite **rt, duite_object object)
 {
     int32_t value = 0;
+    int there;
     size_t count;
     duite_counters counters;
     duite_graph graph;
@@ -61,6 +62,10 @@ static int make(enum call call, duite **rt, duite_object object)
         return duite_get_at(*rt, object, ranks - 1, &value);
     case COUNT:
         return duite_get_count(*rt, object, &count);
+    case WAIT_FOR:
+        return duite_wait_for(*rt, 1, &object);
+    case TEST:
+        return duite_test(*rt, 1, &object, &there);
     case WAIT:
         return duite_wait(*rt);
     case COUNT_ALL:
@@ -171,6 +176,10 @@ RANKS_CASE(blocking)
             snprintf(name, sizeof name, "%s, and %s on the last rank", NAMES[call], NAMES[other]);
             differ((enum call)call, (enum call)other, name);
         }
+    differ(WAIT_FOR, WAIT_FOR, "wait_for");
+    differ(TEST, TEST, "test");
+    differ(WAIT_FOR, WAIT, "wait_for, and wait on the last rank");
+    differ(TEST, WAIT_FOR, "test, and wait_for on the last rank");
     answers_late = 1;
     differ(GET, GET, "get, and the last rank answers late");
     answers_late = 0;

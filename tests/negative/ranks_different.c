@@ -135,12 +135,21 @@ enum difference {
     ONE_REPLAY_MORE,
     ANOTHER_ROUND,
     ONE_GRAPH_LESS,
+    ONE_GET_MORE,
+    ONE_KERNEL_MORE,
+    ANOTHER_ADDED,
     N_DIFFERENCES
 };
 
 static int build(duite *rt, void *context)
 {
     return duite_fork(rt, &ADD, NULL, 1, context);
+}
+
+static int nothing(const duite_call *call)
+{
+    (void)call;
+    return 0;
 }
 
 static void differ_by_graphs(duite *rt, enum difference what, duite_object a, duite_object b)
@@ -161,6 +170,8 @@ static void differ_by_graphs(duite *rt, enum difference what, duite_object a, du
 
 static void differ(duite *rt, enum difference what, duite_object a, duite_object b)
 {
+    static const duite_kernel other = {.name = "other", .body = nothing, .access = {DUITE_RW}};
+    static int32_t got[4];
     const int odd = rank == ranks - 1;
     duite_object made;
 
@@ -193,8 +204,12 @@ static void differ(duite *rt, enum difference what, duite_object a, duite_object
         duite_hint(rt, made, odd ? 1 : 2, 0, NULL, NULL);
     if (what == ANOTHER_LEADER && !duite_new(rt, DUITE_I32, 1, &made))
         duite_colocate(rt, made, odd ? a : b);
-    if (what >= ANOTHER_BUILD)
+    if (what >= ANOTHER_BUILD && what <= ONE_GRAPH_LESS)
         differ_by_graphs(rt, what, a, b);
+    if (what == ONE_GET_MORE && odd)
+        duite_get_begin(rt, a, got);
+    if (what == ANOTHER_ADDED || (what == ONE_KERNEL_MORE && odd))
+        duite_kernel_add(rt, odd ? &UNLISTED : &other);
 }
 
 /* What the message names: where the ranks differ, and the calls of the others and of the last rank
@@ -229,6 +244,10 @@ static const struct {
     {"another round", "after fork 20", "called duite_replay",
      "called duite_replay with other arguments"},
     {"a graph less", "after fork 20", NULL, "called duite_graph_free"},
+    {"a get more", "after fork 20", NULL, "called duite_get_begin"},
+    {"a kernel more", "after fork 20", NULL, "called duite_kernel_add"},
+    {"another kernel added", "after fork 20", "called duite_kernel_add",
+     "called duite_kernel_add with other arguments"},
 };
 
 static int names_difference(enum difference what, int at_stop)

@@ -20,11 +20,11 @@ tests_runtime_steals_LDADD = $(CORE_LIBS)
 RANKS = tests/support/ranks.c tests/support/ranks.h tests/negative/misuse.c tests/negative/misuse.h
 check_PROGRAMS += tests/runtime/ranks
 tests_runtime_ranks_SOURCES = $(RANKS) tests/runtime/delegation.c tests/runtime/delegation.h tests/runtime/moving.c tests/runtime/moving.h \
-    tests/runtime/ranks_acquire.c tests/runtime/ranks_adopt.c tests/runtime/ranks_control.c tests/runtime/ranks_cut.c tests/runtime/ranks_delegate.c tests/runtime/ranks_exit.c tests/runtime/ranks_homes.c tests/runtime/ranks_itself.c \
-    tests/runtime/ranks_loaded.c tests/runtime/ranks_mappings.c tests/runtime/ranks_migrate.c tests/runtime/ranks_migrate_values.c \
+    tests/runtime/ranks_acquire.c tests/runtime/ranks_adopt.c tests/runtime/ranks_await.c tests/runtime/ranks_control.c tests/runtime/ranks_cut.c tests/runtime/ranks_delegate.c tests/runtime/ranks_exit.c tests/runtime/ranks_homes.c tests/runtime/ranks_itself.c \
+    tests/runtime/ranks_kernels.c tests/runtime/ranks_loaded.c tests/runtime/ranks_mappings.c tests/runtime/ranks_migrate.c tests/runtime/ranks_migrate_values.c \
     tests/runtime/ranks_mpi.c tests/runtime/ranks_parts.c tests/runtime/ranks_plans.c tests/runtime/ranks_prune.c tests/runtime/ranks_replicated.c \
     tests/runtime/ranks_sizes.c tests/runtime/ranks_stuck.c tests/runtime/ranks_stuck_policies.c tests/runtime/ranks_subtrees.c \
-    tests/runtime/ranks_tags.c tests/runtime/ranks_tasks.c tests/runtime/ranks_wide.c \
+    tests/runtime/ranks_tags.c tests/runtime/ranks_tasks.c tests/runtime/ranks_wait_for.c tests/runtime/ranks_wide.c \
     tests/support/said.c tests/support/said.h
 tests_runtime_ranks_LDADD = $(CORE_LIBS)
 check_PROGRAMS += tests/runtime/overrun

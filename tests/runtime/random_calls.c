@@ -137,6 +137,9 @@ static uint64_t make_call(struct run_scope *scope, const struct prog_op *op, uin
         hash = get_count(scope, op, hash);
     else if (op->kind == PROG_WAIT)
         hash = prog_body_told(hash, duite_wait(scope->rt), NULL, 0);
+    else if (op->kind == PROG_WAIT_FOR)
+        hash =
+            prog_body_told(hash, duite_wait_for(scope->rt, 1, &scope->name[op->object]), NULL, 0);
     if (code)
         prog_body_wrong(scope->call->context, (int)op->kind, code);
     return hash;
@@ -198,6 +201,20 @@ static void hold(const duite_call *call, uint64_t hash)
     }
 }
 
+/* The same by requests of MPI, of this process to itself. */
+static void hold_by_requests(const duite_call *call, const struct prog_args *args)
+{
+    const int tag = (int)(args->number % 1000);
+    MPI_Request request[2];
+    int code = duite_mpi_begin(call->rt);
+
+    code |= MPI_Irecv(NULL, 0, MPI_BYTE, 0, tag, MPI_COMM_SELF, &request[0]);
+    code |= MPI_Isend(NULL, 0, MPI_BYTE, 0, tag, MPI_COMM_SELF, &request[1]);
+    code |= duite_mpi_end(call->rt) | duite_await_mpi(call, 2, request);
+    if (code)
+        prog_body_wrong(call->context, __LINE__, 0);
+}
+
 int prog_body(const duite_call *call)
 {
     const struct prog_args *args = call->args;
@@ -205,7 +222,9 @@ int prog_body(const duite_call *call)
 
     if (args->n_inner)
         hash = make_calls(call, hash);
-    if (((const struct prog_args *)call->args)->holds)
+    if (args->holds && hash % 4)
         hold(call, hash);
+    else if (args->holds)
+        hold_by_requests(call, args);
     return prog_body_end(call, hash);
 }

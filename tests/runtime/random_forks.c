@@ -44,6 +44,14 @@ static int may_replicate(const duite_kernel *kernel)
     return may;
 }
 
+/* Into the main program, whatever list is being made. */
+static void add_kernel(struct maker *m, unsigned kernel)
+{
+    struct prog_op *op = &m->prog->ops[m->prog->n_ops++];
+
+    *op = (struct prog_op){.kind = PROG_KERNEL, .kernel = kernel, .rank = -1, .cost = -1};
+}
+
 static duite_kernel *make_kernel(struct maker *m)
 {
     struct prog *prog = m->prog;
@@ -56,15 +64,22 @@ static duite_kernel *make_kernel(struct maker *m)
     kernel->name = prog->name[k];
     kernel->body = prog_body;
     kernel->args_size = sizeof(struct prog_args) - make_below(m, PROG_ARGS_PADDING);
-    prog->list[prog->n_kernels++] = kernel;
+    prog->n_kernels++;
+    if (!m->adds)
+        prog->list[prog->n_listed++] = kernel;
+    else
+        add_kernel(m, (unsigned)k);
     return kernel;
 }
 
 /* The first two kernels accumulate and update one object: these find most. */
 void make_kernels(struct maker *m)
 {
+    const int adds = m->adds;
+
     m->n_drawn = 2 + make_below(m, 7);
     for (size_t k = 0; k < m->n_drawn; k++) {
+        m->adds = adds && make_one_in(m, 3);
         duite_kernel *kernel = make_kernel(m);
         const unsigned n = k < 2 ? 1 : make_below(m, 7);
 
@@ -78,6 +93,7 @@ void make_kernels(struct maker *m)
         kernel->replicated = may_replicate(kernel) && make_one_in(m, 3);
         kernel->events = !kernel->replicated && make_one_in(m, 5);
     }
+    m->adds = adds;
 }
 
 /* ---- Forks ---- */

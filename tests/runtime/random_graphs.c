@@ -40,7 +40,10 @@ static void record(struct maker *m, enum prog_kind kind, unsigned graph)
     const size_t first = m->prog->n_ops;
     const unsigned max = make_one_in(m, 10) ? 0 : 1 + make_below(m, MOST_RECORDED - 2);
 
+    const int adds = m->adds;
+
     m->plain = !make_one_in(m, 3); /* else there is no plan */
+    m->adds = 0;
     make_push(m, kind, 0)->graph = graph;
     while (m->prog->n_ops < first + 1 + max) {
         struct prog_op draft = {.kind = PROG_GRAPH_FORK};
@@ -59,6 +62,7 @@ static void record(struct maker *m, enum prog_kind kind, unsigned graph)
         op->pause = make_one_in(m, 3) ? op->pause : 0;
     }
     m->plain = 0;
+    m->adds = adds;
     m->prog->ops[first].n = (unsigned)(m->prog->n_ops - first - 1);
     m->graph[graph] = first;
     m->unsettled = m->scope->n;

@@ -101,6 +101,8 @@ static uint64_t get_in_body(struct prog_frame *frame, const struct prog_op *op, 
     const int refused = take_refused(frame), code = refused ? refused : cell->poison.code;
     const uint64_t count = cell->count;
 
+    if (op->kind == PROG_WAIT_FOR)
+        return prog_body_told(hash, code, NULL, 0);
     if (op->kind == PROG_COUNT)
         return prog_body_told(hash, code, &count, code ? 0 : sizeof count);
     return prog_body_told(hash, code, cell->value, code ? 0 : prog_cell_bytes(cell));
@@ -117,7 +119,7 @@ static uint64_t act(struct prog_machine *m, struct prog_frame *frame, size_t n, 
             make_object(frame, op);
         } else if (op->kind == PROG_WRONG) {
             prog_interpret_refuse(frame, op->fails);
-        } else if (op->kind == PROG_GET || op->kind == PROG_COUNT) {
+        } else if (op->kind == PROG_GET || op->kind == PROG_COUNT || op->kind == PROG_WAIT_FOR) {
             end_segment(m, frame);
             hash = get_in_body(frame, op, hash);
         } else if (op->kind == PROG_WAIT) {
@@ -331,6 +333,39 @@ static void join(struct prog_frame *main, const struct prog_op *op)
     whole->writes++;
 }
 
+/* The first failure of some objects. */
+static void wait_for(struct prog_frame *main, const struct prog_op *op, struct prog_expect *expect)
+{
+    struct prog_failure first = PROG_NO_FAILURE;
+
+    for (unsigned i = 0; i < op->n; i++)
+        first = prog_first_failure(first, prog_cell_settle(&main->cells[op->objects[i]])->poison);
+    if (op->kind == PROG_WAIT_FOR) {
+        const int refused = take_refused(main);
+
+        expect->code = refused ? refused : first.code;
+    }
+}
+
+/* The get's answer is that of its begin, but for what the program was refused before its end. */
+static void get_later(struct prog_machine *m, const struct prog_op *op, struct prog_expect *expect)
+{
+    struct prog_frame *main = m->main;
+    const int kept = main->refused;
+
+    if (!prog_is_got(m->prog, op))
+        return;
+    if (op->kind == PROG_GET_BEGIN) {
+        main->refused = DUITE_OK;
+        get(main, &main->cells[op->object], &m->answers->op[op->body]);
+        main->refused = kept;
+        return;
+    }
+    const int refused = take_refused(main);
+
+    expect->code = refused ? refused : expect->code;
+}
+
 static void operation(struct prog_machine *m, const struct prog_op *op, struct prog_expect *expect)
 {
     struct prog_frame *main = m->main;
@@ -367,6 +402,14 @@ static void operation(struct prog_machine *m, const struct prog_op *op, struct p
         break;
     case PROG_WAIT:
         expect->code = wait_all(main);
+        break;
+    case PROG_WAIT_FOR:
+    case PROG_TEST:
+        wait_for(main, op, expect);
+        break;
+    case PROG_GET_BEGIN:
+    case PROG_GET_END:
+        get_later(m, op, expect);
         break;
     case PROG_WRONG:
         expect->code = prog_interpret_refuse(main, op->fails);

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const prog_features[PROG_N_FEATURES] = {"nests",    "graphs",   "repeats", "sizes",
-                                                    "failures", "refusals", "large",   "memory"};
+const char *const prog_features[PROG_N_FEATURES] = {
+    "nests", "graphs", "repeats", "sizes", "failures", "refusals", "large", "memory", "adds"};
 
 void *prog_memory(size_t n, size_t size)
 {
@@ -182,6 +182,47 @@ static void make_count(struct maker *m)
     m->refused = 0;
 }
 
+/* Some objects, each once. */
+static void make_wait_for(struct maker *m, enum prog_kind kind)
+{
+    struct prog_op *op = make_push(m, kind, 0);
+    const unsigned most = make_below(m, MOST_AWAITED + 1);
+
+    for (unsigned i = 0; i < most; i++)
+        op->objects[op->n++] = make_draw_object(m); /* some may come twice */
+    op->count = kind == PROG_TEST && make_one_in(m, 2);
+    if (kind == PROG_WAIT_FOR)
+        m->refused = 0;
+}
+
+static void make_get_begin(struct maker *m)
+{
+    if (m->n_begun == MOST_BEGUN)
+        return;
+    m->begun[m->n_begun++] = m->prog->n_ops;
+    make_push(m, PROG_GET_BEGIN, make_draw_object(m));
+}
+
+/* Ends the oldest get of some object, which may be freed meanwhile. */
+static void make_get_end(struct maker *m)
+{
+    struct prog_op *ops = m->prog->ops;
+
+    if (!m->n_begun)
+        return;
+    const unsigned object = ops[m->begun[make_below(m, m->n_begun)]].object;
+    unsigned i = 0;
+
+    while (ops[m->begun[i]].object != object)
+        i++;
+    const size_t begin = m->begun[i];
+
+    memmove(&m->begun[i], &m->begun[i + 1], (--m->n_begun - i) * sizeof *m->begun);
+    ops[begin].body = m->prog->n_ops;
+    make_push(m, PROG_GET_END, object)->body = begin;
+    m->refused = 0;
+}
+
 void make_set(struct maker *m, enum prog_kind kind, unsigned place, int zeros)
 {
     struct prog_op *op = make_push(m, kind, place);
@@ -224,19 +265,23 @@ static void make_acquire(struct maker *m, unsigned place)
 static void make_turns(struct maker *m)
 {
     const unsigned first = make_draw_object(m), second = make_draw_object(m);
-    const int both = first != second && make_one_in(m, 3);
+    const int both = first != second && make_one_in(m, 3), adds = m->adds;
 
+    m->adds = 0; /* that would wait */
     make_acquire(m, first);
     if (both)
         make_acquire(m, second);
     for (unsigned i = make_below(m, 4); i > 0; i--)
         if (make_one_in(m, 4))
             make_set(m, PROG_SET, make_draw_object(m), 0);
+        else if (make_one_in(m, 4))
+            make_get_begin(m);
         else
             make_fork(m);
     make_push(m, PROG_RELEASE, first);
     if (both)
         make_push(m, PROG_RELEASE, second);
+    m->adds = adds;
 }
 
 /* Takes an object out of the list of those alive. */
@@ -297,7 +342,7 @@ static void make_join(struct maker *m)
 
 static void make_other(struct maker *m)
 {
-    const unsigned choice = make_below(m, 16);
+    const unsigned choice = make_below(m, 24);
 
     if (choice < 3)
         make_set(m, PROG_SET, make_draw_object(m), choice < 1);
@@ -317,6 +362,14 @@ static void make_other(struct maker *m)
         make_free(m, make_below(m, m->scope->n_live));
     else if (choice < 13)
         make_wrong(m);
+    else if (choice < 15)
+        make_wait_for(m, PROG_WAIT_FOR);
+    else if (choice < 16)
+        make_wait_for(m, PROG_TEST);
+    else if (choice < 18)
+        make_get_begin(m);
+    else if (choice < 20)
+        make_get_end(m);
     m->unsettled = m->scope->n;
 }
 
@@ -363,7 +416,7 @@ static void draw_character(struct maker *m, unsigned with, unsigned without)
     m->features = bit(PROG_NESTS, make_one_in(m, 2)) | bit(PROG_GRAPHS, make_one_in(m, 2)) |
                   bit(PROG_REPEATS, make_one_in(m, 2)) | bit(PROG_FAILURES, make_one_in(m, 4)) |
                   bit(PROG_REFUSALS, make_one_in(m, 8)) | bit(PROG_LARGE, make_one_in(m, 40)) |
-                  bit(PROG_MEMORY, make_one_in(m, 2));
+                  bit(PROG_MEMORY, make_one_in(m, 2)) | bit(PROG_ADDS, make_one_in(m, 3));
     const int sized = !make_has(m, PROG_GRAPHS) || make_one_in(m, 4); /* such graphs have no plan */
 
     m->features |= bit(PROG_SIZES, sized);
@@ -375,6 +428,7 @@ static void draw_character(struct maker *m, unsigned with, unsigned without)
     m->failing = make_has(m, PROG_FAILURES) ? 4 + make_below(m, 30) : 0;
     m->pausing = make_one_in(m, 2) ? 1 + make_below(m, 10) : 0;
     m->sized = make_has(m, PROG_SIZES) ? 4 : 0;
+    m->adds = make_has(m, PROG_ADDS);
 }
 
 /* The program does this before its first task, while homes are open. */
@@ -399,6 +453,8 @@ static void make_end(struct maker *m)
     const unsigned left = make_one_in(m, 20) ? 1 : 0;
 
     make_graphs_free(m);
+    while (m->n_begun)
+        make_get_end(m);
     while (m->n_splits)
         make_join(m);
     while (scope->n_live > left)
@@ -414,8 +470,8 @@ struct prog *prog_make(uint64_t seed, int n_ranks, unsigned with, unsigned witho
     m.random = seed * 0x9e3779b97f4a7c15u + (uint64_t)n_ranks;
     prog->seed = seed;
     prog->n_ranks = n_ranks;
-    prog->ops = prog_memory(MAX_OPS + PROG_MAX_TABLE + 2 * MOST_BURST + MOST_RECORDED +
-                                MOST_ROUNDS * MOST_REPEATED,
+    prog->ops = prog_memory(MAX_OPS + PROG_MAX_TABLE + PROG_MAX_KERNELS + MOST_BEGUN +
+                                2 * MOST_BURST + MOST_RECORDED + MOST_ROUNDS * MOST_REPEATED,
                             sizeof *prog->ops);
     prog->inner = prog_memory(MAX_BODIES * MOST_ACTIONS, sizeof *prog->inner);
     m.ops = prog->ops;

@@ -7,6 +7,7 @@
 
 enum { MAX_LIVE = 20, MAX_OPS = 420, MOST_BURST = 24, MOST_RECORDED = 24 };
 enum { MAX_SPLITS = 3, MAX_GRAPHS = 4, MOST_REPEATED = 1000, MOST_ROUNDS = 3 };
+enum { MOST_BEGUN = 5, MOST_AWAITED = 6 };
 enum { MAX_DEPTH = 6, MAX_BODIES = 48, MOST_ACTIONS = 20 };
 
 /* The objects that the main program, or a body, may use. */
@@ -40,6 +41,9 @@ struct maker {
     int refused;              /* one waits to be told; get_at tells it on one rank only */
     size_t split[MAX_SPLITS]; /* operations: the last one is joined first */
     unsigned n_splits;
+    int adds;         /* a new kernel is not listed but added now */
+    unsigned n_begun; /* gets that are to be ended, the oldest first: operations */
+    size_t begun[MOST_BEGUN];
     size_t graph[MAX_GRAPHS]; /* what each graph recorded last: an operation; SIZE_MAX: freed */
 };
 

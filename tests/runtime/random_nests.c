@@ -27,7 +27,11 @@ static void make_call(struct maker *m)
     if (choice < 8 && scope->right[object] == DUITE_CWP)
         make_push(m, PROG_CONTRIBUTE, object);
     else if (choice < 4 && modes >> DUITE_R & 1)
-        make_push(m, make_one_in(m, 4) ? PROG_COUNT : PROG_GET, object);
+        make_push(m,
+                  make_one_in(m, 4)   ? PROG_COUNT
+                  : make_one_in(m, 4) ? PROG_WAIT_FOR
+                                      : PROG_GET,
+                  object);
     else if (choice < 8 && modes >> DUITE_W & 1)
         make_set(m, PROG_SET, object, make_one_in(m, 4));
     else if (choice < 10 && scope->made[object])

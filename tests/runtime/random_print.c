@@ -90,15 +90,17 @@ static void print_operation(FILE *file, const struct prog *prog, const struct pr
                             int indent)
 {
     static const char *const KINDS[] = {
-        "skip",   "new",        "free",       "set",         "fork",   "get",
-        "get_at", "count",      "wait",       "contribute",  "hint",   "follow",
-        "home",   "wrong",      "acquire",    "release",     "split",  "join",
-        "graph",  "  fork",     "  set",      "graph again", "replay", "replay while",
-        "rounds", "graph args", "graph bind", "graph free"};
+        "skip",         "new",    "free",       "set",        "fork",      "get",         "get_at",
+        "count",        "wait",   "wait_for",   "test",       "get begin", "get end",     "kernel",
+        "contribute",   "hint",   "follow",     "home",       "wrong",     "acquire",     "release",
+        "split",        "join",   "graph",      "  fork",     "  set",     "graph again", "replay",
+        "replay while", "rounds", "graph args", "graph bind", "graph free"};
 
     fprintf(file, "%*s%s", indent, "", KINDS[op->kind]);
     if (prog_is_fork(op))
         print_fork(file, prog, op);
+    else if (op->kind == PROG_KERNEL)
+        fprintf(file, " %s", prog->name[op->kernel]);
     else if (op->kind >= PROG_GRAPH && op->kind != PROG_GRAPH_SET)
         print_graph(file, op);
     else if (op->kind != PROG_WAIT)

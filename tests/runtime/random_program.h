@@ -28,6 +28,7 @@ enum prog_feature {
     PROG_REFUSALS, /* forks that are refused */
     PROG_LARGE,    /* large objects */
     PROG_MEMORY,   /* adopted memory, turns of the main program, sets of one rank, parts */
+    PROG_ADDS,     /* kernels are added */
     PROG_N_FEATURES
 };
 extern const char *const prog_features[PROG_N_FEATURES];
@@ -42,6 +43,11 @@ enum prog_kind {
     PROG_GET_AT,
     PROG_COUNT, /* get_count */
     PROG_WAIT,
+    PROG_WAIT_FOR,   /* n objects; in a body one */
+    PROG_TEST,       /* n objects; until they are there if `count` is not 0 */
+    PROG_GET_BEGIN,  /* ended by operation `body`, or not at all */
+    PROG_GET_END,    /* of the get that operation `body` began */
+    PROG_KERNEL,     /* adds kernel number `kernel`, before its first fork */
     PROG_CONTRIBUTE, /* in a body: its own contribution to a parameter under cwp */
     PROG_HINT,
     PROG_FOLLOW,
@@ -71,8 +77,8 @@ enum prog_law { PROG_SUM, PROG_MIN, PROG_MAX, PROG_MIX, PROG_WEAVE, PROG_N_LAWS 
 struct prog_op {
     enum prog_kind kind;
     unsigned object;
-    unsigned n,
-        objects[PROG_MAX_PARAMS]; /* fork: parameters; hint: neighbours; follow: the leader */
+    unsigned n, objects[PROG_MAX_PARAMS]; /* fork: parameters; hint: neighbours; follow: the leader;
+                                             waits for some and tests */
     unsigned kernel;
     size_t body, n_inner; /* fork: what the body does: n_inner operations of prog->inner */
     unsigned number;      /* forks: no other fork has it */
@@ -118,11 +124,11 @@ struct prog {
     uint64_t seed;
     int n_ranks;
     int adopts; /* some objects have adopted memory */
-    size_t n_kernels, n_ops, n_inner, n_objects, n_forks, n_graphs;
+    size_t n_kernels, n_listed, n_ops, n_inner, n_objects, n_forks, n_graphs;
     char name[PROG_MAX_KERNELS][16];
     duite_kernel kernel[PROG_MAX_KERNELS];
-    const duite_kernel *list[PROG_MAX_KERNELS + 1];
-    struct prog_op *ops, *inner; /* of the main program; of all bodies */
+    const duite_kernel *list[PROG_MAX_KERNELS + 1]; /* without those that are added */
+    struct prog_op *ops, *inner;                    /* of the main program; of all bodies */
     struct prog_object objects[PROG_MAX_TABLE];
 };
 
@@ -220,6 +226,13 @@ extern const duite_law *const prog_own_laws[];
 
 /* The recorded operation `index` of a graph is there and may be replayed. */
 int prog_is_recorded(const struct prog *prog, size_t index);
+/* The begin and the end of a get are both there: else it never is. */
+static inline int prog_is_got(const struct prog *prog, const struct prog_op *op)
+{
+    const enum prog_kind other = prog->ops[op->body].kind;
+
+    return op->kind == PROG_GET_BEGIN ? other == PROG_GET_END : other == PROG_GET_BEGIN;
+}
 /* Does a recorded operation name the object? `first` is its graph's operation. */
 int prog_records(const struct prog *prog, size_t first, unsigned object);
 

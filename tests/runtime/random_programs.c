@@ -77,7 +77,7 @@ static void leave_out(struct prog *prog, const struct prog_setup *setup, unsigne
 
         kept[i] = *kind;
         if (*kind == PROG_NEW || *kind == PROG_FREE || *kind == PROG_RELEASE ||
-            *kind == PROG_SKIP || *kind == PROG_SPLIT || *kind == PROG_JOIN)
+            *kind == PROG_KERNEL || *kind == PROG_SKIP || *kind == PROG_SPLIT || *kind == PROG_JOIN)
             continue;
         *kind = PROG_SKIP;
         changed = 1;

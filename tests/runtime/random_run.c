@@ -80,6 +80,44 @@ static void get_count(struct run *run, const struct prog_op *op, const struct pr
         prog_found(run, "object %u has %zu elements, expected %zu", op->object, count, expected);
 }
 
+static void wait_for(struct run *run, const struct prog_op *op, const struct prog_expect *answer)
+{
+    duite_object objects[PROG_MAX_PARAMS];
+    int there = 0, code = DUITE_OK;
+
+    for (unsigned i = 0; i < op->n; i++)
+        objects[i] = run->main.name[op->objects[i]];
+    if (op->kind == PROG_WAIT_FOR)
+        code = duite_wait_for(run->main.rt, op->n, objects);
+    else
+        do
+            code = duite_test(run->main.rt, op->n, objects, &there);
+        while (!there && op->count);
+    prog_expect_code(run, op->kind == PROG_TEST ? "test" : "wait_for", code, answer->code);
+}
+
+static void get_later(struct run *run, const struct prog_op *op, const struct prog_expect *answer)
+{
+    struct run_scope *main = &run->main;
+    const duite_object object = main->name[op->object];
+
+    if (!prog_is_got(run->prog, op))
+        return;
+    if (op->kind == PROG_GET_BEGIN) {
+        unsigned char *got = run->got[run->at] = prog_memory(main->largest, 1);
+
+        memset(got, UNTOUCHED, main->largest);
+        prog_expect_code(run, "get_begin", duite_get_begin(main->rt, object, got), DUITE_OK);
+        return;
+    }
+    const int code = duite_get_end(main->rt, object);
+
+    memcpy(main->bytes, run->got[op->body], main->largest);
+    prog_expect_code(run, "get_end", code, answer->code);
+    if (answer->bytes)
+        compare(run, op->object, answer);
+}
+
 /* A kernel that contributes to one object is given it twice. */
 static void wrong_fork(struct run *run, const struct prog_op *op, int expected)
 {
@@ -167,6 +205,18 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
     case PROG_WAIT:
         prog_expect_code(run, "wait", duite_wait(run->main.rt), answer->code);
         prog_check_memory(run, 1);
+        break;
+    case PROG_WAIT_FOR:
+    case PROG_TEST:
+        wait_for(run, op, answer);
+        break;
+    case PROG_GET_BEGIN:
+    case PROG_GET_END:
+        get_later(run, op, answer);
+        break;
+    case PROG_KERNEL:
+        prog_expect_code(run, "kernel_add",
+                         duite_kernel_add(run->main.rt, &run->prog->kernel[op->kernel]), DUITE_OK);
         break;
     case PROG_HINT:
         hint(run, op);
@@ -294,6 +344,7 @@ void prog_run(const struct prog *prog, const struct prog_answers *answers,
     main->bytes = prog_memory(main->largest, 1);
     memset(run.home, 0xff, sizeof run.home);
     run.graph = prog_memory(prog->n_graphs, sizeof *run.graph);
+    run.got = prog_memory(prog->n_ops, sizeof *run.got);
     context.ran = prog_memory(prog->n_forks, sizeof *context.ran);
     run_operations(&run, setup, &context, where);
     if (context.code)
@@ -301,6 +352,9 @@ void prog_run(const struct prog *prog, const struct prog_answers *answers,
     else if (context.wrong)
         prog_found(&run, "a body was called wrongly: random_bodies.c:%d", context.wrong);
     free(main->bytes);
+    for (size_t i = 0; i < prog->n_ops; i++)
+        free(run.got[i]);
+    free(run.got);
     free(run.graph);
     free(context.ran);
 }

@@ -50,6 +50,7 @@ struct run {
     int home[PROG_MAX_TABLE]; /* when last asked; -1 before, and of what is freed if... */
     int moves;                /* ... homes change: then they are asked for at the end only */
     struct run_graph *graph;  /* n_graphs */
+    unsigned char **got;      /* n_ops: where the gets that were begun go */
     struct run_memory memory[PROG_MAX_TABLE];
     struct run_turn turn[PROG_MAX_TABLE];
     int check; /* checking mode */

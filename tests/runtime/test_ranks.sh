@@ -8,12 +8,14 @@ plan_later
 cases tests/runtime/ranks << 'END'
 acquire        | 2 1 3     | the program works on objects in place
 adopt          | 2 1 3     | memory of the program's own
+await          | 2 1 3     | requests of MPI that bodies hand over
 control        | 2 5 8     | few messages until all ranks agree
 cut            | 2 1 3     | messages longer than their receives
 delegate       | 2 1 3     | tasks that run on other ranks than their own
 delegate       | 2         | the same in checking mode | DUITE_CHECK=accesses
 homes          | 2 3       | what settles the homes of objects
 itself         | 2 1       | nothing that was switched off
+kernels        | 2 1 3     | kernels that are added
 loaded         | 2         | ranks sleep beside eight loops | OMPI_MCA_mpi_yield_when_idle=0
 mappings       | 2         | wrong mappings
 migrate        | 2 1 3     | objects that move
@@ -30,6 +32,7 @@ subtrees       | 2 1 3     | whole subtrees run elsewhere
 subtrees       | 2         | the same in checking mode | DUITE_CHECK=accesses
 tags           | 2 1 3     | few tags
 tasks          | 2 1 3     | mappings see tasks
+wait_for       | 2 1 3     | waits for some objects, and gets that are ended later
 wide           | 2 1 3     | 40 listed parameters
 wide           | 1         | the same in checking mode | DUITE_CHECK=accesses
 END

@@ -131,8 +131,12 @@ static int source_take_kernels(struct source *source, const struct trace_section
     struct trace_run *run = source->run;
     const char *begin = (const char *)(section + 1), *end = begin + section->bytes;
     uint32_t n = section->worker;
-    if (source->rank != run->rank || run->kernel)
+    if (source->rank != run->rank)
         return DUITE_OK;
+    if (n < run->n_kernels)
+        return source_damaged(source, at, "fewer kernels than before");
+    base_free(run->kernel_name);
+    run->kernel_name = NULL;
     if (section->bytes / sizeof *run->kernel < n)
         return source_damaged(source, at, "fewer kernels than it says");
     run->kernel = (const void *)begin;

@@ -215,6 +215,17 @@ module duite
             type(duite_object), value :: object
             type(*), intent(inout) :: values(*)
         end function
+        integer(c_int) function duite_get_begin(rt, object, values) bind(C, name='duite_get_begin')
+            import :: c_int, c_ptr, duite_object
+            type(c_ptr), value :: rt
+            type(duite_object), value :: object
+            type(c_ptr), value :: values ! c_loc of a target, which is the runtime's until the end
+        end function
+        integer(c_int) function duite_get_end(rt, object) bind(C, name='duite_get_end')
+            import :: c_int, c_ptr, duite_object
+            type(c_ptr), value :: rt
+            type(duite_object), value :: object
+        end function
         integer(c_int) function duite_get_at(rt, object, rank, values) bind(C, name='duite_get_at')
             import :: c_int, c_ptr, duite_object
             type(c_ptr), value :: rt
@@ -301,6 +312,11 @@ module duite
             type(duite_object), intent(in) :: objects(*)
         end subroutine
 
+        integer(c_int) function duite_kernel_add(rt, kernel) bind(C, name='duite_kernel_add')
+            import :: c_int, c_ptr, duite_kernel
+            type(c_ptr), value :: rt
+            type(duite_kernel), intent(in), target :: kernel ! stays in place
+        end function
         integer(c_int) function duite_fork_at(rt, rank, kernel, args, n, objects) bind(C, name='duite_fork_at')
             import :: c_int, c_ptr, c_size_t, duite_object, duite_kernel
             type(c_ptr), value :: rt, args
@@ -320,6 +336,19 @@ module duite
         integer(c_int) function duite_wait(rt) bind(C, name='duite_wait')
             import :: c_int, c_ptr
             type(c_ptr), value :: rt
+        end function
+        integer(c_int) function duite_wait_for(rt, n, objects) bind(C, name='duite_wait_for')
+            import :: c_int, c_ptr, c_size_t, duite_object
+            type(c_ptr), value :: rt
+            integer(c_size_t), value :: n
+            type(duite_object), intent(in) :: objects(*)
+        end function
+        integer(c_int) function duite_test(rt, n, objects, there) bind(C, name='duite_test')
+            import :: c_int, c_ptr, c_size_t, duite_object
+            type(c_ptr), value :: rt
+            integer(c_size_t), value :: n
+            type(duite_object), intent(in) :: objects(*)
+            integer(c_int), intent(out) :: there
         end function
 
         integer(c_int) function duite_replay(rt, graph, rounds) bind(C, name='duite_replay')

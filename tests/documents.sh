@@ -253,10 +253,11 @@ exported() {
         sed -n 's/^extern const duite_law \(.*\);/\1/p' $headers | tr -d ' ' | tr ',' '\n'
     } | LC_ALL=C sort -u | diff "$srcdir/runtime/duite.sym" -
 }
-# Fortran binds each of them, but for what it does in another way: printf's form, lists of C's texts, and laws, which duite_law_find finds.
+# Fortran binds each of them, but for what it does in another way: printf's form, lists of C's texts, and laws, which duite_law_find finds; and for
+# requests of MPI, which are others in C.
 bound() {
     grep -o "name='duite_[a-z_]*'" "$srcdir/runtime/duite.f90" | cut -d "'" -f 2 | LC_ALL=C sort -u > "$scratch/bound"
-    grep -v -x -e duite_fail -e 'duite_[a-z]*_names' -e 'duite_\(sum\|product\|min\|max\|bits_[a-z]*\|all\|any\)' "$srcdir/runtime/duite.sym" |
+    grep -v -x -e duite_fail -e duite_await_mpi -e 'duite_[a-z]*_names' -e 'duite_\(sum\|product\|min\|max\|bits_[a-z]*\|all\|any\)' "$srcdir/runtime/duite.sym" |
         diff "$scratch/bound" - || { echo "< has no function, > no binding in runtime/duite.f90" && return 1; }
 }
 

@@ -2,7 +2,7 @@
 ASAN_SH += tests/examples/test_examples.sh tests/examples/test_cpp.sh
 PLAIN_SH += tests/examples/test_fortran.sh
 check_PROGRAMS += tests/examples/dot tests/examples/stencil tests/examples/cholesky tests/examples/cg \
-	tests/examples/fib tests/examples/quicksort tests/examples/adopt
+	tests/examples/fib tests/examples/quicksort tests/examples/adopt tests/examples/ring
 tests_examples_dot_LDFLAGS = $(AM_LDFLAGS) -no-install
 tests_examples_dot_LDADD = libduite.la
 tests_examples_stencil_LDFLAGS = $(AM_LDFLAGS) -no-install
@@ -17,4 +17,6 @@ tests_examples_quicksort_LDFLAGS = $(AM_LDFLAGS) -no-install
 tests_examples_quicksort_LDADD = libduite.la
 tests_examples_adopt_LDFLAGS = $(AM_LDFLAGS) -no-install
 tests_examples_adopt_LDADD = libduite.la
+tests_examples_ring_LDFLAGS = $(AM_LDFLAGS) -no-install
+tests_examples_ring_LDADD = libduite.la $(MPI_LIBS)
 EXTRA_DIST += tests/examples/dot.cpp tests/examples/dot.f90 tests/examples/stencil.cpp tests/runtime/front.cpp

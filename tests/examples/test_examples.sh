@@ -8,7 +8,7 @@ schedulers='steal fifo lifo priority static shuffle'
 if quick; then schedulers='steal shuffle'; fi
 checking() { (DUITE_CHECK=accesses; export DUITE_CHECK; "$@"); }
 
-for example in dot stencil cholesky cg fib quicksort adopt; do
+for example in dot stencil cholesky cg fib quicksort adopt ring; do
     program=tests/examples/$example
     for scheduler in $schedulers; do
         ok "$example under $scheduler" limited $program $scheduler

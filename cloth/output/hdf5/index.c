@@ -9,8 +9,10 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/fs.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 struct index {
@@ -58,8 +60,8 @@ static int swap(struct index *index)
 {
     const char *shown = index->shown.path.text, *hidden = index->hidden.path.text;
     const int before = index->shown.file;
-    const bool is_kept =
-        before >= 0 && renameat2(AT_FDCWD, hidden, AT_FDCWD, shown, RENAME_EXCHANGE) == 0;
+    const bool is_kept = before >= 0 && syscall(SYS_renameat2, AT_FDCWD, hidden, AT_FDCWD, shown,
+                                                RENAME_EXCHANGE) == 0;
     if (!is_kept && rename(hidden, shown) != 0)
         return -1;
     if (!is_kept && before >= 0)

@@ -57,6 +57,11 @@ class calls
         return start(&options, kernel, given...);
     }
     int wait() { return told(duite_wait(rt_)); }
+    template <typename... T> int wait_for(const ref<T> &...objects)
+    {
+        const duite_object names[] = {objects.name..., DUITE_NO_OBJECT};
+        return told(duite_wait_for(rt_, sizeof...(T), names));
+    }
     template <typename T> int set(ref<T> to, span<const std::common_type_t<T>> values)
     {
         return told(duite_set_sized(rt_, to.name, values.data(), values.size() * unit<T>));
@@ -214,6 +219,10 @@ class task : public calls
         told(duite_event_new(call_, &made.name));
         return made;
     }
+    int await_mpi(span<MPI_Request> requests) const
+    {
+        return told(duite_await_mpi(call_, static_cast<int>(requests.size()), requests.data()));
+    }
 };
 
 template <typename F> int kernel_of<F>::body(const duite_call *call)
@@ -310,6 +319,14 @@ class runtime : public calls
     }
     explicit operator bool() const noexcept { return rt_; }
     int stop() { return told(duite_stop(&rt_)); }
+    int add(const duite_kernel *kernel) { return told(duite_kernel_add(rt_, kernel)); } /* of a library that was loaded later */
+    template <typename... T> bool test(const ref<T> &...objects)
+    {
+        const duite_object names[] = {objects.name..., DUITE_NO_OBJECT};
+        int there = 0;
+        told(duite_test(rt_, sizeof...(T), names, &there));
+        return there;
+    }
     template <typename T> turn<DUITE_R, T> acquire_read(const object<T> &of) { return {*this, of}; }
     template <typename T> turn<DUITE_W, T> acquire_write(const object<T> &of) { return {*this, of}; }
     template <typename T> turn<DUITE_RW, T> acquire(const object<T> &of) { return {*this, of}; }

@@ -216,6 +216,30 @@ void events(duite::runtime &rt)
     CHECK(value == 5);
 }
 
+// Waits for some objects; requests of MPI of the body's own; a kernel that is added.
+const duite::kernel SELF("self", [](duite::task &here, duite::write<std::int64_t> x) {
+    static std::int64_t sent;
+    MPI_Request requests[2];
+    sent = 77;
+    duite_mpi_begin(here.c());
+    MPI_Irecv(x.data(), 1, MPI_INT64_T, 0, 5, MPI_COMM_SELF, &requests[0]);
+    MPI_Isend(&sent, 1, MPI_INT64_T, 0, 5, MPI_COMM_SELF, &requests[1]);
+    duite_mpi_end(here.c());
+    return here.await_mpi(requests);
+}, duite::events);
+
+void later(duite::runtime &rt)
+{
+    duite::object<std::int64_t> x(rt, 4), y(rt, 1);
+    std::int64_t value = 0;
+    CHECK(rt.add(SELF.c()) == DUITE_OK);
+    rt.fork(SELF, y);
+    rt.fork(FILL, 6, x);
+    CHECK(rt.wait_for(x, y) == DUITE_OK && rt.test(x) && rt.test(x, y));
+    rt.get(y, value);
+    CHECK(value == 77);
+}
+
 void graphs(duite::runtime &rt)
 {
     duite::object<std::int64_t> x(rt, 1), y(rt, 1), sum(rt, 1);
@@ -326,6 +350,7 @@ int main()
     parts(rt);
     adopted(rt);
     events(rt);
+    later(rt);
     graphs(rt);
     errors(rt);
 #ifdef DUITE_NO_EXCEPTIONS

@@ -16,13 +16,13 @@
  * main thread forks tasks and makes all changes to objects.
  *
  * Every call returns DUITE_OK or a code; duite_message() then has the error message. A failed fork,
- * new, set, hint, colocate, free or call on a recorded graph does nothing. The next get, wait or
- * stop does its work, but returns the first such error once more, with its message. So a program
- * may check only these. Calls from a body or another thread (DUITE_E_STATE) are not remembered. On
- * several ranks a call that runs out of memory on one of them, or a failure of MPI, ends the work
- * of all. Then every rank's present or next blocking call returns the code, and only duite_stop is
- * left (duite_abandon if MPI failed or a rank is lost). The library never exits or aborts, except
- * for a body that does not return (duite_body). */
+ * new, set, hint, colocate, split, join, free or call on a recorded graph does nothing. The next
+ * get, wait or stop does its work, but returns the first such error once more, with its message. So
+ * a program may check only these. Calls from a body or another thread (DUITE_E_STATE) are not
+ * remembered. On several ranks a call that runs out of memory on one of them, or a failure of MPI,
+ * ends the work of all. Then every rank's present or next blocking call returns the code, and only
+ * duite_stop is left (duite_abandon if MPI failed or a rank is lost). The library never exits or
+ * aborts, except for a body that does not return (duite_body). */
 
 #include <mpi.h>
 #include <stddef.h>
@@ -206,13 +206,13 @@ typedef struct duite_call {
 typedef int duite_body(const duite_call *call);
 
 /* Tasks that fork. With call->rt, and on its own thread, a body may call the following. Objects:
- * duite_new, duite_new_sized, duite_free, duite_set, duite_set_sized, duite_get, duite_get_count.
- * Tasks: duite_fork, duite_fork_with (without a rank), duite_wait, duite_wait_for, duite_resize,
- * duite_contribute, duite_fail, duite_event_new, duite_complete, duite_await_mpi, duite_mpi_begin,
- * duite_mpi_end. Also calls that describe the runtime (duite_rank and the like). All others are
- * DUITE_E_STATE, as is any call from a thread of the program's own. In a body the calls are local:
- * children run on the rank of the task, unless a balancer delegates them, and no other rank knows
- * of them.
+ * duite_new, duite_new_sized, duite_free, duite_set, duite_set_sized, duite_get, duite_get_count,
+ * duite_split, duite_join. Tasks: duite_fork, duite_fork_with (without a rank), duite_wait,
+ * duite_wait_for, duite_resize, duite_contribute, duite_fail, duite_event_new, duite_complete,
+ * duite_await_mpi, duite_mpi_begin, duite_mpi_end. Also calls that describe the runtime (duite_rank
+ * and the like). All others are DUITE_E_STATE, as is any call from a thread of the program's own.
+ * In a body the calls are local: children run on the rank of the task, unless a balancer delegates
+ * them, and no other rank knows of them.
  *
  * Objects: a body names those it was given (param[i].object) and those it made. The table at
  * duite_mode lists the modes it may fork its children with. Other modes are DUITE_E_RIGHT, as are

@@ -80,7 +80,7 @@ int duite_adopt(duite *rt, int rank, duite_type type, size_t count, void *values
     task_mix(graph, count);
     task_mix(graph, (uint64_t)type);
     task_mixed(graph, COMM_CALLED, COMM_CALLED_ADOPT);
-    code = data_object_new_at(&graph->table, type, count, rank, object);
+    code = data_object_new_at(&graph->table, type, count, rank, NULL, object);
     if (code)
         return api_remember(rt, code);
     trace_object(rt->trace, &graph->table, *object);

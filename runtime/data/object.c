@@ -113,24 +113,16 @@ int data_object_new(struct data_table *table, duite_type type, size_t count, siz
 }
 
 int data_object_new_at(struct data_table *table, duite_type type, size_t count, int home,
-                       duite_object *name)
+                       const uint32_t *leader, duite_object *name)
 {
     const int code = data_object_new(table, type, count, count, false, name);
     if (code)
         return code;
     table->n_unsettled--; /* the last of these */
-    data_object_settle(table, name->slot, home);
-    return DUITE_OK;
-}
-
-int data_object_new_beside(struct data_table *table, duite_type type, size_t count, uint32_t leader,
-                           duite_object *name)
-{
-    const int code = data_object_new(table, type, count, count, false, name);
-    if (code)
-        return code;
-    table->n_unsettled--;
-    data_object_join(table, name->slot, leader);
+    if (leader)
+        data_object_join(table, name->slot, *leader);
+    else
+        data_object_settle(table, name->slot, home);
     return DUITE_OK;
 }
 

@@ -87,12 +87,10 @@ static inline int data_object_check(duite_type type, size_t count, size_t max)
  * else max is count. Errors: type, count, memory. */
 int data_object_new(struct data_table *table, duite_type type, size_t count, size_t max, bool sized,
                     duite_object *name);
-/* Makes an object of a fixed size whose home is settled. Errors: as above. */
+/* Makes an object of a fixed size whose home is settled: `home`, or that of a leader, whose block
+ * it joins. Errors: as above. */
 int data_object_new_at(struct data_table *table, duite_type type, size_t count, int home,
-                       duite_object *name);
-/* The same beside a leader that has a home. */
-int data_object_new_beside(struct data_table *table, duite_type type, size_t count, uint32_t leader,
-                           duite_object *name);
+                       const uint32_t *leader, duite_object *name);
 
 /* Zeroes the object in two parts: for all its bytes at once gcc uses a string instruction, which
  * starts more slowly than these few words are written. */

@@ -218,7 +218,7 @@ static int parts_make(const struct task_split *split, struct duite_call_private 
     for (size_t i = 0; i < split->n; i++) {
         const int code =
             body ? task_make_object(body, type, counts[i], counts[i], false, &part[i])
-                 : data_object_new_beside(table, type, counts[i], split->name->slot, &part[i]);
+                 : data_object_new_at(table, type, counts[i], -1, &split->name->slot, &part[i]);
         if (!code)
             continue;
         parts_drop(scope, worker, part, i);

@@ -114,11 +114,11 @@ ok "a belt that is pulled tight around a cylinder" free belt
 cat > curtain.yaml << 'END'
 schema: 1
 cloths:
-  - {mesh: {grid: {width: 0.4, height: 0.4, nx: 17, ny: 17}}, material: m, transform: {rotate: [0.7071067811865476, 0, 0, 0.7071067811865476]}, pins: [{box: [[-1, 0.199, -1], [1, 0.201, 1]]}]}
-materials: {m: {density: 1, model: triangles, stretch: 1000, shear: 370, poisson: 0.35, bending: {rigidity: 0.000128}, friction: 0}}
-obstacles: [{sphere: {centre: [-0.12, 0, 0], radius: 0.1, motion: {times: [0, 0.3], translate: [[0, 0, 0], [0.3, 0, 0]]}}}]
+  - {mesh: {grid: {width: 2, height: 2, nx: 33, ny: 33, cells: alternate}}, material: m, transform: {rotate: [0.7071067811865476, 0, 0, 0.7071067811865476]}, pins: [{box: [[-1, 0.999, -2], [1, 1.001, 2]]}]}
+materials: {m: {density: 5, model: triangles, stretch: 1000, shear: 370, poisson: 0.35, bending: {rigidity: 0.000128}, friction: 0}}
+obstacles: [{sphere: {centre: [-0.6, 0, 0], radius: 0.5, motion: {times: [0, 5], translate: [[0, 0, 0], [8, 0, 0]]}}}]
 contact: {mode: certified, self: on, thickness: 0.001}
-time: {h: 0.00833333333, end: 0.3, fps: 60}
+time: {h: 0.00833333333, end: 0.5, fps: 60}
 END
 ok "a curtain that a ball goes through" free curtain
 

@@ -71,6 +71,7 @@ static int simulate_begin_cut(struct run *run, struct cloth_error *error)
     untangled.rounds += all->rounds;
     untangled.moved += all->moved;
     untangled.largest = fmax(untangled.largest, all->largest);
+    untangled.stretch = fmax(untangled.stretch, all->stretch);
     *all = untangled;
     run->apart = run->model->contact.apart;
     if (!code) {

@@ -3,6 +3,8 @@
  * the nearest place of the inner cloth is its border. The inner cloth does not move. */
 #include "cloth/untangle/state.h"
 
+#include <string.h>
+
 static bool layers_is_of(const struct untangle *all, uint32_t triangle, const void *context)
 {
     return all->owner[triangle] == *(const uint32_t *)context;
@@ -83,8 +85,14 @@ static int layers_look_at_vertex(struct untangle *all, uint32_t point, uint32_t 
 {
     struct untangle_nearest at;
     phys_vec normal;
-    if (!untangle_beside(all, point, inner, &at, &normal) ||
-        !(at.at.gap * phys_dot(&normal, &at.at.normal) < all->open))
+    if (!untangle_beside(all, point, inner, &at, &normal))
+        return CLOTH_OK;
+    const double height = at.at.gap * phys_dot(&normal, &at.at.normal);
+    const uint32_t piece = all->piece[all->corner[at.triangle][0]];
+    all->sides[piece][height < 0]++;
+    if (height < 0)
+        all->outer[piece] = all->cloth[point];
+    if (!(height < all->open))
         return CLOTH_OK;
     all->count.layers++;
     return untangle_push_vertex(all, point, &at, &normal, true);
@@ -111,6 +119,7 @@ int untangle_layers(struct untangle *all)
 {
     const uint32_t *layer = all->of->layer;
     all->count.layers = 0;
+    memset(all->sides, 0, all->n_cloth_points * sizeof *all->sides);
     int code = push_crossings(all);
     for (uint32_t inner = 0; inner < all->n_cloths; inner++)
         for (uint32_t p = 0; p < all->n_cloth_points && !code; p++)
@@ -118,4 +127,16 @@ int untangle_layers(struct untangle *all)
                 untangle_meets(all, all->cloth[p], inner))
                 code = layers_look_at_vertex(all, p, inner);
     return code;
+}
+
+void untangle_turned(const struct untangle *all, struct untangle_result *result)
+{
+    for (uint32_t piece = 0; piece < all->n_cloth_points; piece++) {
+        if (all->sides[piece][1] <= all->sides[piece][0] || result->n_turned++ >= UNTANGLE_TURNED)
+            continue;
+        struct untangle_turned *turned = result->turned + result->n_turned - 1;
+        *turned = (struct untangle_turned){.point = piece, .outer = all->outer[piece]};
+        for (uint32_t p = piece; p < all->n_cloth_points; p++)
+            turned->n += all->piece[p] == piece;
+    }
 }

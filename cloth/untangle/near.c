@@ -113,7 +113,8 @@ static void near_visit(void *to, uint32_t n, const struct contact_candidate *can
 
 int untangle_near(struct untangle *all)
 {
-    const struct contact_side cloth = {&all->skin, all->boxes, all->x, all->x};
+    const struct contact_side cloth = {
+        .skin = &all->skin, .boxes = all->boxes, .x = all->x, .y = all->x};
     struct looking looking = {all, {&all->skin, &all->skin}};
     all->count.near = 0;
     contact_query(&cloth, &cloth, all->open, near_visit, &looking);
@@ -122,7 +123,7 @@ int untangle_near(struct untangle *all)
         if (!at->body)
             continue;
         const phys_vec *x = all->x + at->first.point;
-        const struct contact_side body = {&at->skin, at->boxes, x, x};
+        const struct contact_side body = {.skin = &at->skin, .boxes = at->boxes, .x = x, .y = x};
         looking.skin[1] = &at->skin;
         contact_query(&cloth, &body, all->open, near_visit, &looking);
     }

@@ -30,6 +30,11 @@ static void parts_join(const struct untangle *all, const unsigned char *cut, uin
         root[p] = cloth_sets_root(root, p);
 }
 
+void untangle_pieces(struct untangle *all)
+{
+    parts_join(all, NULL, all->piece);
+}
+
 static bool is_cut(const struct untangle *all, const struct untangle_crossing *crossing)
 {
     const uint32_t n = all->n_cloths, owner = all->owner[crossing->triangle];
@@ -136,7 +141,6 @@ int untangle_parts(struct untangle *all)
     }
     if (!any)
         return CLOTH_OK;
-    parts_join(all, NULL, all->piece);
     parts_join(all, all->cut, all->part);
     parts_find_wrong(all, all->largest);
     for (size_t i = 0; i < all->crossings.n; i++)

@@ -60,15 +60,17 @@ struct untangle_body {
     X(unsigned char, used, , p)      /* a triangle of cloth has it */                              \
     X(unsigned char, shared, , p)    /* of two cloths */                                           \
     X(unsigned char, moved, , p)     /* so far */                                                  \
+    X(uint32_t, piece, , p)          /* the root of its piece: all that edges join */              \
     /* used within a round */                                                                      \
     X(uint32_t, part, , p)           /* the root of its part */                                    \
-    X(uint32_t, piece, , p)          /* the root of its piece */                                   \
     X(uint32_t, size, , p)           /* vertices of a part */                                      \
     X(uint32_t, largest, , p)        /* of a piece: a point of its largest part */                 \
     X(unsigned char, cut, , 3 * t)   /* by edge: 0 between rounds */                               \
     X(uint32_t, zone, , p)           /* the root of its zone; */                                   \
     X(uint32_t, votes, [2], p)       /* of it, for either side */                                  \
     X(signed char, label, , p)       /* side of a cloth, 1 or -1; 0: none */                       \
+    X(uint32_t, sides, [2], p)       /* by piece: points of outer cloths on its outer side, */     \
+    X(uint32_t, outer, , p)          /* on its inner side; a cloth of those */                     \
     X(uint32_t, stamp, , t)          /* a part that crosses it */                                  \
     X(unsigned char, wrong, , p)     /* of a part on the wrong side */                             \
     X(unsigned char, tangled, , p)   /* of a crossing within its own layer */                      \
@@ -103,6 +105,12 @@ int untangle_open(struct untangle *all, phys_vec *x);
 void untangle_close(struct untangle *all);
 /* Boxes, normals and the tree follow the points. */
 void untangle_refit(struct untangle *all);
+
+/* Finds the pieces of cloth. */
+void untangle_pieces(struct untangle *all);
+/* Names parts of inner cloths that face away from outer ones, in the round that untangle_layers
+ * looked at. */
+void untangle_turned(const struct untangle *all, struct untangle_result *result);
 
 /* Each finds one kind of fault in a round, counts it and adds pushes. */
 int untangle_cross(struct untangle *all);     /* first: fills crossings */

@@ -31,6 +31,21 @@ static void untangle_keep(struct untangle *all, struct untangle_result *result)
     result->left = all->count;
 }
 
+/* Finds the edge that became longest by a factor. */
+static void find_stretch(const struct untangle *all, struct untangle_result *result)
+{
+    for (uint32_t e = 0; e < all->n_edges; e++) {
+        const struct untangle_edge *edge = all->edge + e;
+        const phys_vec along = all->best[edge->end[1]] - all->best[edge->end[0]];
+        const double stretch = sqrt(phys_dot(&along, &along)) / edge->length;
+        if (edge->owner >= all->n_cloths || !(edge->length > CONTACT_TINY) ||
+            !(stretch > result->stretch))
+            continue;
+        result->stretch = stretch;
+        memcpy(result->stretched, edge->end, sizeof result->stretched);
+    }
+}
+
 static void untangle_conclude(const struct untangle *all, phys_vec *x,
                               struct untangle_result *result)
 {
@@ -43,6 +58,8 @@ static void untangle_conclude(const struct untangle *all, phys_vec *x,
         result->moved++;
         result->largest = fmax(result->largest, sqrt(square));
     }
+    if (result->moved)
+        find_stretch(all, result);
 }
 
 static int go_round(struct untangle *all, const struct untangle_listener *listener,
@@ -53,6 +70,8 @@ static int go_round(struct untangle *all, const struct untangle_listener *listen
     int code;
     while (!(code = untangle_find_wrong(all))) {
         const uint64_t wrong = sum_of(&all->count);
+        if (!result->rounds)
+            untangle_turned(all, result);
         since++;
         if (wrong < least) {
             untangle_keep(all, result);
@@ -78,6 +97,8 @@ int untangle(const struct untangle_cloths *cloths, phys_vec *x,
     if (!contact_soup_cloths(cloths->soup).triangle)
         return CLOTH_OK;
     int code = untangle_open(&all, x);
+    if (!code)
+        untangle_pieces(&all);
     code = code ? code : go_round(&all, listener, result);
     if (!code)
         untangle_conclude(&all, x, result);

@@ -32,10 +32,22 @@ struct untangle_count {
     uint64_t layers;  /* vertices of an outer cloth that are inside of an inner one */
 };
 
+/* A connected part of a cloth. Where x begins, more points of outer cloths are on its inner side
+ * than on its outer one: it is inside out, or they are in it. */
+struct untangle_turned {
+    uint32_t point, n; /* its lowest point; how many it has */
+    uint32_t outer;    /* one of these cloths */
+};
+enum { UNTANGLE_TURNED = 5 };
+
 struct untangle_result {
-    uint32_t rounds; /* 0: there were no faults, and x is unchanged */
-    uint64_t moved;  /* points */
-    double largest;  /* m: the largest move of a point */
+    uint32_t rounds;       /* 0: there were no faults, and x is unchanged */
+    uint64_t moved;        /* points */
+    double largest;        /* m: the largest move of a point */
+    double stretch;        /* the most by which an edge is longer than before, a factor, and */
+    uint32_t stretched[2]; /* its ends */
+    uint32_t n_turned;     /* parts, the first of which are: */
+    struct untangle_turned turned[UNTANGLE_TURNED];
     struct untangle_count left;
     uint32_t near[4]; /* if left.near: the points of the first such pair, some of bodies,
                        * which follow the cloths' */

@@ -72,6 +72,45 @@ layers() {
 }
 ok "the outer cloth starts inside the inner one" layers
 
+# Two halves of a sheet, the second of which is inside out; a sheet 3 mm above both goes through that one alone.
+awk 'BEGIN { for (half = 0; half < 2; half++) {
+        for (i = 0; i < 11; i++) for (j = 0; j < 21; j++) printf "v %.9f 0 %.9f\n", 0.01 * i + 0.11 * half - 0.105, 0.01 * j - 0.1
+        for (i = 0; i < 10; i++) for (j = 0; j < 20; j++) {
+            a = 231 * half + 21 * i + j + 1; b = a + 1; c = a + 22; d = a + 21
+            print half ? "f " a " " c " " b "\nf " a " " d " " c : "f " a " " b " " c "\nf " a " " c " " d } } }' > halves.obj
+scene halves "  - {name: shirt, material: m, mesh: {file: halves.obj}, layer: 1}
+$(sheet jacket 0.003 ', layer: 2')"
+turned() { # N SCENE: so many parts are said to be inside out
+    turned_n=$1
+    shift
+    fine "$@" > said 2>&1 || { cat said && return 1; }
+    cat said
+    test "$(grep -c 'inside out' said)" = "$turned_n"
+}
+inside_out() {
+    turned 1 halves.yaml && grep -q "the part of 231 vertices with vertex 232 of 'shirt' (counted from 1) faces away from 'jacket'" said
+}
+ok "the part that is inside out is named" inside_out
+swapped() {
+    turned 1 layers.yaml && grep -q "the part of 441 vertices with vertex 1 of 'inner'" said && turned 0 layers.yaml --set 'cloths[0].layer=2' && turned 0 waves.yaml
+}
+ok "so is a cloth with the outer one in it, and no other" swapped
+
+# The outer cloth is held below the inner one, beside it, so that edges there reach up to its other side.
+scene held "  - {name: inner, material: m, mesh: {grid: {width: 0.09, height: 0.24, nx: 10, ny: 25}}, layer: 1}
+$(sheet outer -0.045 ', layer: 2, pins: [{box: [[-1, -1, -1], [-0.055, 1, 1]]}, {box: [[0.055, -1, -1], [1, 1, 1]]}]')"
+stretched() {
+    limited "$DUITE_CLOTH" held.yaml --set contact.thickness=0.004 --report report.json --quiet > said 2>&1 || { cat said && return 1; }
+    cat said
+    between 3 "$(value untangle_stretch)" 5 &&
+        grep -Eq "contact.untangle made the edge between vertices [0-9]+ of 'outer' and [0-9]+ of 'outer' [34][.][0-9]* times as long" said
+}
+ok "edges that it makes three times as long are warned of" stretched
+modest() {
+    fine waves.yaml > said 2>&1 && between 1 "$(value untangle_stretch)" 2 && ! grep "times as long" said
+}
+ok "others are not" modest
+
 scene free "$(sheet a 0)
 $(sheet b 0.004)" 'sphere: {centre: [0.02, -0.102, 0.01], radius: 0.1}'
 unchanged() {
@@ -94,6 +133,26 @@ too_near() {
     test $? = 2 && grep -q "nearer than a tenth of the thickness, the first of them at vertices [0-9]* of '[ab]'" said
 }
 ok "pins too near to each other" too_near
+
+# Without untangling: two sheets far nearer than a tenth of the thickness, on a box, where floats tell them apart and where they do not.
+scene close "$(sheet a 0.0001)
+$(sheet b 0.0002)" 'box: {centre: [0, -0.05, 0], size: [0.3, 0.1, 0.3]}'
+parts() { # what is 0.1 mm from the next, 0.05 of the thickness, is parted at no more than 0.2 m/s
+    limited "$DUITE_CLOTH" close.yaml --set contact.untangle=off --set time.end=0.1 --check-intersections --report report.json --quiet --output parted \
+        --set 'probes=[{cloth: b, vertices: [220], values: [position, velocity]}]' || return 1
+    awk -F, 'NR > 1 { most = $14 > most ? $14 : most; y = $11 } END { print "#", most, "m/s,", y, "m in the end"; exit !(most < 0.2 && y > 0.002 && y < 0.005) }' parted/probes.csv
+}
+ok "a start much nearer than a tenth of the thickness is parted" parts
+unwritten() { # 1e-8 m at a height of 1 m
+    sed 's/0.0001,/1.00000001,/; s/0.0002,/1.00000002,/; s/-0.05,/0.95,/' close.yaml > high.yaml
+    limited "$DUITE_CLOTH" high.yaml --set contact.untangle=off --quiet > said 2>&1
+    unwritten_got=$?
+    cat said
+    test $unwritten_got = 2 && grep -q "frame 0 as written, at 0 s: triangle .* of cloth 'a' and triangle .* of cloth 'b' intersect" said &&
+        grep -q 'so near to each other that frames, whose numbers are floats, have them in one place: move them apart, or write contact: {untangle: on}' said &&
+        fine high.yaml
+}
+ok "one that floats cannot tell apart is refused" unwritten
 
 one_hash() {
     fine waves.yaml --set contact.thickness=0.0018 && hash=$(value state_hash) &&

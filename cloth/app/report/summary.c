@@ -221,6 +221,7 @@ static void add_checks(struct output_report *json, const struct summary *summary
     output_report_integer(json, "untangle_rounds", untangled->rounds);
     output_report_integer(json, "untangle_vertices", untangled->moved);
     output_report_number(json, "untangle_largest", untangled->largest);
+    output_report_number(json, "untangle_stretch", untangled->stretch);
     add_optional(json, "intersections", found, found ? found->pairs : 0);
     add_optional(json, "intersections_shapes", found, found ? found->with_shapes : 0);
     add_optional(json, "intersections_frame", found && found->bad, found ? found->first : 0);

@@ -104,6 +104,45 @@ static void name_point(const struct model *model, uint32_t n, uint32_t point, ch
              model->cloths[c].name);
 }
 
+/* An edge that became so many times as long is warned of. */
+static const double MUCH_STRETCH = 3;
+
+static void warn_of_stretch(const struct model *model, const struct untangle_result *result)
+{
+    const uint32_t n = model_first(model, model->n_cloths);
+    char end[2][80];
+    if (!(result->stretch >= MUCH_STRETCH))
+        return;
+    for (int k = 0; k < 2; k++)
+        name_point(model, n, result->stretched[k], end[k], sizeof end[k]);
+    fprintf(stderr,
+            "duite-cloth: warning: contact.untangle made the edge between vertices%s and%s %.3g "
+            "times as long (vertices count from 1): move the cloth there nearer to where it is "
+            "free\n",
+            end[0], end[1], result->stretch);
+}
+
+/* Out is told by the triangles of the inner cloth. */
+static void warn_of_turned(const struct model *model, const struct untangle_result *result)
+{
+    const uint32_t n = model_first(model, model->n_cloths);
+    for (uint32_t i = 0; i < result->n_turned && i < UNTANGLE_TURNED; i++) {
+        const struct untangle_turned *turned = result->turned + i;
+        const char *outer = model->cloths[turned->outer].name;
+        char point[80];
+        name_point(model, n, turned->point, point, sizeof point);
+        fprintf(stderr,
+                "duite-cloth: warning: contact.untangle: the part of %" PRIu32
+                " vertices with vertex%s (counted from 1) faces away from '%.40s', whose layer is "
+                "higher, and which goes through it; if that part is inside out, turn its faces "
+                "round\n",
+                turned->n, point, outer);
+    }
+    if (result->n_turned > UNTANGLE_TURNED)
+        fprintf(stderr, "duite-cloth: warning: contact.untangle: and %" PRIu32 " such parts more\n",
+                result->n_turned - UNTANGLE_TURNED);
+}
+
 /* Pairs that intersect start_check names. */
 static int run_start_refuse(const struct model *model, const struct untangle_result *result,
                             struct cloth_error *error)
@@ -130,7 +169,7 @@ static bool run_start_is_free(const struct untangle_count *left)
 }
 
 static int look_at_start(const struct model *model, const struct contact_apart *apart,
-                         const double *position, struct intersections_found *found,
+                         const double *position, bool written, struct intersections_found *found,
                          struct cloth_error *error)
 {
     struct intersections *intersections = NULL;
@@ -138,7 +177,7 @@ static int look_at_start(const struct model *model, const struct contact_apart *
         .program = "duite-cloth", .apart = apart, .self_off = !model->contact.self, .found = found};
     *found = (struct intersections_found){0};
     int code = intersections_of(&intersections, model, of, error);
-    code = code ? code : intersections_frame(intersections, 0, 0, position, false, error);
+    code = code ? code : intersections_frame(intersections, 0, 0, position, written, error);
     intersections_close(&intersections);
     return code;
 }
@@ -153,7 +192,7 @@ static int name_pairs(const struct model *model, const struct tangle *of, struct
     for (uint32_t v = 0; v < of->n; v++)
         for (size_t k = 0; k < 3; k++)
             position[3 * (size_t)v + k] = of->x[of->soup.same[v]][k];
-    const int code = look_at_start(model, &of->apart, position, &found, error);
+    const int code = look_at_start(model, &of->apart, position, false, &found, error);
     free(position);
     return code;
 }
@@ -173,6 +212,8 @@ static int make_free(struct model *model, struct flow **flow, int ranks, bool sa
                                            .bodies = &model->bodies};
     const struct untangle_listener listener = {&says, say_round};
     int code = untangle(&cloths, tangle->x, &listener, result, error);
+    if (!code)
+        warn_of_turned(model, result);
     if (!code && !run_start_is_free(&result->left)) {
         code = name_pairs(model, tangle, error);
         return code ? code : run_start_refuse(model, result, error);
@@ -181,6 +222,7 @@ static int make_free(struct model *model, struct flow **flow, int ranks, bool sa
         return code;
     if (says)
         say_result(result);
+    warn_of_stretch(model, result);
     for (uint32_t v = 0; v < tangle->n; v++)
         for (int k = 0; k < 3; k++)
             tangle->start[v][k] = tangle->x[tangle->soup.same[v]][k];
@@ -206,25 +248,40 @@ int start_untangle(struct model *model, struct flow **flow, int ranks, bool says
     return code;
 }
 
+/* Refuses a start of which triangles go through others; written: in frame 0, which is in floats. */
+static int check_places(const struct model *model, const struct contact_apart *apart,
+                        const double *position, bool written, const char *scene,
+                        struct cloth_error *error)
+{
+    struct intersections_found found;
+    const int code = look_at_start(model, apart, position, written, &found, error);
+    if (code || !found.bad)
+        return code;
+    if (written)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%s: where the run starts %" PRIu64 " pairs of triangles and %" PRIu64
+                          " with obstacles are so near to each other that frames, whose numbers "
+                          "are floats, have them in one place: %s",
+                          scene, found.pairs, found.with_shapes, model_start_cure(model));
+    return cloth_fail(
+        error, CLOTH_E_INPUT,
+        "%s: where the run starts %" PRIu64 " pairs of triangles go through each other and %" PRIu64
+        " through obstacles; contact.mode certified needs a start where none "
+        "does: %s%s",
+        scene, found.pairs, found.with_shapes, model_start_cure(model), model_contact_cure(model));
+}
+
 int start_check(const struct model *model, const struct flow *flow,
                 const struct contact_apart *apart, const char *scene, struct cloth_error *error)
 {
-    struct intersections_found found;
     if (!model_promise(model).apart)
         return CLOTH_OK;
     double *position = cloth_alloc(flow_vertices(flow), 3 * sizeof *position, error);
     if (!position)
         return CLOTH_E_MEMORY;
     flow_start(flow, position);
-    int code = look_at_start(model, apart, position, &found, error);
-    if (!code && found.bad)
-        code = cloth_fail(error, CLOTH_E_INPUT,
-                          "%s: where the run starts %" PRIu64
-                          " pairs of triangles go through each other and %" PRIu64
-                          " through obstacles; contact.mode certified needs a start where none "
-                          "does: %s%s",
-                          scene, found.pairs, found.with_shapes, model_start_cure(model),
-                          model_contact_cure(model));
+    int code = check_places(model, apart, position, false, scene, error);
+    code = code ? code : check_places(model, apart, position, true, scene, error);
     free(position);
     return code ? code : start_welds(model, flow, apart, scene, error);
 }

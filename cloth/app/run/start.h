@@ -14,9 +14,10 @@
 int start_untangle(struct model *model, struct flow **flow, int ranks, bool says,
                    struct untangle_result *result, struct cloth_error *error);
 
-/* With certified contact: finds that nothing goes through anything, nor welded partners on the
- * straight way to their weld, by start_welds. apart: pairs that do not meet. Errors: CLOTH_E_INPUT,
- * the first pairs or vertices named; CLOTH_E_MEMORY. */
+/* With certified contact: finds that nothing goes through anything, where the run starts and in
+ * frame 0, which is in floats, nor welded partners on the straight way to their weld, by
+ * start_welds. apart: pairs that do not meet. Errors: CLOTH_E_INPUT, the first pairs or vertices
+ * named; CLOTH_E_MEMORY. */
 int start_check(const struct model *model, const struct flow *flow,
                 const struct contact_apart *apart, const char *scene, struct cloth_error *error);
 

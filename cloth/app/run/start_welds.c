@@ -137,7 +137,7 @@ static int start_welds_look_at_body(struct motion *motion, const struct contact_
                    : cloth_fail(error, CLOTH_E_MEMORY, "out of memory for a body");
     if (!code) {
         const struct contact_skin skin = contact_skin_open(table);
-        const struct contact_side side = {&skin, boxes, x, x};
+        const struct contact_side side = {.skin = &skin, .boxes = boxes, .x = x, .y = x};
         contact_body_ends(body, pose, x, y, &way);
         contact_refit(&skin, x, x, &none, boxes);
         motion->body = &side;
@@ -246,7 +246,8 @@ static int start_welds_make_skin(struct motion *motion, struct cloth_error *erro
     if (code)
         return code;
     motion->skin = contact_skin_open(motion->table);
-    motion->side = (struct contact_side){&motion->skin, motion->boxes, motion->x, motion->y};
+    motion->side = (struct contact_side){
+        .skin = &motion->skin, .boxes = motion->boxes, .x = motion->x, .y = motion->y};
     contact_refit(&motion->skin, motion->x, motion->y, &none, motion->boxes);
     return CLOTH_OK;
 }

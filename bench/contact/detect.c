@@ -165,8 +165,10 @@ static void meet(struct sheet *sheet, const uint32_t pair[2])
     struct contact_side side[2];
     for (int k = 0; k < 2; k++) {
         const struct block *block = meeting.block[k];
-        side[k] = (struct contact_side){&block->skin, block->boxes, block->x,
-                                        block->x + block->skin.n_points};
+        side[k] = (struct contact_side){.skin = &block->skin,
+                                        .boxes = block->boxes,
+                                        .x = block->x,
+                                        .y = block->x + block->skin.n_points};
     }
     contact_query(side, side + 1, SHAPES_REACH, visit, &meeting);
     atomic_fetch_add(&sheet->near, meeting.near);

@@ -119,6 +119,8 @@ struct contact_side {
     const struct contact_skin *skin;
     const void *boxes; /* of x and y */
     const phys_vec *x, *y;
+    double flat; /* m, of the first side: features of one flat part of both skins need to be visited
+                  * only if they are nearer than this; 0: than the reach */
 };
 
 /* Takes n candidates, at most CONTACT_BATCH of them. */

@@ -15,7 +15,7 @@ static const double FLOATS = 1e-6;
 struct query {
     struct contact_leaves leaves;
     const struct contact_skin *skin[2];
-    double reach;
+    double reach, flat;            /* m: of all; of what lies in one flat part */
     bool shares;                   /* the skins may have points in common */
     bool again;                    /* only pairs of parts of which one moved */
     const unsigned char *moved[2]; /* then by node: bit k: child k did; NULL: none did */
@@ -67,7 +67,7 @@ static bool part_is_flat(const struct query *query, struct contact_part part)
 {
     struct contact_patch patch;
     find_patch(query, 0, part, &patch);
-    return contact_patches_flat(&patch, NULL, query->reach);
+    return contact_patches_flat(&patch, NULL, query->flat);
 }
 
 /* Both as one, which they can only be by points in common. */
@@ -78,7 +78,7 @@ static bool parts_are_flat(const struct query *query, struct contact_part a, str
         return false;
     find_patch(query, 0, a, &of_a);
     find_patch(query, 1, b, &of_b);
-    return contact_patches_flat(&of_a, &of_b, query->reach);
+    return contact_patches_flat(&of_a, &of_b, query->flat);
 }
 
 /* ---- Features ---- */
@@ -275,6 +275,7 @@ static void query_run(struct query *query, const struct contact_side *a,
     query->leaves.group[0] = contact_boxes_groups(a->boxes);
     query->leaves.group[1] = contact_boxes_groups(b->boxes);
     query->leaves.self = a->skin == b->skin;
+    query->flat = a->flat > 0 && a->flat < reach ? a->flat : reach;
     query->shares = a->skin->ids[0] <= b->skin->ids[1] && b->skin->ids[0] <= a->skin->ids[1];
     query->visit = visit;
     query->to = to;

@@ -69,6 +69,7 @@ static int meet_self_body(const duite_call *call, const struct meet_self_fields 
     m.kin[1] = m.kin[0];
     m.moved[1] = m.moved[0];
     m.side[1] = m.side[0];
+    m.side[0].flat = flow_meeting_kin_reach(&m);
     return query_meeting(&m, m.side);
 }
 
@@ -82,6 +83,7 @@ static int meet_body(const duite_call *call, const struct meet_fields *on)
                   on->skin_x, on->skin_boxes, &m);
     const struct flow_skin other = flow_skin_open(on->other_skin);
     open_side(&m, 1, &other, on->other_x, on->other_boxes);
+    m.side[0].flat = flow_meeting_kin_reach(&m);
     return query_meeting(&m, m.side + 1);
 }
 

@@ -138,6 +138,15 @@ static void contact_meet_thin(const struct meeting *m, struct corners *corners)
     corners->thickness = fmin(fmax(CLEAR * clear, CONTACT_MARGIN), corners->thickness);
 }
 
+double flow_meeting_kin_reach(const struct meeting *m)
+{
+    double most = 0;
+    for (int k = 0; k < 2; k++)
+        for (uint32_t i = 0; i < m->skin[k].n_points && m->kin[k].n; i++)
+            most = isinf(m->kin[k].clear[i]) ? most : fmax(most, m->kin[k].clear[i]);
+    return CLEAR * most / m->model->contact.thickness * m->reach;
+}
+
 /* Fills a contact, in zeroed memory. places: of the corners; they give the row's origin. */
 static void contact_meet_describe_pair(const struct meeting *m, const struct corners *corners,
                                        const phys_vec places[4],

@@ -29,6 +29,10 @@ struct meeting {
 /* Looks at n candidates; to: the meeting. For queries. */
 void flow_meeting_visit(void *to, uint32_t n, const struct contact_candidate *candidate);
 
+/* m: how near to each other kin of two blocks are contacts, at most; 0: they have none. Features of
+ * one flat part of cloth are kin where they are near. */
+double flow_meeting_kin_reach(const struct meeting *m);
+
 /* True if a point of a listed contact moved since the last look. */
 bool flow_meeting_moved(const struct meeting *m, const struct flow_contact *contact);
 

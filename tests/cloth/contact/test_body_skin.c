@@ -219,7 +219,7 @@ UNIT_TEST(pairs_with_a_cloth)
         skin[i] = contact_skin_open(table[i]);
         boxes[i] = take(contact_boxes_bytes(skin + i), 0);
         contact_refit(skin + i, x[i], y[i], way + i, boxes[i]);
-        side[i] = (struct contact_side){skin + i, boxes[i], x[i], y[i]};
+        side[i] = (struct contact_side){.skin = skin + i, .boxes = boxes[i], .x = x[i], .y = y[i]};
     }
     found.candidate = take(found.capacity * sizeof *found.candidate, 0);
     contact_query(side, side + 1, REACH, keep, &found);

@@ -62,10 +62,14 @@ static void query_all(double reach)
     for (uint32_t p = 0; p < PARTS; p++)
         for (uint32_t q = 0; q <= p; q++) {
             struct meeting meeting = {skins + (q % 2 ? q : p), skins + (q % 2 ? p : q)};
-            const struct contact_side a = {&meeting.a->skin, meeting.a->boxes, meeting.a->x,
-                                           meeting.a->y};
-            const struct contact_side b = {&meeting.b->skin, meeting.b->boxes, meeting.b->x,
-                                           meeting.b->y};
+            const struct contact_side a = {.skin = &meeting.a->skin,
+                                           .boxes = meeting.a->boxes,
+                                           .x = meeting.a->x,
+                                           .y = meeting.a->y};
+            const struct contact_side b = {.skin = &meeting.b->skin,
+                                           .boxes = meeting.b->boxes,
+                                           .x = meeting.b->x,
+                                           .y = meeting.b->y};
             if (again)
                 contact_query_moved(&a, &b, false, reach, see, &meeting);
             else

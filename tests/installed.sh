@@ -18,7 +18,8 @@ by_fortran() {
     ${FC:-gfortran} -c "$(${PKG_CONFIG:-pkg-config} --variable=fortran duite)" &&
         ${FC:-gfortran} -o by_fortran "$srcdir/tests/examples/dot.f90" duite.o $(${PKG_CONFIG:-pkg-config} --libs duite)
 }
-there() { command -v "${1%% *}" > "$scratch/output"; }
+# Compilers other than CC have not the sanitizers of this build.
+there() { test -z "${SANITIZER:-}" && command -v "${1%% *}" > "$scratch/output"; }
 
 cmake_finds() { # VERSION
     mkdir -p tree && cat > tree/CMakeLists.txt << END && cmake -S tree -B "built-$1"
@@ -43,8 +44,8 @@ if command -v cmake > "$scratch/output"; then
 else
     skip "CMake builds it" "no cmake"
 fi
-if there "${CXX:-c++}"; then ok "a program in C++" by_cpp; else skip "a program in C++" "no C++ compiler"; fi
-if there "${FC:-gfortran}"; then ok "a program in Fortran" by_fortran; else skip "a program in Fortran" "no Fortran compiler"; fi
+if there "${CXX:-c++}"; then ok "a program in C++" by_cpp; else skip "a program in C++" "no C++ compiler, or sanitizers"; fi
+if there "${FC:-gfortran}"; then ok "a program in Fortran" by_fortran; else skip "a program in Fortran" "no Fortran compiler, or sanitizers"; fi
 for program in by_*; do
     ok "$program on one rank" limited "./$program"
     if command -v "${MPIRUN:-mpirun}" > "$scratch/output"; then

@@ -30,6 +30,12 @@ ok "traced on 2 ranks" eval 'limited "${MPIRUN:-mpirun}" -n 2 "$DUITE_CLOTH" \
     --set "cloths[0].pins=[]" --grain 100 --end 0.004 --threads 2 --balance scatter --quiet --trace "$scratch/ranks"'
 ok "events of 2 ranks add up, messages and delegated tasks too" ./duite-trace --check "$scratch/ranks"
 
+added() { # kernels that the program adds while it runs
+    (DUITE_TRACE=$scratch/added; export DUITE_TRACE; ranks 2 tests/runtime/ranks kernels) > "$scratch/said" &&
+        ./duite-trace --check "$scratch/added" && ./duite-trace "$scratch/added" | grep '^ *many 39 '
+}
+ok "kernels that are added have their names" added
+
 # Each share is there once; together they are the workers' time. On ranks some of it goes to messages, if only a moment.
 shares() { # FILE EVENTS: whether there are any of messages
     ./duite-trace "$scratch/$1" > "$scratch/table"

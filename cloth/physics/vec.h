@@ -10,7 +10,7 @@
  * two of SSE2 or NEON. The fourth lane of every vector of the state is zero. The compiler lowers
  * the type to the processor's vectors; lanes are independent, so the bits are the same everywhere.
  * Helpers are always inlined: no vector is passed by value. */
-typedef double phys_vec __attribute__((vector_size(32)));
+typedef double phys_vec __attribute__((vector_size(32), aligned(32)));
 
 /* Three numbers as a vector. */
 #define PHYS_VEC(x) ((phys_vec){(x)[0], (x)[1], (x)[2], 0})

@@ -140,7 +140,7 @@ ok "a phase that fails is named and keeps the frames so far" fails
 
 stops() {
     rm -rf frames
-    "$DUITE_CLOTH" sheet.yaml --output frames --quiet --report report.json --set "phases=[{name: one, set: {time.end: 0.04}}, {name: long, set: {time.end: 100000, time.fps: 100}}, {name: never, set: {time.end: 1}}]" 2> said &
+    "$DUITE_CLOTH" sheet.yaml --output frames --quiet --report report.json --set "phases=[{name: one, set: {time.end: 0.04}}, {name: long, set: {time.end: 5000, time.fps: 100}}, {name: never, set: {time.end: 1}}]" 2> said &
     job=$!
     awaits $job eval 'test "$(wc -l < frames/probes.csv 2> /dev/null || echo 0)" -gt 60' && kill -USR1 $job
     status=0

@@ -1,7 +1,8 @@
-/* duite-compare: runs a product of policies and shapes on scenes and graphs, and says which
- * differences are more than noise. */
+/* duite-compare: runs a product of policies and shapes on scenes and graphs, or on any program, and
+ * says which differences are more than noise. */
 #include "tools/compare/compare.h"
 #include "tools/compare/graph.h"
+#include "tools/compare/program.h"
 
 #include <config.h>
 
@@ -16,7 +17,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { ROUNDS = 256, SEED, OUTPUT, TIMEOUT, TASKS, COST, BYTES, STEPS, SET, LIST };
+enum { ROUNDS = 256, SEED, OUTPUT, TIMEOUT, TASKS, COST, BYTES, STEPS, SET, VARY, FIGURE, LIST };
 
 static const struct argp_option OPTIONS[] = {
     {"scheduler", LIST + SCHEDULER, "LIST", 0,
@@ -37,6 +38,15 @@ static const struct argp_option OPTIONS[] = {
      "of scenes: vertices a block; of synthetic graphs: how many times the cost of a task, of "
      "which there are as many times fewer; 0: the default (default: 0)",
      1},
+    {"vary", VARY, "NAME=LIST", 0,
+     "values of a variable of the environment, with commas between them; may be given several "
+     "times",
+     1},
+    {"figure", FIGURE, "REGEX", 0,
+     "what is compared of a program: the number that the first group of this extended regular "
+     "expression finds in its output, in the last line that has one; the least is the best "
+     "(default: the time of the run)",
+     2},
     {"set", SET, "KEY=VALUE", 0, "change a value of the scenes; may be given several times", 2},
     {"tasks", TASKS, "N", 0, "tasks of a synthetic graph (default: 1000)", 3},
     {"cost", COST, "SECONDS", 0, "what a task of a synthetic graph takes (default: 1e-5)", 3},
@@ -72,9 +82,10 @@ static const char *const *names_of(int dimension)
 
 static void check_item(struct argp_state *state, int dimension, const char *item)
 {
+    const struct compare *compare = state->input;
     const void *found = state;
     char *end = NULL, wrong[2500];
-    const bool starpu = dimension == SCHEDULER && !strncmp(item, "starpu:", 7);
+    const bool starpu = dimension == SCHEDULER && !compare->program && !strncmp(item, "starpu:", 7);
     if (starpu && compare_starpu_wrong(item + 7, wrong, sizeof wrong))
         argp_error(state, "--scheduler %s: %s", item, wrong);
     if (dimension == SCHEDULER && !starpu)
@@ -84,11 +95,11 @@ static void check_item(struct argp_state *state, int dimension, const char *item
     else if (dimension == BALANCE)
         found = duite_balancer_find(item);
     if (!found)
-        argp_error(state, "--%s %s: %s", compare_dimension[dimension], item, duite_message());
+        argp_error(state, "--%s %s: %s", compare->name[dimension], item, duite_message());
     if (dimension == GRAIN || dimension == RANKS || dimension == THREADS) {
         double value = strtod(item, &end);
         if (end == item || *end || value < (dimension != GRAIN) || value > 1e9)
-            argp_error(state, "--%s %s: a number is expected", compare_dimension[dimension], item);
+            argp_error(state, "--%s %s: a number is expected", compare->name[dimension], item);
     }
 }
 
@@ -107,7 +118,60 @@ static void take_list(struct argp_state *state, struct compare *compare, int dim
         add(state, list, item);
     }
     if (!list->n)
-        argp_error(state, "--%s: a list is expected", compare_dimension[dimension]);
+        argp_error(state, "--%s: a list is expected", compare->name[dimension]);
+}
+
+/* text: NAME=LIST. */
+static void take_variable(struct argp_state *state, struct compare *compare, char *text)
+{
+    const int last = compare->dimensions;
+    char *list = strchr(text, '=');
+    if (!list || list == text || !list[1])
+        argp_error(state, "--vary %s: NAME=VALUE,VALUE,... is expected", text);
+    *list = 0;
+    if (text[strspn(text, PROGRAM_NAME)])
+        argp_error(state, "--vary %s: a name has letters, digits and _ only", text);
+    if (last == COMPARE_ALL_DIMENSIONS)
+        argp_error(state, "--vary %s: more than %d variables", text, COMPARE_VARIED);
+    for (int d = 0; d < last; d++)
+        if (!strcmp(compare->name[d], text))
+            argp_error(state, "--vary %s: there is a list of this name already", text);
+    compare->name[last] = text;
+    compare->dimensions++;
+    take_list(state, compare, last, list + 1);
+}
+
+/* What was not given has its default; a program does not get it. */
+static void complete_lists(struct compare *compare)
+{
+    static const char *const defaults[COMPARE_DIMENSIONS] = {
+        [GRAIN] = "0",      [RANKS] = "1",       [THREADS] = "2",
+        [BALANCE] = "none", [MAPPING] = "metis", [SCHEDULER] = "steal"};
+    for (int d = SUBJECT + 1; d < COMPARE_DIMENSIONS; d++)
+        if (!compare->list[d].n)
+            compare->list[d] = (struct compare_list){{compare->program ? "" : defaults[d]}, 1};
+}
+
+static void check_program(struct argp_state *state, const struct compare *compare)
+{
+    char wrong[500];
+    size_t letters = compare->figure ? strlen(compare->figure) : 0;
+    for (char *const *word = compare->program; word && *word; word++)
+        letters += strlen(*word) + 1;
+    if (letters > COMPARE_COMMAND)
+        argp_error(state,
+                   "a program and its arguments have at most %d letters; put them in a script",
+                   COMPARE_COMMAND);
+    if (compare->program && strpbrk(*compare->program, ",\n"))
+        argp_error(state, "%s: a comma or line in a name cannot stand in the files",
+                   *compare->program);
+    if (!compare->program && compare->figure)
+        argp_error(state, "--figure is for a program after --");
+    for (char *const *word = compare->program; word && *word; word++)
+        if (program_word_wrong(compare, *word, wrong, sizeof wrong))
+            argp_error(state, "%s", wrong);
+    if (compare->program && *compare->list[GRAIN].item[0] && !program_names(compare, GRAIN))
+        argp_error(state, "--grain: a program gets it as {grain} in its arguments only");
 }
 
 static uint64_t number(struct argp_state *state, const char *text, uint64_t least, uint64_t most)
@@ -128,7 +192,20 @@ static error_t parse(int key, char *text, struct argp_state *state)
         take_list(state, compare, key - LIST, text);
         return 0;
     }
+    if (compare->program && key >= TASKS && key <= SET)
+        argp_error(state,
+                   "%s: --set, --tasks, --cost, --bytes and --steps are for scenes and "
+                   "graphs, not for a program after --",
+                   text);
     switch (key) {
+    case VARY:
+        take_variable(state, compare, text);
+        return 0;
+    case FIGURE:
+        if (program_figure_wrong(text, wrong, sizeof wrong))
+            argp_error(state, "--figure %s: %s", text, wrong);
+        compare->figure = text;
+        return 0;
     case SET:
         if (!strchr(text, '='))
             argp_error(state, "--set %s: KEY=VALUE is expected", text);
@@ -159,13 +236,22 @@ static error_t parse(int key, char *text, struct argp_state *state)
         compare->folder = text;
         return 0;
     case ARGP_KEY_ARG:
+        if (compare->program)
+            argp_error(state, "%s: a scene or graph beside a program after --", text);
         if (compare_graph_wrong(text, wrong, sizeof wrong))
             argp_error(state, "%s", wrong);
         add(state, &compare->list[SUBJECT], text);
         return 0;
     case ARGP_KEY_NO_ARGS:
-        argp_error(state, "what is to be run? A scene, a graph file, or one of stencil, tree, "
-                          "cholesky, random, irregular, chain");
+        if (compare->program)
+            return 0;
+        argp_error(state, "what is to be run? A scene, a graph file, one of stencil, tree, "
+                          "cholesky, random, irregular, chain, or -- and a program");
+        return 0;
+    case ARGP_KEY_END:
+        complete_lists(compare);
+        check_program(state, compare);
+        return 0;
     }
     return ARGP_ERR_UNKNOWN;
 }
@@ -186,7 +272,7 @@ static bool makes_sense(const struct compare *compare, const struct compare_conf
 static int multiply(struct compare *compare)
 {
     size_t all = 1;
-    for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+    for (int d = 0; d < compare->dimensions; d++)
         all *= compare->list[d].n;
     if (all > COMPARE_CONFIGS) {
         fprintf(stderr, "duite-compare: %zu configurations; at most %d\n", all, COMPARE_CONFIGS);
@@ -196,7 +282,7 @@ static int multiply(struct compare *compare)
     for (size_t i = 0; i < all && compare->config; i++) {
         struct compare_config *config = &compare->config[compare->n];
         size_t rest = i;
-        for (int d = COMPARE_DIMENSIONS - 1; d >= 0; d--) {
+        for (int d = compare->dimensions - 1; d >= 0; d--) {
             config->value[d] = compare->list[d].item[rest % compare->list[d].n];
             rest /= compare->list[d].n;
         }
@@ -254,11 +340,11 @@ static int run_one(struct compare *compare, struct compare_config *config, size_
     else
         compare_start(compare, config, run);
     printf("round %zu:", round + 1);
-    for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+    for (int d = 0; d < compare->dimensions; d++)
         if (compare->list[d].n > 1)
             printf(" %s", config->value[d]);
     if (run->fine)
-        printf(": %.4g ms\n", 1e3 * run->seconds);
+        printf(": %.4g %s\n", compare_scale(compare) * run->seconds, compare_unit(compare));
     else
         printf(": failed; %s\n", run->why ? run->why : "out of memory");
     fflush(stdout);
@@ -361,30 +447,44 @@ static void end(struct compare *compare)
     free(compare->config);
 }
 
+/* What follows -- is the program's, its options too. */
+static void take_program(struct compare *compare, int *argc, char **argv)
+{
+    for (int i = 1; i < *argc && !compare->program; i++)
+        if (!strcmp(argv[i], "--") && i + 1 < *argc) {
+            compare->program = argv + i + 1;
+            compare->list[SUBJECT] = (struct compare_list){{argv[i + 1]}, 1};
+            *argc = i;
+        }
+    if (compare->program)
+        argv[*argc] = NULL;
+}
+
 const char *argp_program_version = "duite-compare (" PACKAGE_STRING ")";
 
 int main(int argc, char **argv)
 {
-    static struct compare compare = {.list = {[GRAIN] = {{"0"}, 1},
-                                              [RANKS] = {{"1"}, 1},
-                                              [THREADS] = {{"2"}, 1},
-                                              [BALANCE] = {{"none"}, 1},
-                                              [MAPPING] = {{"metis"}, 1},
-                                              [SCHEDULER] = {{"steal"}, 1}},
-                                     .folder = "comparison",
-                                     .tasks = "1000",
-                                     .cost = "1e-5",
-                                     .bytes = "4096",
-                                     .steps = "10",
-                                     .seed = 1,
-                                     .rounds = 10,
-                                     .timeout = 600};
+    static struct compare compare = {
+        .dimensions = COMPARE_DIMENSIONS,
+        .name = {"subject", "grain", "ranks", "threads", "balance", "mapping", "scheduler"},
+        .folder = "comparison",
+        .tasks = "1000",
+        .cost = "1e-5",
+        .bytes = "4096",
+        .steps = "10",
+        .seed = 1,
+        .rounds = 10,
+        .timeout = 600};
     const struct argp argp = {
         OPTIONS,
         parse,
-        "SCENE.yaml|GRAPH...",
-        "Compares schedulers, mappings, balancers, grains, ranks and threads: every product of the "
-        "lists, in rounds of random order.\vA comparison that was interrupted goes on where it "
+        "SCENE.yaml|GRAPH...\n-- PROGRAM [ARGUMENT...]",
+        "Compares schedulers, mappings, balancers, grains, ranks, threads and variables of the "
+        "environment: every product of the lists, in rounds of random order.\vA program after -- "
+        "gets the lists as DUITE_SCHEDULER, DUITE_MAPPING, DUITE_BALANCE, DUITE_THREADS, "
+        "OMP_NUM_THREADS and STARPU_NCPU, runs under mpirun on more than one rank, and has a "
+        "value wherever its arguments have the {name} of a list.\n\nA comparison that was "
+        "interrupted goes on where it "
         "stopped when the same command is given again; longer lists and more --rounds are added to "
         "it. Results are in the folder: compare.md has all, runs.csv every run, summary.csv the "
         "medians. The "
@@ -394,6 +494,7 @@ int main(int argc, char **argv)
         NULL,
         NULL};
     argp_err_exit_status = 2;
+    take_program(&compare, &argc, argv);
     if (argp_parse(&argp, argc, argv, 0, NULL, &compare))
         return 2;
     setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", 0);

@@ -208,3 +208,80 @@ ok "a machine that is busy draws a warning" busy
 ok "an unknown kind of graph" refused 2 "there is no kind of graph ring; known are stencil, .* chain, and files" ring --output u
 ok "a scene that is not there" refused 2 "none.yaml: No such file or directory" tree none.yaml --output u
 ok "a set without a value" refused 2 "set grain: KEY=VALUE is expected" tree --set grain --output u
+
+# A script that is no program of duite. FAIL, SLEEP and SILENT: it fails, hangs, prints no figure on this many threads.
+cat > "$scratch/any.sh" << 'END'
+if test "$OMP_NUM_THREADS" = "${SLEEP-no}"; then sleep 100; fi
+if test "$OMP_NUM_THREADS" = "${FAIL-no}"; then echo "any: no such thing" >&2 && exit 3; fi
+echo "arguments $* threads $OMP_NUM_THREADS $DUITE_THREADS $STARPU_NCPU scheduler ${DUITE_SCHEDULER-none} kind $KIND" >> all
+echo "took 99 s"
+test "$OMP_NUM_THREADS" = "${SILENT-no}" || echo "took ${1}0.5 s of ${OMPI_COMM_WORLD_SIZE-1}"
+echo bye
+END
+any() { # STATUS SENTENCE OPTIONS...
+    wanted=$1 sentence=$2 status=0
+    shift 2
+    (cd "$scratch" && limited "$bin/duite-compare" --seed 3 "$@" > said 2>&1) || status=$?
+    cat "$scratch/said"
+    test $status = "$wanted" && grep -q -- "$sentence" "$scratch/said"
+}
+program() { # the lists come by the environment and in arguments; $ and blanks keep braces
+    any 0 "12 configurations, 2 rounds" --threads 1,2,3 --scheduler steal,priority --vary KIND=a,b --rounds 2 --output any \
+        -- sh any.sh '{threads}' '{KIND}-{threads}' '${KIND}' '{ KIND }' --rounds 9 || return 1
+    sort "$scratch/all" | uniq -c && cat "$scratch/any/summary.csv" "$scratch/any/compare.md"
+    test "$(sort "$scratch/all" | uniq -c | grep -c '^ *2 arguments \([123]\) [ab]-\1 ${KIND} { KIND } --rounds 9 threads \1 \1 \1 scheduler [sp]')" = 12 &&
+        test "$(grep -c '^sh,,,[123],,,[a-z]*,[ab],2,0[.0-9e-]*,.*,,,' "$scratch/any/summary.csv")" = 12 &&
+        grep -q '^subject,grain,ranks,threads,balance,mapping,scheduler,KIND,runs,seconds,' "$scratch/any/summary.csv" &&
+        grep -q '^    sh any.sh {threads} ' "$scratch/any/compare.md"
+}
+program_again() { # longer lists and more rounds; another variable, argument or list is another comparison
+    set -- --threads 1,2,3 --scheduler steal,priority --rounds 3 --output any
+    any 0 "24 runs are there already" "$@" --vary KIND=a,b,c -- sh any.sh '{threads}' '{KIND}-{threads}' '${KIND}' '{ KIND }' --rounds 9 &&
+        test "$(grep -c ',fine$' "$scratch/any/runs.csv")" = 54 &&
+        any 1 "another comparison" "$@" --vary KIND=a,b,c -- sh any.sh 7 '{KIND}-{threads}' '${KIND}' '{ KIND }' --rounds 9 &&
+        any 1 "another comparison" "$@" --vary KIND=a,b,c --vary MORE=1 -- sh any.sh '{threads}' '{KIND}-{threads}' '${KIND}' '{ KIND }' --rounds 9 &&
+        test "$(grep -c ',fine$' "$scratch/any/runs.csv")" = 54
+}
+figure() { # the last line that matches; the least is first
+    any 0 ": 10.5 figure" --threads 2,1 --figure 'took ([0-9.]+) s of' --rounds 1 --output figure -- sh any.sh '{threads}' &&
+        grep -q '^sh,,,1,,,,1,10.5,10.5,10.5,,,1,1,1,fastest$' "$scratch/figure/summary.csv" &&
+        grep -q '^sh,,,2,,,,1,20.5,' "$scratch/figure/summary.csv" && grep -q ',threads,.*,runs,figure,low' "$scratch/figure/summary.csv"
+}
+of_ranks() {
+    any 0 "2 configurations" --ranks 1,2 --figure 'took .*of ([0-9]+)' --rounds 1 --output ranks -- sh any.sh '{ranks}' &&
+        grep -q '^0,sh,,1,,,,,1,' "$scratch/ranks/runs.csv" && grep -q '^0,sh,,2,,,,,2,' "$scratch/ranks/runs.csv"
+}
+# Each beside members that are fine, whose figures stay.
+program_fails() {
+    export FAIL=2 SLEEP=3 SILENT=4
+    any 1 "6 runs failed" --threads 1,2,3,4 --timeout 1 --figure 'took ([0-9.]+) s of' --rounds 2 --output fails -- sh any.sh '{threads}'
+    failed=$?
+    unset FAIL SLEEP SILENT
+    cat "$scratch/fails/compare.md"
+    test $failed = 0 && grep -q "threads 2: 2 of 2 runs; the first: exit status 3: any: no such thing" "$scratch/fails/compare.md" &&
+        grep -q "threads 3: 2 of 2 runs; the first: stopped after 1 s (--timeout)" "$scratch/fails/compare.md" &&
+        grep -q "threads 4: 2 of 2 runs; the first: exit status 0, but --figure finds no number above 0: bye" "$scratch/fails/compare.md" &&
+        test "$(grep -c ',1,.*,10.5,.*,fine$' "$scratch/fails/runs.csv")" = 2
+}
+rank_fails() { # mpirun's words behind the program's are not its last
+    FAIL=2 any 1 "exit status 3: any: no such thing" --threads 2 --ranks 2 --rounds 1 --output rank -- sh any.sh 1
+}
+ok "any program: lists by the environment and in its arguments" program
+ok "... it goes on, and grows" program_again
+ok "... its figure is a number in its output" figure
+ok "... ranks by mpirun" of_ranks
+ok "... one that fails, hangs, or prints no figure" program_fails
+ok "... on a rank of two" rank_fails
+ok "... that is not there" any 1 "no-such-program.*No such file" --rounds 1 --output none -- no-such-program
+ok "a name in braces without a list" any 2 "{threads} in -n{threads}: no list of this name was given" --ranks 2 -- sh '-n{threads}'
+ok "a grain that no argument has" any 2 "a program gets it as {grain} in its arguments only" --grain 2 -- sh any.sh
+ok "a variable without values" any 2 "vary KIND: NAME=VALUE,VALUE,... is expected" --vary KIND -- sh any.sh
+ok "a name that no variable has" any 2 "vary a b: a name has letters, digits and _ only" --vary 'a b=1' -- sh any.sh
+ok "a variable twice" any 2 "vary KIND: there is a list of this name already" --vary KIND=1 --vary KIND=2 -- sh any.sh
+ok "a figure that is no regular expression" any 2 "figure (: " --figure '(' -- sh any.sh
+ok "a figure without a group" any 2 "a group in parentheses is expected around the number" --figure 'took' -- sh any.sh
+ok "a figure without a program" any 2 "figure is for a program after --" tree --figure '(.)'
+ok "a scene's setting for a program" any 2 "are for scenes and graphs, not for a program" --steps 3 -- sh any.sh
+ok "a graph beside a program" any 2 "tree: a scene or graph beside a program" tree -- sh any.sh
+ok "a program's name with a comma" any 2 "a comma or line in a name cannot stand in the files" -- ./a,b
+ok "a command that is too long" any 2 "at most 10000 letters; put them in a script" -- sh any.sh "$(seq 3000 | tr '\n' ' ')"

@@ -12,7 +12,9 @@
  * an order drawn at random. Each run is a line of a journal (runs.csv), so that a comparison goes
  * on where it was interrupted. Strings are the command line's. */
 
-enum { COMPARE_MOST = 24, COMPARE_CONFIGS = 2000, COMPARE_ROUNDS = 1000 };
+/* The most letters of a program with its arguments and --figure, which the journal keeps. */
+enum { COMPARE_COMMAND = 10000 };
+enum { COMPARE_MOST = 24, COMPARE_CONFIGS = 2000, COMPARE_ROUNDS = 1000, COMPARE_VARIED = 8 };
 /* Rounds from which on order statistics have an interval of 95 %. */
 enum { COMPARE_ENOUGH = 6 };
 
@@ -21,21 +23,24 @@ struct compare_list {
     size_t n;
 };
 
-/* One run. Times are seconds of a step, or of a round of a graph. */
+/* One run. Times are seconds of a step, of a round of a graph, or of a program; or what --figure
+ * finds. */
 struct compare_run {
-    double seconds, bodies; /* bodies: in bodies of tasks, a worker; the rest is outside of them */
+    double seconds, bodies; /* bodies: in bodies of tasks, a worker; the rest is outside of them;
+                               NAN: a program does not say */
     double stolen, messages, bytes;
     char hash[20];
     char *why;                /* it failed: how it ended, and its last error */
     bool done, fine, stopped; /* stopped: by the limit, --timeout */
 };
 
-/* Dimensions of the product, in the order in which the last one changes first. */
+/* Dimensions of the product, in the order in which the last one changes first. Behind them are the
+ * variables of the environment that --vary names. */
 enum { SUBJECT, GRAIN, RANKS, THREADS, BALANCE, MAPPING, SCHEDULER, COMPARE_DIMENSIONS };
-extern const char *const compare_dimension[COMPARE_DIMENSIONS];
+enum { COMPARE_ALL_DIMENSIONS = COMPARE_DIMENSIONS + COMPARE_VARIED };
 
 struct compare_config {
-    const char *value[COMPARE_DIMENSIONS];
+    const char *value[COMPARE_ALL_DIMENSIONS];
     struct compare_run *run; /* rounds of them */
     /* From those that are fine: */
     size_t n;
@@ -47,8 +52,13 @@ struct compare_config {
 };
 
 struct compare {
-    struct compare_list list[COMPARE_DIMENSIONS];
+    int dimensions; /* that there are */
+    const char *name[COMPARE_ALL_DIMENSIONS];
+    struct compare_list list[COMPARE_ALL_DIMENSIONS];
     struct compare_list sets; /* of scenes */
+    char *const *program;     /* and its arguments, or NULL. Lists that were not given have one
+                                 empty value, which it does not get */
+    const char *figure;       /* what finds it in the output of a program, or NULL: the wall time */
     const char *folder, *tasks, *cost, *bytes, *steps;
     uint64_t seed;
     size_t rounds;
@@ -82,6 +92,16 @@ const char *compare_find_program(const char *name, char path[COMPARE_PROGRAM]);
 
 /* NULL if StarPU's scheduler of this name can be run, else the reason, written to text. */
 const char *compare_starpu_wrong(const char *name, char *text, size_t size);
+
+/* What figures are called, and how many of them a second is. */
+static inline const char *compare_unit(const struct compare *compare)
+{
+    return compare->figure ? "figure" : "ms";
+}
+static inline double compare_scale(const struct compare *compare)
+{
+    return compare->figure ? 1 : 1e3;
+}
 
 /* Starts a run and reads its report; run->done is set in any case. The log of one that failed
  * becomes failed.log. */

@@ -2,11 +2,13 @@
  * line for each run, written and synchronised when it is over. A last line that was cut off is
  * dropped, and the run made again. */
 #include "tools/compare/compare.h"
+#include "tools/compare/program.h"
 
 #include <config.h>
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/utsname.h>
@@ -57,6 +59,16 @@ void compare_describe(FILE *out, const char *before)
 static void print_specification(const struct compare *compare, FILE *out)
 {
     fprintf(out, "# compares:");
+    for (int d = COMPARE_DIMENSIONS; d < compare->dimensions; d++)
+        fprintf(out, " --vary %s", compare->name[d]);
+    if (compare->figure)
+        fprintf(out, " --figure %s", compare->figure);
+    if (compare->program) {
+        fprintf(out, " seed=%" PRIu64 " -- ", compare->seed);
+        program_print(compare, out);
+        fputc('\n', out);
+        return;
+    }
     for (size_t i = 0; i < compare->sets.n; i++)
         fprintf(out, " --set %s", compare->sets.item[i]);
     fprintf(out, " tasks=%s cost=%s bytes=%s steps=%s seed=%" PRIu64 "\n", compare->tasks,
@@ -72,7 +84,7 @@ static struct compare_config *find(struct compare *compare, char *const *field)
 {
     for (size_t i = 0; i < compare->n; i++) {
         bool same = true;
-        for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+        for (int d = 0; d < compare->dimensions; d++)
             same = same && !strcmp(compare->config[i].value[d], field[1 + d]);
         if (same)
             return &compare->config[i];
@@ -83,24 +95,25 @@ static struct compare_config *find(struct compare *compare, char *const *field)
 /* A run that failed is made again. False: the run is none of this comparison. */
 static bool take_line(struct compare *compare, char *line)
 {
-    enum { FIELDS = 1 + COMPARE_DIMENSIONS + 7 };
-    char *field[FIELDS], *rest = line;
+    enum { MOST = 1 + COMPARE_ALL_DIMENSIONS + 7 };
+    const int fields = MOST - COMPARE_ALL_DIMENSIONS + compare->dimensions;
+    char *field[MOST], *rest = line;
     int n = 0;
-    while (n < FIELDS && (field[n] = strsep(&rest, ",")))
+    while (n < fields && (field[n] = strsep(&rest, ",")))
         n++;
-    if (n < FIELDS || *line < '0' || *line > '9')
+    if (n < fields || *line < '0' || *line > '9')
         return true;
     struct compare_config *config = find(compare, field);
     if (!config)
         return false;
     const size_t round = strtoul(field[0], NULL, 10);
-    char **figure = field + 1 + COMPARE_DIMENSIONS;
+    char **figure = field + 1 + compare->dimensions;
     config->known = true;
     if (round >= compare->rounds || strcmp(figure[6], "fine") != 0)
         return true;
     struct compare_run *run = &config->run[round];
     *run = (struct compare_run){.seconds = strtod(figure[0], NULL),
-                                .bodies = strtod(figure[1], NULL),
+                                .bodies = *figure[1] ? strtod(figure[1], NULL) : NAN,
                                 .stolen = strtod(figure[2], NULL),
                                 .messages = strtod(figure[3], NULL),
                                 .bytes = strtod(figure[4], NULL),
@@ -141,7 +154,7 @@ static void look_at(struct compare *compare, const char *ours, char *line, struc
         (begins(line, "# build: ") || begins(line, "# revision: ")) && !strstr(ours, line);
     line[strcspn(line, "\n")] = 0;
     if (other)
-        snprintf(found->other, sizeof found->other, "%s", line + strlen("# "));
+        snprintf(found->other, sizeof found->other, "%.*s", LINE - 1, line + strlen("# "));
     if (begins(line, WARNING))
         keep_warning(compare, line + strlen(WARNING));
     if (*line >= '0' && *line <= '9' && strtoul(line, NULL, 10) >= found->rounds)
@@ -153,7 +166,7 @@ static void look_at(struct compare *compare, const char *ours, char *line, struc
 /* Takes over whole lines. */
 static int take_over(struct compare *compare, FILE *in, struct found *found)
 {
-    char line[LINE], *ours = NULL;
+    char line[LINE + COMPARE_COMMAND], *ours = NULL;
     size_t size, taken = 0;
     FILE *memory = open_memstream(&ours, &size);
     if (!memory)
@@ -214,9 +227,10 @@ static void begin(struct compare *compare)
     fprintf(compare->journal, "# date: %s\n", date);
     compare_describe(compare->journal, "# ");
     fprintf(compare->journal, "round");
-    for (int d = 0; d < COMPARE_DIMENSIONS; d++)
-        fprintf(compare->journal, ",%s", compare_dimension[d]);
-    fprintf(compare->journal, ",seconds,seconds_in_bodies,stolen,messages,bytes,hash,status\n");
+    for (int d = 0; d < compare->dimensions; d++)
+        fprintf(compare->journal, ",%s", compare->name[d]);
+    fprintf(compare->journal, ",%s,seconds_in_bodies,stolen,messages,bytes,hash,status\n",
+            compare->figure ? "figure" : "seconds");
 }
 
 int compare_journal_open(struct compare *compare)
@@ -254,9 +268,11 @@ int compare_journal_add(struct compare *compare, const struct compare_config *co
     const struct compare_run *run = &config->run[round];
     FILE *out = compare->journal;
     fprintf(out, "%zu", round);
-    for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+    for (int d = 0; d < compare->dimensions; d++)
         fprintf(out, ",%s", config->value[d]);
-    if (run->fine)
+    if (run->fine && compare->program)
+        fprintf(out, ",%.9g,,,,,,fine\n", run->seconds);
+    else if (run->fine)
         fprintf(out, ",%.9g,%.9g,%.0f,%.0f,%.0f,%s,fine\n", run->seconds, run->bodies, run->stolen,
                 run->messages, run->bytes, run->hash);
     else

@@ -1,6 +1,7 @@
 /* The results of the runs: the same table on the terminal, in summary.csv and in compare.md, with
  * plots. A table has the dimensions that vary as its first columns. */
 #include "tools/compare/compare.h"
+#include "tools/compare/program.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -8,9 +9,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-const char *const compare_dimension[COMPARE_DIMENSIONS] = {
-    "subject", "grain", "ranks", "threads", "balance", "mapping", "scheduler"};
 
 static FILE *open_file(const struct compare *compare, const char *name)
 {
@@ -76,13 +74,15 @@ static size_t sort(const struct compare *compare, const char *subject, size_t *r
 
 static void print_head(const struct compare *compare, FILE *out)
 {
+    char time[40];
     fputs("|", out);
-    for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+    for (int d = 0; d < compare->dimensions; d++)
         if (varies(compare, d))
-            fprintf(out, " %-10s |", compare_dimension[d]);
-    fprintf(out, " %-28s | %-9s | %-9s | %-25s | %-16s |\n|", "ms [95 % of the median]",
-            "in bodies", "outside", "times the fastest", "");
-    for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+            fprintf(out, " %-10s |", compare->name[d]);
+    snprintf(time, sizeof time, "%s [95 %% of the median]", compare_unit(compare));
+    fprintf(out, " %-28s | %-9s | %-9s | %-25s | %-16s |\n|", time, "in bodies", "outside",
+            "times the fastest", "");
+    for (int d = 0; d < compare->dimensions; d++)
         if (varies(compare, d))
             fputs("------------|", out);
     fputs("------------------------------|----------:|----------:|---------------------------|-----"
@@ -93,14 +93,16 @@ static void print_head(const struct compare *compare, FILE *out)
 
 static void print_row(const struct compare *compare, const struct compare_config *config, FILE *out)
 {
+    const double scale = compare_scale(compare);
     char time[60] = "", ratio[60] = "", bodies[20] = "", outside[20] = "";
     fputs("|", out);
-    for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+    for (int d = 0; d < compare->dimensions; d++)
         if (varies(compare, d))
             fprintf(out, " %-10s |", config->value[d]);
-    if (config->n) {
-        snprintf(time, sizeof time, "%.4g [%.4g .. %.4g]", 1e3 * config->median, 1e3 * config->low,
-                 1e3 * config->high);
+    if (config->n)
+        snprintf(time, sizeof time, "%.4g [%.4g .. %.4g]", scale * config->median,
+                 scale * config->low, scale * config->high);
+    if (config->n && isfinite(config->bodies)) {
         snprintf(bodies, sizeof bodies, "%.4g", 1e3 * config->bodies);
         snprintf(outside, sizeof outside, "%.4g", 1e3 * config->outside);
     }
@@ -122,14 +124,15 @@ static void print_table(const struct compare *compare, const char *subject, size
 static void print_summary(const struct compare *compare, FILE *out)
 {
     compare_describe(out, "# ");
-    for (int d = 0; d < COMPARE_DIMENSIONS; d++)
-        fprintf(out, "%s,", compare_dimension[d]);
-    fputs("runs,seconds,low,high,seconds_in_bodies,seconds_outside,ratio,ratio_low,ratio_high,"
-          "verdict\n",
-          out);
+    for (int d = 0; d < compare->dimensions; d++)
+        fprintf(out, "%s,", compare->name[d]);
+    fprintf(out,
+            "runs,%s,low,high,seconds_in_bodies,seconds_outside,ratio,ratio_low,ratio_high,"
+            "verdict\n",
+            compare->figure ? "figure" : "seconds");
     for (size_t i = 0; i < compare->n; i++) {
         const struct compare_config *c = &compare->config[i];
-        for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+        for (int d = 0; d < compare->dimensions; d++)
             fprintf(out, "%s,", c->value[d]);
         const double figure[] = {c->median,  c->low,   c->high,      c->bodies,
                                  c->outside, c->ratio, c->ratio_low, c->ratio_high};
@@ -149,9 +152,9 @@ void compare_print_member(const struct compare *compare, const struct compare_co
                           FILE *out)
 {
     fputs(config->value[SUBJECT], out);
-    for (int d = 1; d < COMPARE_DIMENSIONS; d++)
+    for (int d = 1; d < compare->dimensions; d++)
         if (varies(compare, d))
-            fprintf(out, ", %s %s", compare_dimension[d], config->value[d]);
+            fprintf(out, ", %s %s", compare->name[d], config->value[d]);
 }
 
 static void print_failures(const struct compare *compare, FILE *out)
@@ -185,14 +188,15 @@ static void print_label(const struct compare *compare, const struct compare_conf
                         int without, FILE *out)
 {
     bool first = true;
-    for (int d = COMPARE_DIMENSIONS - 1; d > SUBJECT; d--)
+    for (int d = compare->dimensions - 1; d > SUBJECT; d--)
         if (varies(compare, d) && d != without) {
-            fprintf(out, "%s%s%s", first ? "" : " ",
-                    d == THREADS ? "t"
-                    : d == RANKS ? "r"
-                    : d == GRAIN ? "g"
-                                 : "",
-                    config->value[d]);
+            fprintf(out, "%s%s%s%s", first ? "" : " ",
+                    d >= COMPARE_DIMENSIONS ? compare->name[d]
+                    : d == THREADS          ? "t"
+                    : d == RANKS            ? "r"
+                    : d == GRAIN            ? "g"
+                                            : "",
+                    d >= COMPARE_DIMENSIONS ? "=" : "", config->value[d]);
             first = false;
         }
     if (first)
@@ -214,6 +218,7 @@ static bool has_figures(const struct compare *compare, size_t number)
 static void plot_bars(const struct compare *compare, size_t number, const size_t *row, size_t n,
                       FILE *out)
 {
+    const double scale = compare_scale(compare);
     if (!has_figures(compare, number))
         return;
     fprintf(out, "$bars%zu << EOD\n", number);
@@ -223,31 +228,35 @@ static void plot_bars(const struct compare *compare, size_t number, const size_t
             continue;
         fputc('"', out);
         print_label(compare, c, -1, out);
-        const double bodies = fmin(c->bodies, c->median);
-        fprintf(out, "\" %g %g %g %g %g\n", 1e3 * bodies, 1e3 * (c->median - bodies),
-                1e3 * c->median, 1e3 * c->low, 1e3 * c->high);
+        const double bodies = compare->program ? 0 : fmin(c->bodies, c->median);
+        fprintf(out, "\" %g %g %g %g %g\n", scale * bodies, scale * (c->median - bodies),
+                scale * c->median, scale * c->low, scale * c->high);
     }
     fprintf(
         out,
         "EOD\nset output 'bars%zu.png'\nset title '%s' noenhanced\nset style data histograms\n"
         "set style histogram rowstacked\nset style fill solid 0.8 border -1\nset boxwidth 0.7\n"
-        "set xtics rotate by -45 noenhanced\nset ylabel 'ms'\nset yrange [0:*]\nset key top left\n"
+        "set xtics rotate by -45 noenhanced\nset ylabel '%s'\nset yrange [0:*]\nset key top left\n"
         "unset logscale\n"
-        "plot $bars%zu using 2:xtic(1) title 'in bodies', '' using 3 title 'outside', '' using "
+        "plot $bars%zu using 2:xtic(1) %s, '' using 3 %s, '' using "
         "0:4:5:6 with yerrorbars lc 'black' pt 0 title '95 %% of the median'\n",
-        number, compare->list[SUBJECT].item[number], number);
+        number, compare->list[SUBJECT].item[number], compare_unit(compare), number,
+        compare->program ? "notitle" : "title 'in bodies'",
+        compare->program ? "notitle" : "title 'outside'");
 }
 
 /* Lines over a dimension of numbers, one for each of what else varies. */
 static void plot_lines(const struct compare *compare, size_t number, int dimension, FILE *out)
 {
     const char *subject = compare->list[SUBJECT].item[number];
+    const double scale = compare_scale(compare);
     size_t series = 0;
     fprintf(out,
             "reset\nset output '%s%zu.png'\nset title '%s' noenhanced\nset logscale x 2\n"
-            "set xlabel '%s'\nset ylabel 'ms'\nset yrange [0:*]\nset key outside noenhanced\n"
+            "set xlabel '%s'\nset ylabel '%s'\nset yrange [0:*]\nset key outside noenhanced\n"
             "set offsets graph 0.05, graph 0.05, 0, 0\n",
-            compare_dimension[dimension], number, subject, compare_dimension[dimension]);
+            compare->name[dimension], number, subject, compare->name[dimension],
+            compare_unit(compare));
     for (size_t i = 0; i < compare->n; i++) {
         const struct compare_config *c = &compare->config[i];
         if (c->value[SUBJECT] != subject || c->value[dimension] != compare->list[dimension].item[0])
@@ -256,11 +265,11 @@ static void plot_lines(const struct compare *compare, size_t number, int dimensi
         for (size_t k = 0; k < compare->n; k++) {
             const struct compare_config *o = &compare->config[k];
             bool same = o->n > 0;
-            for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+            for (int d = 0; d < compare->dimensions; d++)
                 same = same && (d == dimension || o->value[d] == c->value[d]);
             if (same)
-                fprintf(out, "%s %g %g %g\n", o->value[dimension], 1e3 * o->median, 1e3 * o->low,
-                        1e3 * o->high);
+                fprintf(out, "%s %g %g %g\n", o->value[dimension], scale * o->median,
+                        scale * o->low, scale * o->high);
         }
         fputs("EOD\n", out);
     }
@@ -295,7 +304,7 @@ static bool plot(const struct compare *compare, size_t *row)
     for (size_t s = 0; s < compare->list[SUBJECT].n; s++) {
         size_t n = sort(compare, compare->list[SUBJECT].item[s], row);
         plot_bars(compare, s, row, n, out);
-        for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+        for (int d = 0; d < compare->dimensions; d++)
             if (is_line(compare, d) && has_figures(compare, s))
                 plot_lines(compare, s, d, out);
     }
@@ -315,17 +324,28 @@ static bool plot(const struct compare *compare, size_t *row)
 static void print_rest(const struct compare *compare, FILE *out)
 {
     fprintf(out, "%zu rounds in an order from seed %" PRIu64 ". ", compare->rounds, compare->seed);
-    for (int d = 1; d < COMPARE_DIMENSIONS; d++)
-        if (!varies(compare, d))
-            fprintf(out, "%s: %s. ", compare_dimension[d], compare->list[d].item[0]);
+    for (int d = 1; d < compare->dimensions; d++)
+        if (!varies(compare, d) && *compare->list[d].item[0])
+            fprintf(out, "%s: %s. ", compare->name[d], compare->list[d].item[0]);
     for (size_t i = 0; i < compare->sets.n; i++)
         fprintf(out, "--set %s. ", compare->sets.item[i]);
-    fputs(
-        "Times are of a step of a scene, or of a round of a graph; in bodies and outside of them, "
-        "a "
-        "worker. The ratio to the fastest is taken within rounds; where its interval reaches 1, "
-        "the difference is within the noise, and fewer than 6 rounds are too few to tell.\n",
-        out);
+    if (compare->figure)
+        fprintf(out, "Figures are what `%s` finds in the output; the least is the fastest. ",
+                compare->figure);
+    else if (compare->program)
+        fputs("Times are from a program's start to its end. ", out);
+    else
+        fputs("Times are of a step of a scene, or of a round of a graph; in bodies and outside of "
+              "them, a worker. ",
+              out);
+    fputs("The ratio to the fastest is taken within rounds; where its interval reaches 1, the "
+          "difference is within the noise, and fewer than 6 rounds are too few to tell.\n",
+          out);
+    if (compare->program) {
+        fputs("\n    ", out);
+        program_print(compare, out);
+        fputc('\n', out);
+    }
     if (compare->wrong)
         fputs("\n**Results differ between runs that should agree.**\n", out);
     print_warnings(compare, out);
@@ -346,9 +366,9 @@ static int print_page(const struct compare *compare, size_t *row, bool plots)
             continue;
         if (plots)
             fprintf(out, "\n![bars](bars%zu.png)\n", s);
-        for (int d = 0; d < COMPARE_DIMENSIONS && plots; d++)
+        for (int d = 0; d < compare->dimensions && plots; d++)
             if (is_line(compare, d))
-                fprintf(out, "\n![%s](%s%zu.png)\n", compare_dimension[d], compare_dimension[d], s);
+                fprintf(out, "\n![%s](%s%zu.png)\n", compare->name[d], compare->name[d], s);
     }
     if (!plots)
         fputs("\nThere are no plots: gnuplot (package gnuplot-nox) was missing or failed.\n", out);

@@ -1,14 +1,18 @@
 /* A run is a program of its own: duite-cloth for scenes, duite-graph for graphs, StarPU's twin of
- * it for schedulers named starpu:NAME. Its report is a file in the folder, which the next run
- * overwrites; what it prints goes to run.log there, and of a run that failed to failed.log. */
+ * it for schedulers named starpu:NAME, or the one behind --. Its report is a file in the folder,
+ * which the next run overwrites; what it prints goes to run.log there, and of a run that failed to
+ * failed.log. */
 #include "tools/compare/compare.h"
 #include "tools/compare/environment.h"
+#include "tools/compare/program.h"
 
 #include <libgen.h>
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #define STARPU_GRAPH "bench/rivals/starpu-graph"
@@ -40,6 +44,14 @@ const char *compare_find_program(const char *name, char path[COMPARE_PROGRAM])
         self[0] = 0;
     snprintf(path, COMPARE_PROGRAM, "%s/%s", dirname(self), name);
     return path;
+}
+
+static void append_filled(const struct compare *compare, const struct compare_config *config,
+                          const char *word, struct line *line)
+{
+    char *filled = program_fill(compare, config, word);
+    append(line, filled);
+    free(filled);
 }
 
 static void append_program(struct line *line, const char *name)
@@ -117,10 +129,14 @@ static void make_line(const struct compare *compare, const struct compare_config
     snprintf(seconds, sizeof seconds, "%u", compare->timeout);
     append_pair(line, "timeout", "-k");
     append_pair(line, "5", seconds);
-    if (strcmp(config->value[RANKS], "1") != 0) {
+    if (*config->value[RANKS] && strcmp(config->value[RANKS], "1") != 0) {
         append(line, COMPARE_MPIRUN);
         append_pair(line, "-n", config->value[RANKS]);
     }
+    for (char *const *word = compare->program; word && *word; word++)
+        append_filled(compare, config, *word, line);
+    if (compare->program)
+        return;
     if (is_scene(subject)) {
         append_scene(compare, config, line);
     } else {
@@ -146,23 +162,33 @@ static void report_standstills_by(unsigned timeout)
     setenv("DUITE_STUCK_SECONDS", seconds, 0);
 }
 
-static int execute(const struct compare *compare, struct line *line)
+/* Returns the status of waitpid; *seconds from the start to the end. */
+static int execute(const struct compare *compare, const struct compare_config *config,
+                   struct line *line, double *seconds)
 {
     char log[PATH_MAX];
+    struct timespec start, end;
     int status = 1;
     snprintf(log, sizeof log, "%s/run.log", compare->folder);
     fflush(NULL);
     unlink(log); /* the last run's: one that cannot be started says nothing */
+    clock_gettime(CLOCK_MONOTONIC, &start);
     pid_t child = fork();
     if (!child) {
         environment_forget();
+        program_environment(compare, config);
         report_standstills_by(compare->timeout);
-        if (freopen(log, "w", stdout))
+        const bool closed = freopen("/dev/null", "r", stdin); /* a question would have no answer */
+        if (closed && freopen(log, "w", stdout))
             dup2(STDOUT_FILENO, STDERR_FILENO);
         execvp(line->word[0], line->word);
         _exit(127);
     }
-    return child < 0 || waitpid(child, &status, 0) < 0 ? 1 << 8 : status;
+    if (child < 0 || waitpid(child, &status, 0) < 0)
+        status = 1 << 8;
+    clock_gettime(CLOCK_MONOTONIC, &end);
+    *seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+    return status;
 }
 
 /* The value behind "key": in a flat object; NULL: it is not there. */
@@ -219,17 +245,23 @@ static bool is_said_after(const char *line, const char *last)
            !strstr(line, ", which has not returned;");
 }
 
+/* What mpirun says of a rank that failed begins with it. */
+#define MPIRUN_RULE "--------------------------------------------------------------------------"
+
 /* The last line of the log that a program of ours has said, else the last line. mpirun and argp add
  * theirs behind it. */
 static void find_last_error(const char *log, char *last, size_t size)
 {
     char line[1000];
-    bool found = false;
+    bool found = false, said = false;
     FILE *in = fopen(log, "r");
     while (in && fgets(line, sizeof line, in)) {
         line[strcspn(line, "\n")] = 0;
+        if (said && !strcmp(line, MPIRUN_RULE))
+            break;
         if (!*line || (found && (!is_error(line) || is_said_after(line, last))))
             continue;
+        said = true;
         found = is_error(line);
         snprintf(last, size, "%s", line);
     }
@@ -250,6 +282,8 @@ static void note_failure(const struct compare *compare, int status, struct compa
         snprintf(how, sizeof how, "signal %d", WTERMSIG(status));
     else if ((run->stopped = WEXITSTATUS(status) == TIMED_OUT))
         snprintf(how, sizeof how, "stopped after %u s (--timeout)", compare->timeout);
+    else if (!status && compare->figure)
+        snprintf(how, sizeof how, "exit status 0, but --figure finds no number above 0");
     else if (!status)
         snprintf(how, sizeof how, "exit status 0, but no figures in its report");
     else
@@ -274,14 +308,21 @@ void compare_start(const struct compare *compare, const struct compare_config *c
                    struct compare_run *run)
 {
     struct line line = {0};
-    char report[PATH_MAX];
+    char report[PATH_MAX], log[PATH_MAX];
+    double seconds;
     snprintf(report, sizeof report, "%s/run.json", compare->folder);
     unlink(report);
     *run = (struct compare_run){.done = true};
     make_line(compare, config, report, &line);
-    const int status = execute(compare, &line);
-    if (!status)
+    const int status = execute(compare, config, &line, &seconds);
+    if (!status && compare->program) {
+        snprintf(log, sizeof log, "%s/run.log", compare->folder);
+        run->seconds = compare->figure ? program_figure(compare->figure, log) : seconds;
+        run->bodies = NAN;
+        run->fine = run->seconds > 0;
+    } else if (!status) {
         read_report(report, run);
+    }
     if (!run->fine)
         note_failure(compare, status, run);
     for (int i = 0; i < line.n; i++)

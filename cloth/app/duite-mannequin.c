@@ -22,7 +22,7 @@ struct options {
     bool quiet;
 };
 
-static bool read_measure(const char *text, void *to, struct argp_state *state)
+static bool read_figure_measure(const char *text, void *to, struct argp_state *state)
 {
     struct options *options = to;
     char *name = (char *)(uintptr_t)text, *value = strchr(name, '=');
@@ -46,7 +46,7 @@ static const struct cli_option OPTIONS[] = {
     {"measure", 'm', "NAME=METRES",
      "Give it this girth: neck, chest, waist, hip, thigh, knee, calf, ankle, upper_arm, elbow or "
      "wrist; can be given for each",
-     CLI_OTHER, 0, NULL, read_measure, 0},
+     CLI_OTHER, 0, NULL, read_figure_measure, 0},
     {"edge", 'e', "METRES", "Make triangles with edges of about this length (0.02)", CLI_ABOVE_0,
      TO(mannequin.edge), "a length above 0 in metres", NULL, 0},
     {"output", 'o', "FILE", "Write the mesh to FILE, a Wavefront OBJ", CLI_FILE, TO(output), NULL,

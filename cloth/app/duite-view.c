@@ -77,7 +77,7 @@ static bool read_fps(const char *text, void *to, struct argp_state *state)
     return cli_above_0(text, fps) && *fps >= 0.1 && *fps <= 1000;
 }
 
-static bool read_size(const char *text, void *to, struct argp_state *state)
+static bool read_picture_size(const char *text, void *to, struct argp_state *state)
 {
     struct view_wish *wish = &((struct options *)to)->wish;
     int end = 0;
@@ -143,7 +143,7 @@ static const struct cli_option OPTIONS[] = {
      CLI_OTHER, 0, "a rate from 0.1 to 1000 frames a second", read_fps, FILMED},
     {"size", 's', "WxH",
      "Pixels of a picture, film or window (1280x720; of a chart 1280, and as high as its rows)",
-     CLI_OTHER, 0, "WIDTHxHEIGHT, such as 1280x720", read_size, SIZED},
+     CLI_OTHER, 0, "WIDTHxHEIGHT, such as 1280x720", read_picture_size, SIZED},
     {"camera", 'c', "AZIMUTH,ELEVATION[,ZOOM]",
      "Where to look from, in degrees: 0,0 is from +z, 90,0 from +x (32,20,1)", CLI_OTHER, 0,
      "AZIMUTH,ELEVATION[,ZOOM], the elevation within +-89 and the zoom above 0 and up to 1000",

@@ -64,7 +64,7 @@ static void body_fan_find_normal(const struct contact_facet *facet, const phys_v
 }
 
 /* True if two facets meet at an angle. */
-static bool is_bent(const phys_vec *m, const phys_vec *n)
+static bool fan_is_bent(const phys_vec *m, const phys_vec *n)
 {
     const double dot = phys_dot(m, n);
     return !(dot > 0 && dot * dot > (1 - BEND_OF_PLANE) * phys_dot(m, m) * phys_dot(n, n));
@@ -84,7 +84,7 @@ bool contact_body_bends(const struct contact_body *body, const uint32_t *fan, co
         if (n_vertices == 1 || next == vertex[1] || last == vertex[1]) {
             phys_vec normal;
             body_fan_find_normal(facet + f, y, &normal);
-            bends = bends || (any && is_bent(&before, &normal));
+            bends = bends || (any && fan_is_bent(&before, &normal));
             before = any ? before : normal;
             any = true;
         }

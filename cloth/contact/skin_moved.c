@@ -4,7 +4,7 @@
  * too: so a point is also marked if another corner of one of its triangles moved. */
 #include "cloth/contact/skin_table.h"
 
-static unsigned char *parts_of(const struct contact_skin *skin, const void *boxes)
+static unsigned char *moved_parts_of(const struct contact_skin *skin, const void *boxes)
 {
     struct contact_boxes_head head;
     contact_boxes_lay(skin, &head);
@@ -13,7 +13,7 @@ static unsigned char *parts_of(const struct contact_skin *skin, const void *boxe
 
 unsigned char *contact_moved_points(const struct contact_skin *skin, const void *boxes)
 {
-    return parts_of(skin, boxes) + skin->n_nodes;
+    return moved_parts_of(skin, boxes) + skin->n_nodes;
 }
 
 uint32_t contact_moved_n(const void *boxes)
@@ -49,7 +49,7 @@ static bool leaf_moved(const struct contact_skin *skin, const unsigned char *mov
 void contact_moved_mark(const struct contact_skin *skin, void *boxes)
 {
     struct contact_boxes_head *head = boxes;
-    unsigned char *part = parts_of(skin, boxes), *moved = part + skin->n_nodes;
+    unsigned char *part = moved_parts_of(skin, boxes), *moved = part + skin->n_nodes;
     head->n_moved = 0;
     for (uint32_t i = 0; i < skin->n_points; i++)
         head->n_moved += moved[i];

@@ -181,7 +181,7 @@ static void slice_at(struct girths *of, struct slice *slice, const struct slice_
     slice_make(slice, mesh, up, y, &of->error);
 }
 
-static void cut_body(struct girths *of)
+static void girth_cut_body(struct girths *of)
 {
     const struct slice_mesh *garment = of->garment;
     double low = INFINITY, high = -INFINITY;
@@ -237,7 +237,7 @@ int girth_compare(struct girth_worst *worst, const struct slice_mesh *garment, u
     *worst = (struct girth_worst){0};
     list_seams(&of, n_seams);
     if (!of.error.code)
-        cut_body(&of);
+        girth_cut_body(&of);
     for (uint32_t l = WINDOW; l + WINDOW < of.n_levels && !of.error.code; l++)
         compare_level(&of, l);
     for (uint32_t l = 0; l < of.n_levels; l++)

@@ -92,8 +92,8 @@ static void ask(struct live_follower *follower)
     follower->asked = zmq_send(follower->link.socket, bytes, n, ZMQ_DONTWAIT) >= 0;
 }
 
-static int take_scene(struct live_follower *follower, const struct live_message *scene,
-                      struct cloth_error *error)
+static int follow_take_scene(struct live_follower *follower, const struct live_message *scene,
+                             struct cloth_error *error)
 {
     if (follower->is_coming)
         output_cache_close(&follower->coming);
@@ -132,7 +132,7 @@ static int take_message(struct live_follower *follower, zmq_msg_t *message, enum
     int code = live_message_read(zmq_msg_data(message), zmq_msg_size(message), &said, &inner);
     follower->asked = false;
     if (!code && said.kind == LIVE_SCENE)
-        code = take_scene(follower, &said, &inner);
+        code = follow_take_scene(follower, &said, &inner);
     else if (!code && said.kind == LIVE_FRAME)
         code = live_follow_take_frame(follower, &said, news, &inner);
     else if (!code && said.kind == LIVE_END)

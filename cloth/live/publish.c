@@ -136,8 +136,8 @@ static int publish_make_room(struct live_publisher *publisher, const struct outp
 }
 
 /* Replaces what waits for the thread. */
-static void hand_over(struct live_publisher *publisher, struct live_newest *newest,
-                      zmq_msg_t *message, uint64_t number)
+static void publish_hand_over(struct live_publisher *publisher, struct live_newest *newest,
+                              zmq_msg_t *message, uint64_t number)
 {
     pthread_mutex_lock(&publisher->lock);
     zmq_msg_move(&newest->message, message);
@@ -172,7 +172,7 @@ int live_publish_scene(struct live_publisher *publisher, const struct output_set
     publisher->scenes = number;
     publisher->bodies = setup->bodies;
     publisher->begin = begin;
-    hand_over(publisher, &publisher->scene, &message, number);
+    publish_hand_over(publisher, &publisher->scene, &message, number);
     return 0;
 }
 
@@ -210,7 +210,7 @@ void live_publish_frame(struct live_publisher *publisher, uint64_t frame, double
         return;
     unsigned char *bytes = zmq_msg_data(&made);
     if (live_frame_write(bytes, &message, position) && put_bodies(publisher, bytes, time))
-        hand_over(publisher, &publisher->frame, &made, frame);
+        publish_hand_over(publisher, &publisher->frame, &made, frame);
     else
         zmq_msg_close(&made);
 }

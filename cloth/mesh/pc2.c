@@ -63,8 +63,8 @@ static uint64_t count_whole(FILE *file, uint32_t n_vertices)
 
 /* Reads the frames from `first` on, before `end`; both are numbers of frames that the header
  * counts. */
-static int read_frames(FILE *file, const char *path, uint32_t n_vertices, uint32_t first,
-                       uint32_t end, double **place, struct cloth_error *error)
+static int pc2_read_frames(FILE *file, const char *path, uint32_t n_vertices, uint32_t first,
+                           uint32_t end, double **place, struct cloth_error *error)
 {
     const uint64_t n_whole = count_whole(file, n_vertices);
     if (n_whole < end)
@@ -98,8 +98,8 @@ int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t frame, uint32_
     int code = mesh_pc2_read_header(file, path, n_vertices, n_frames, error);
     const uint32_t first = all ? 0 : frame == MESH_LAST_FRAME ? *n_frames - 1 : frame;
     if (!code && first < *n_frames)
-        code =
-            read_frames(file, path, n_vertices, first, all ? *n_frames : first + 1, place, error);
+        code = pc2_read_frames(file, path, n_vertices, first, all ? *n_frames : first + 1, place,
+                               error);
     fclose(file);
     return code;
 }

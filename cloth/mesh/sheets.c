@@ -94,8 +94,8 @@ static void add_strip(struct sheet *sheet, uint32_t j, uint32_t nx)
     }
 }
 
-static int make_rows(struct mesh *mesh, double width, uint32_t nx, uint32_t ny,
-                     struct cloth_error *error)
+static int sheet_make_rows(struct mesh *mesh, double width, uint32_t nx, uint32_t ny,
+                           struct cloth_error *error)
 {
     const double step = width / (nx - 1.0), rise = mesh_row_distance(width, nx);
     struct sheet sheet;
@@ -143,7 +143,7 @@ int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint3
     const bool rows = cells == MESH_EQUILATERAL;
     const int code = grid_check_size(width, rows ? width : height, nx, ny, error);
     if (code || rows)
-        return code ? code : make_rows(mesh, width, nx, ny, error);
+        return code ? code : sheet_make_rows(mesh, width, nx, ny, error);
     double *x = cloth_alloc((size_t)nx * ny, 3 * sizeof *x, error);
     if (!x)
         return CLOTH_E_MEMORY;

@@ -268,7 +268,7 @@ int untangle_open(struct untangle *all, phys_vec *x)
     return code ? code : make_tree(all);
 }
 
-static void find_normals(struct untangle *all)
+static void open_find_normals(struct untangle *all)
 {
     memset(all->normal, 0, all->n_points * sizeof *all->normal);
     for (uint32_t t = 0; t < all->n_triangles; t++) {
@@ -287,7 +287,7 @@ void untangle_refit(struct untangle *all)
     for (uint32_t p = 0; p < all->n_points; p++)
         for (int c = 0; c < 3; c++)
             all->place[p][c] = verify_coordinate(all->x[p][c]);
-    find_normals(all);
+    open_find_normals(all);
     contact_refit(&all->skin, all->x, all->x, &none, all->boxes);
     contact_tree_refit(all->n_nodes, all->facet, all->x, all->node);
 }

@@ -33,7 +33,7 @@ struct sweep {
 
 /* ---- Boxes ---- */
 
-static int take_points(struct sweep *sweep)
+static int sweep_take_points(struct sweep *sweep)
 {
     const struct verify_soup *soup = sweep->soup;
     for (uint32_t p = 0; p < soup->n_points; p++)
@@ -197,7 +197,7 @@ static int sweep_all(struct sweep *sweep)
 {
     struct span across;
     const size_t before = sweep->pairs->n;
-    int code = take_points(sweep);
+    int code = sweep_take_points(sweep);
     if (code)
         return code;
     take_boxes(sweep);

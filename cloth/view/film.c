@@ -141,7 +141,7 @@ static int end_ffmpeg(struct view_film *film, struct cloth_error *error)
 }
 
 /* A pipe that breaks is ffmpeg that ended: it says why. */
-static int fail_to_write(struct view_film *film, struct cloth_error *error)
+static int film_fail_to_write(struct view_film *film, struct cloth_error *error)
 {
     const char *reason = strerror(errno);
     const int code = end_ffmpeg(film, error);
@@ -157,7 +157,7 @@ int view_film_add(struct view_film *film, const struct view_picture *picture,
     for (size_t done = 0; done < n;) {
         const ssize_t some = write(film->pipe, picture->rgb + done, n - done);
         if (some < 0 && errno != EINTR)
-            return fail_to_write(film, error);
+            return film_fail_to_write(film, error);
         done += some > 0 ? (size_t)some : 0;
     }
     return 0;

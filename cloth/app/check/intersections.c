@@ -65,7 +65,7 @@ static int take_arrays(struct intersections *all, struct cloth_error *error)
 }
 
 /* Vertices that seams or welds join share one number. */
-static int take_sewn(struct intersections *all, struct cloth_error *error)
+static int check_take_sewn(struct intersections *all, struct cloth_error *error)
 {
     const uint32_t *joined = all->of.apart->joined, n = contact_soup_cloths(&all->soup).point;
     if (!joined)
@@ -116,7 +116,7 @@ int intersections_open(struct intersections **intersections, const struct inters
     all->soup = *soup;
     *soup = (struct contact_soup){0};
     int code = take_arrays(all, error);
-    code = code ? code : take_sewn(all, error);
+    code = code ? code : check_take_sewn(all, error);
     code = code ? code : find_parts(all, error);
     if (code)
         intersections_close(intersections);

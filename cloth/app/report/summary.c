@@ -79,8 +79,8 @@ static void add_setting(struct output_report *json, const struct summary *summar
 }
 
 /* material_NAME_KEY */
-static int add_material(struct output_report *json, const char *name,
-                        const struct mesh_elastic *elastic, struct cloth_error *error)
+static int summary_add_material(struct output_report *json, const char *name,
+                                const struct mesh_elastic *elastic, struct cloth_error *error)
 {
     static const char *const keys[] = {"E_warp", "E_weft", "G", "nu12"};
     const double value[] = {elastic->warp, elastic->weft, elastic->shear, elastic->poisson};
@@ -293,7 +293,7 @@ int summary_write(const struct summary *summary, const char *path, struct cloth_
     add_energies(json, summary->report);
     add_runtime(json, summary);
     for (uint32_t i = 0; i < model->n_materials && !code; i++)
-        code = add_material(json, model->materials[i].name, summary->elastic + i, error);
+        code = summary_add_material(json, model->materials[i].name, summary->elastic + i, error);
     output_report_number(json, "max_stretch", summary->report->max_stretch);
     output_report_number(json, "stretch_highest", summary->report->stretch_highest);
     add_checks(json, summary);

@@ -13,7 +13,7 @@
 
 /* ---- The environment ---- */
 
-static const char *name_of(const char *variable, const char *const *names)
+static const char *option_name_of(const char *variable, const char *const *names)
 {
     const char *name = getenv(variable);
     return name ? name : names[0];
@@ -22,9 +22,9 @@ static const char *name_of(const char *variable, const char *const *names)
 void environment_begin(struct simulate_options *run)
 {
     run->runtime = duite_options_default();
-    run->scheduler_name = name_of("DUITE_SCHEDULER", duite_scheduler_names());
-    run->mapping_name = name_of("DUITE_MAPPING", duite_mapping_names());
-    run->balance_name = name_of("DUITE_BALANCE", duite_balancer_names());
+    run->scheduler_name = option_name_of("DUITE_SCHEDULER", duite_scheduler_names());
+    run->mapping_name = option_name_of("DUITE_MAPPING", duite_mapping_names());
+    run->balance_name = option_name_of("DUITE_BALANCE", duite_balancer_names());
 }
 
 static int wrong_variable(struct cloth_error *error, const char *variable, const char *why)

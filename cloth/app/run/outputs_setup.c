@@ -59,7 +59,7 @@ struct course {
     uint32_t n;
 };
 
-static void add_key(struct course *to, struct phys_key key, double time)
+static void outputs_add_key(struct course *to, struct phys_key key, double time)
 {
     const struct phys_key *last = to->n ? to->key + to->n - 1 : NULL;
     key.time = time;
@@ -76,14 +76,14 @@ static void add_phase(struct course *to, const struct model *model, uint32_t obs
                       double seconds)
 {
     const struct contact_shape *shape = model->obstacles + obstacle;
-    add_key(to, key_at(model, shape, 0), begin);
+    outputs_add_key(to, key_at(model, shape, 0), begin);
     for (uint32_t i = 0; i < shape->n; i++) {
         const struct phys_key *key = &model->keys[shape->first + i];
         if (key->time > 0 && key->time < seconds)
-            add_key(to, *key, begin + key->time);
+            outputs_add_key(to, *key, begin + key->time);
     }
     if (!isinf(seconds))
-        add_key(to, key_at(model, shape, seconds), begin + seconds);
+        outputs_add_key(to, key_at(model, shape, seconds), begin + seconds);
 }
 
 /* Begins are added up as the runs count the times of their frames. */
@@ -99,8 +99,8 @@ static void follow_phases(struct course *to, const struct phases *phases, uint32
 }
 
 /* The shape and the motion of an obstacle, behind those of the ones before it. */
-static uint32_t add_motion(const struct phases *phases, uint32_t obstacle, uint32_t first,
-                           struct outputs_setup *made)
+static uint32_t outputs_add_motion(const struct phases *phases, uint32_t obstacle, uint32_t first,
+                                   struct outputs_setup *made)
 {
     struct contact_shape *shape = made->obstacles + obstacle;
     struct course course = {made->keys + first, 0};
@@ -131,7 +131,7 @@ static int add_motions(struct outputs_setup *made, const struct phases *phases,
     uint32_t n = 0;
     for (uint32_t i = 0; i < model->n_obstacles && !error->code; i++) {
         made->obstacles[i] = model->obstacles[i];
-        n = add_motion(phases, i, n, made);
+        n = outputs_add_motion(phases, i, n, made);
     }
     return error->code;
 }
@@ -139,8 +139,8 @@ static int add_motions(struct outputs_setup *made, const struct phases *phases,
 /* ---- Seams ---- */
 
 /* Joins the vertices that seams pulled in any phase so far; none did: nothing is joined. */
-static int add_seams(struct outputs_setup *made, const struct phases *phases,
-                     struct cloth_error *error)
+static int outputs_add_seams(struct outputs_setup *made, const struct phases *phases,
+                             struct cloth_error *error)
 {
     const uint32_t n = made->all.n_vertices;
     made->all.joined = NULL;
@@ -212,7 +212,7 @@ int outputs_setup_make(struct outputs_setup *made, const struct simulate_options
     if (code || !phases->now)
         return code;
     code = add_motions(made, phases, error);
-    return code ? code : add_seams(made, phases, error);
+    return code ? code : outputs_add_seams(made, phases, error);
 }
 
 void outputs_setup_free(struct outputs_setup *made)

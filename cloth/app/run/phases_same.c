@@ -129,7 +129,7 @@ int phases_check(const struct model *first, const struct model *model, uint32_t 
 
 /* ---- Settings ---- */
 
-static int put_file(FILE *to, const char *phase, const char *path, struct cloth_error *error)
+static int same_put_file(FILE *to, const char *phase, const char *path, struct cloth_error *error)
 {
     unsigned char bytes[1 << 14];
     XXH64_state_t *hash = XXH64_createState();
@@ -165,7 +165,7 @@ static int put_phase(FILE *to, const struct phases *phases, uint32_t i, struct c
         line += n + (line[n] == '\n');
     }
     for (uint32_t k = 1; k < model->n_files && !code; k++)
-        code = put_file(to, phase, model->files[k], error);
+        code = same_put_file(to, phase, model->files[k], error);
     return code;
 }
 

@@ -194,8 +194,8 @@ static int check_each(const struct folder *folder, struct intersections *interse
     return code;
 }
 
-static int check_folder(struct folder *folder, struct intersections_found *found,
-                        struct cloth_error *error)
+static int check_frames_folder(struct folder *folder, struct intersections_found *found,
+                               struct cloth_error *error)
 {
     const struct output_cache *cache = folder->cache;
     const struct mesh *mesh = &cache->mesh;
@@ -229,7 +229,7 @@ int view_frames_check(struct output_cache *cache, struct intersections_found *fo
                             .order = cloth_alloc(n, sizeof *folder.order, error),
                             .same = cloth_alloc(n, sizeof *folder.same, error)};
     const int code = folder.position && folder.order && folder.same
-                         ? check_folder(&folder, found, error)
+                         ? check_frames_folder(&folder, found, error)
                          : CLOTH_E_MEMORY;
     free(folder.position);
     free(folder.order);

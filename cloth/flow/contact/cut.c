@@ -43,7 +43,7 @@ static struct moving moving_of(const struct cut_args *args, double counts_from,
 }
 
 /* Moves a row to where its way ends now. */
-static void move_row(const struct moving *m, uint32_t i, double mass, const phys_vec *to)
+static void cut_move_row(const struct moving *m, uint32_t i, double mass, const phys_vec *to)
 {
     const phys_vec way = m->x[i] - m->from[i], lost = m->x[i] - *to;
     const double loses = sqrt(phys_dot(&lost, &lost));
@@ -98,8 +98,8 @@ static void add_push(const struct flow_near *near, double by, phys_vec *push)
 }
 
 /* Adds the pushes of a pair to the rows of the block. */
-static void add_pair(const struct push_fields *on, const struct flow_near *near, double thickness,
-                     phys_vec *push)
+static void cut_add_pair(const struct push_fields *on, const struct flow_near *near,
+                         double thickness, phys_vec *push)
 {
     const struct flow_tie_corners *corners = &near->contact.at;
     double by[4];
@@ -116,7 +116,7 @@ static void find_pushes(const struct push_fields *on, double thickness, phys_vec
         const struct flow_near *near = (const struct flow_near *)(list + 1);
         for (uint64_t i = 0; i < list->n; i++)
             if (near[i].fails)
-                add_pair(on, near + i, thickness, push);
+                cut_add_pair(on, near + i, thickness, push);
     }
 }
 
@@ -135,7 +135,7 @@ static int push_body(const duite_call *call, const struct push_fields *on)
     for (uint32_t i = 0; i < table.n; i++) {
         const phys_vec to = on->x[i] + push[i];
         if (phys_dot(push + i, push + i) > 0)
-            move_row(&moving, i, table.mass[i], &to);
+            cut_move_row(&moving, i, table.mass[i], &to);
     }
     flow_write_halo(&table, on->x, on->halo_x);
     flow_write_halo(&table, on->v, on->halo_v);
@@ -185,7 +185,7 @@ static int cut_body(const duite_call *call, const struct cut_fields *on)
             continue;
         /* by the same sum as certificates use */
         const phys_vec to = on->kept_x[i] + fmax(part[i], 0) * (on->x[i] - on->kept_x[i]);
-        move_row(&moving, i, table.mass[i], &to);
+        cut_move_row(&moving, i, table.mass[i], &to);
         *on->cut_longest =
             fmax(*on->cut_longest, flow_cut_again(runs + i, args->attempt, args->accepted));
     }

@@ -15,7 +15,7 @@ void flow_findings_open(const duite_call *call, size_t i, struct flow_list *list
                                      counts + FLOW_COUNTS * (args->number % FLOW_MEETING_GROUP)};
 }
 
-static bool make_room(const struct flow_findings *findings)
+static bool find_make_room(const struct flow_findings *findings)
 {
     enum { MORE = 32 };
     const size_t n = findings->n, most = findings->args->room, more = n + n / 2 + MORE;
@@ -33,7 +33,7 @@ void flow_findings_add(struct flow_findings *findings, const struct flow_near *n
     const bool first = near->contact.side[0] == findings->args->side[0];
     findings->counts[FLOW_COUNT_FAILS] += near->fails;
     findings->counts[first ? FLOW_COUNT_FIRST : FLOW_COUNT_SECOND]++;
-    if (make_room(findings))
+    if (find_make_room(findings))
         findings->near[findings->n] = *near;
     findings->n++;
 }

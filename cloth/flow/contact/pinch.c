@@ -38,13 +38,14 @@ struct push {
     struct chain chain;
 };
 
-static uint64_t corner_of(const struct flow_contact *contact, uint32_t k)
+static uint64_t pinch_corner_of(const struct flow_contact *contact, uint32_t k)
 {
     return (uint64_t)contact->at.block[k] << 32 | contact->at.row[k];
 }
 
 /* Corners from .. to - 1 are those of a side. */
-static void corners_of(const struct flow_contact *contact, int side, uint32_t *from, uint32_t *to)
+static void pinch_corners_of(const struct flow_contact *contact, int side, uint32_t *from,
+                             uint32_t *to)
 {
     const uint32_t first = contact->first < contact->at.n ? contact->first : contact->at.n;
     *from = side ? first : 0;
@@ -67,11 +68,11 @@ static size_t add_pushes(const struct flow_contact *contact, struct push *to)
     size_t n = 0;
     for (int side = 0; side < 2; side++) {
         uint32_t from, end;
-        corners_of(contact, side, &from, &end);
+        pinch_corners_of(contact, side, &from, &end);
         for (uint32_t k = from; k < end && contact->chain[side]; k++, n++) {
             if (!to)
                 continue;
-            to[n] = (struct push){.corner = corner_of(contact, k),
+            to[n] = (struct push){.corner = pinch_corner_of(contact, k),
                                   .chain = {contact->chain[side], contact->lack[side]}};
             for (int c = 0; c < 3; c++)
                 to[n].way[c] = (side ? -1 : 1) * contact->row.normal[c];
@@ -98,7 +99,7 @@ static size_t list_pushes(const struct flow_contacts_before *before, struct push
 static bool is_solid(const struct flow_contact *contact, int side, uint32_t n_blocks)
 {
     uint32_t from, end;
-    corners_of(contact, side, &from, &end);
+    pinch_corners_of(contact, side, &from, &end);
     bool solid = true;
     for (uint32_t k = from; k < end; k++)
         solid = solid && (contact->at.held >> k & 1 || contact->at.weight[k] == 0);
@@ -133,9 +134,9 @@ static struct chain chain_behind(const struct flow_contact *contact, int side,
 {
     struct chain most = {0};
     uint32_t from, end;
-    corners_of(contact, side, &from, &end);
+    pinch_corners_of(contact, side, &from, &end);
     for (uint32_t k = from; k < end; k++) {
-        const uint64_t corner = corner_of(contact, k);
+        const uint64_t corner = pinch_corner_of(contact, k);
         for (size_t i = first_push(pushes, n, corner); i < n && pushes[i].corner == corner; i++) {
             const struct chain *chain = &pushes[i].chain;
             const bool more = !most.n || chain->lack > most.lack ||

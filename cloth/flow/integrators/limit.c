@@ -65,7 +65,7 @@ static void visit_weighted(struct visitor *visitor, const struct flow_spring *s,
                              s, &u, across);
 }
 
-static void visit_spring(void *to, const struct flow_spring *s)
+static void limit_visit_spring(void *to, const struct flow_spring *s)
 {
     const uint32_t vertex[2] = {s->a, s->b};
     const double weight[2] = {1, -1};
@@ -173,7 +173,7 @@ int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
     make_materials(&visitor, error);
     const int code = visitor.memory.lacks ? CLOTH_E_MEMORY : CLOTH_OK;
     if (!code) {
-        flow_springs_each(&source->springs, visit_spring, &visitor);
+        flow_springs_each(&source->springs, limit_visit_spring, &visitor);
         for (uint32_t i = 0; i < source->springs.n_timed; i++)
             if (flow_joints_act(source->model, source->springs.timed + i))
                 visit_weighted(&visitor, &source->springs.timed[i].spring,

@@ -67,7 +67,7 @@ static void halve(struct surface *surface, uint32_t t, uint32_t a, uint32_t b, u
     surface_add_triangle(surface, new);
 }
 
-static void split_edge(struct pass *pass, const struct surface_edge *edge)
+static void refine_split_edge(struct pass *pass, const struct surface_edge *edge)
 {
     const uint32_t *t = edge->triangle, a = edge->end[0], b = edge->end[1];
     double x[3];
@@ -85,7 +85,7 @@ static void split_edge(struct pass *pass, const struct surface_edge *edge)
 
 void surface_split(struct surface *surface, double edge)
 {
-    run_pass(surface, edge, split_edge);
+    run_pass(surface, edge, refine_split_edge);
 }
 
 /* ---- Collapse ---- */

@@ -12,7 +12,7 @@
 static const double MOST_APART = 1.0 / 36; /* turns between keys: speeds vary by 0.2 % */
 static const double MOST_TURNS = 1000;     /* between key frames: 36,000 keys */
 
-static int check_times(const struct scene_tree *tree, int list)
+static int check_key_times(const struct scene_tree *tree, int list)
 {
     double before = 0, time;
     for (size_t i = 0; i < scene_tree_length(tree, list); i++, before = time) {
@@ -135,10 +135,10 @@ static size_t count_keys(const struct key_frames *frames, size_t i)
     return turns > MOST_APART ? (size_t)ceil(turns / MOST_APART) : 1;
 }
 
-static int check_frames(const struct key_frames *frames)
+static int check_key_frames(const struct key_frames *frames)
 {
     const struct scene_tree *tree = frames->tree;
-    if (check_times(tree, frames->times) ||
+    if (check_key_times(tree, frames->times) ||
         check_motion_length(tree, frames->translate, "translate", frames->n) ||
         check_motion_length(tree, frames->rotate, "rotate", frames->n))
         return tree->error->code;
@@ -200,7 +200,7 @@ int scene_build_motion(struct model_motion *motion, const struct scene_tree *tre
                                       scene_tree_get(tree, node, "rotate"),
                                       scene_tree_length(tree, times)};
     size_t n = 0;
-    if (check_frames(&frames))
+    if (check_key_frames(&frames))
         return tree->error->code;
     for (size_t i = 0; i < frames.n; i++)
         n += count_keys(&frames, i);

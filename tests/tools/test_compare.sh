@@ -214,8 +214,7 @@ cat > "$scratch/any.sh" << 'END'
 if test "$OMP_NUM_THREADS" = "${SLEEP-no}"; then sleep 100; fi
 if test "$OMP_NUM_THREADS" = "${FAIL-no}"; then echo "any: no such thing" >&2 && exit 3; fi
 echo "arguments $* threads $OMP_NUM_THREADS $DUITE_THREADS $STARPU_NCPU scheduler ${DUITE_SCHEDULER-none} kind $KIND" >> all
-echo "took 99 s"
-test "$OMP_NUM_THREADS" = "${SILENT-no}" || echo "took ${1}0.5 s of ${OMPI_COMM_WORLD_SIZE-1}"
+test "$OMP_NUM_THREADS" = "${SILENT-no}" || printf 'took 99 s of 9\ntook %s0.5 s of %s\n' "$1" "${OMPI_COMM_WORLD_SIZE-${PMI_SIZE-1}}"
 echo bye
 END
 any() { # STATUS SENTENCE OPTIONS...

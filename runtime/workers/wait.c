@@ -128,7 +128,7 @@ void work_turn(struct work_pool *pool)
 
 struct worker *work_main(struct work_pool *pool)
 {
-    return &pool->queues.worker[0];
+    return pool->queues.worker; /* the first; NULL after a start that failed */
 }
 
 bool work_may_fork(struct work_pool *pool)

@@ -105,7 +105,8 @@ void work_serve(struct worker *worker, uint64_t now)
     if (now - worker->polled < pool->poll_ticks && !(comm && comm_has_posts(comm)))
         return;
     worker->polled = now;
-    work_poll(worker);
+    if (work_poll(worker))
+        work_stir(worker); /* a task may have ended: the worker runs out anew (work_ran_out) */
     if (pool->balance)
         work_grant(worker);
 }

@@ -419,7 +419,7 @@ struct duite {
         duite_front::access<static_cast<duite_mode>(A::mode + (DUITE_RP - DUITE_R)), typename A::element, A::law>;
     template <typename A> using rest = duite_front::rest<A>;
 
-    /* Of a kernel, see duite_kernel; they combine by |. */
+    /* Traits of a kernel, see duite_kernel; they combine by |. */
     static constexpr unsigned side_effects = duite_front::side_effects, fixed = duite_front::fixed,
                               replicated = duite_front::replicated, events = duite_front::events;
     template <typename F> struct kernel : duite_front::kernel_of<F> {

@@ -1,4 +1,4 @@
-/* What it takes to end tasks that wait for a thread of the program: their bodies are over, and it
+/* The time to end tasks that wait for a thread of the program: their bodies are over, and it
  * completes their events one after the other, while the main program waits for all of them. */
 #include "bench/tasks/tasks.h"
 

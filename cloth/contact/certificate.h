@@ -34,8 +34,8 @@ enum contact_passing { CONTACT_PASSES_BY, CONTACT_PASSES, CONTACT_MAY_TOUCH };
 enum contact_passing contact_pass(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
                                   double thickness, double reach);
 
-/* The same of n pairs, each to the bits that it has alone. Of most pairs four are certified at
- * once. */
+/* The same of n pairs, each to the bits that it has alone. Most pairs are certified four at once.
+ */
 struct contact_moving {
     enum contact_pair pair;
     phys_vec x[4], y[4];

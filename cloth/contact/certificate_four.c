@@ -131,7 +131,7 @@ PHYS_INLINE void pass_quickly(enum contact_pair pair, const phys_vec *const x[4]
     *passing = (int64_t)CONTACT_MAY_TOUCH + passes + (passes & by); /* true is -1 */
 }
 
-/* Of n pairs of one kind, at most four. */
+/* Certifies n pairs of one kind, at most four. */
 PHYS_INLINE void pass_four(enum contact_pair pair, size_t n, const size_t at[4],
                            const struct contact_moving *moving, double thickness, double reach,
                            enum contact_passing *passing)

@@ -248,7 +248,7 @@ int api_body_get(struct duite_call_private *body, duite_object object, void *val
     return DUITE_OK;
 }
 
-/* Of several errors, that of the first object in the list. */
+/* The first object in the list that has an error decides. */
 int api_body_wait_for(struct duite_call_private *body, size_t n, const duite_object *objects)
 {
     char text[1024];

@@ -341,7 +341,7 @@ int task_fork_nested(struct task_scope *scope, struct worker *worker, const duit
  * all have the same. Errors: objects, DUITE_E_SIZE, memory. */
 int task_set_object(struct task_scope *scope, struct worker *worker, duite_object object, int at,
                     const void *values, const size_t *count);
-/* Of an adopted object the last value goes into the program's memory, which is then given back. */
+/* The last value of an adopted object goes into the program's memory, which is then given back. */
 int task_free_object(struct task_scope *scope, struct worker *worker, duite_object object);
 
 /* The object, which is new, has the program's memory at its home, and its value. Errors: memory;

@@ -110,8 +110,8 @@ bool comm_poll(struct comm *comm, struct worker *worker)
 #include "tests/model/plain_queue.h"
 #endif
 
-/* Nobody watches for a standstill here, nothing moves between ranks, no replay runs, and the
- * program hands no requests over. */
+/* The model has no watch for standstills, no moves between ranks, no replays and no requests of the
+ * program. */
 #include "runtime/workers/internal.h"
 #define work_balance_start(balance, pool)    nothing()
 #define work_balance_stop(pool)              nothing()

@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* What a program sees of its process. */
+/* The process as a program sees it. */
 struct itself {
     int threads;
     cpu_set_t binding;

@@ -93,7 +93,7 @@ const char *compare_find_program(const char *name, char path[COMPARE_PROGRAM]);
 /* NULL if StarPU's scheduler of this name can be run, else the reason, written to text. */
 const char *compare_starpu_wrong(const char *name, char *text, size_t size);
 
-/* What figures are called, and how many of them a second is. */
+/* The unit of figures, and how many of them a second is. */
 static inline const char *compare_unit(const struct compare *compare)
 {
     return compare->figure ? "figure" : "ms";
@@ -107,6 +107,10 @@ static inline double compare_scale(const struct compare *compare)
  * becomes failed.log. */
 void compare_start(const struct compare *compare, const struct compare_config *config,
                    struct compare_run *run);
+
+/* Runs a comparison whose lists are there, and writes its folder. 1 if a run failed, results
+ * disagree, or something could not be written: said on stderr. */
+int compare_run(struct compare *compare);
 
 /* Fills in medians, intervals and verdicts. */
 void compare_judge(struct compare *compare);

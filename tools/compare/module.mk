@@ -2,4 +2,4 @@
 libduite_tools_a_CPPFLAGS += -DCOMPARE_MPIRUN='"$(MPIRUN)"' -DCOMPARE_CFLAGS='"$(CFLAGS)"' -DCOMPARE_SOURCE='"$(top_srcdir)"'
 libduite_tools_a_SOURCES += tools/compare/compare.h tools/compare/environment.h tools/compare/graph.c tools/compare/graph.h \
 	tools/compare/journal.c tools/compare/load.c tools/compare/load.h tools/compare/median.c tools/compare/page.c tools/compare/program.c \
-	tools/compare/program.h tools/compare/start.c tools/compare/statistics.c
+	tools/compare/program.h tools/compare/runs.c tools/compare/start.c tools/compare/statistics.c

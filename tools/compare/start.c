@@ -245,7 +245,7 @@ static bool is_said_after(const char *line, const char *last)
            !strstr(line, ", which has not returned;");
 }
 
-/* What mpirun says of a rank that failed begins with it. */
+/* The words of mpirun on a rank that failed begin with it. */
 #define MPIRUN_RULE "--------------------------------------------------------------------------"
 
 /* The last line of the log that a program of ours has said, else the last line. mpirun and argp add

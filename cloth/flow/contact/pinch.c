@@ -1,9 +1,9 @@
 /* A contact is pinched where solids press on both of its sides and leave less than the thickness of
  * the cloth between them. A solid is an obstacle, or a feature that pins hold. It presses on a
  * contact by a chain of contacts through the cloth: each is tight, and pushes a corner of the next
- * one's side on its way. What these contacts lack tells how much the solids leave. So what is
- * pulled tight around an obstacle is not pinched, nor what an obstacle pushes along: nothing solid
- * is behind it.
+ * one's side on its way. The sum of the room that they lack tells how much the solids leave. Cloth
+ * that is pulled tight around an obstacle is not pinched, nor cloth that an obstacle pushes along:
+ * nothing solid is behind it.
  *
  * Each contact keeps the chains to its sides that lack most, found from those of the step before: a
  * chain grows by a contact a step. One without a solid any more counts up and ends. */

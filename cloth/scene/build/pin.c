@@ -1,5 +1,4 @@
-/* What pins hold to, and how they move: motions and sliders of the model, in the order of the pins.
- */
+/* Pins become motions and sliders of the model, in the order of the pins. */
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/rules.h"
 

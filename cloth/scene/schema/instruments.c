@@ -53,7 +53,7 @@ static int fill_text(const struct sheet *sheet, const char *key, const char *tex
                : scene_edit_default(sheet->tree, sheet->material, key, text);
 }
 
-/* Nothing is filled in for values that the sheet does not have, which are 0. */
+/* A value of 0, which the sheet does not have, fills nothing in. */
 static int fill_number(const struct sheet *sheet, const char *key, double value)
 {
     char text[40];

@@ -149,7 +149,7 @@ static int edit_add_key(struct edit *edit, const char *name, size_t length)
     return edit_add_node(edit, &key);
 }
 
-/* What is behind the one key of a map: the values of an obstacle, behind its kind. */
+/* Puts the rest of the path behind the one key of a map: the kind of an obstacle. */
 static int put_behind_key(struct edit *edit, int node)
 {
     struct scene_tree *tree = edit->tree;

@@ -1,4 +1,4 @@
-/* What edits a document: a file that includes another, the phases, the caller's sets. */
+/* A document is edited by the file that includes it, then by phases, then by the caller's sets. */
 #include "cloth/scene/yaml/edit.h"
 
 #include <string.h>

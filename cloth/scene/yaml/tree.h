@@ -34,9 +34,9 @@ struct scene_tree {
     struct scene_made *made;      /* what the phases of a scene share (cloth/scene/build/build.h) */
 };
 
-/* The origin of a node is kept in its mark. Of a node from a file, index is 0, or 1 + the number of
- * the included file. Else it is one of these, and line is the set's number; by a phase: line is the
- * key in its set, column the phase's number. */
+/* The origin of a node is kept in its mark. A node from a file has the index 0, or 1 + the number
+ * of the included file. Else it is one of these, and line is the set's number; by a phase: line is
+ * the key in its set, column the phase's number. */
 #define SCENE_BY_SET     (SIZE_MAX)
 #define SCENE_BY_DEFAULT (SIZE_MAX - 1)
 #define SCENE_BY_PHASE   (SIZE_MAX - 2)

@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum { TIMES = 60, MOST_RANKS = 16, WIDTH = 3000 };
 
@@ -97,6 +98,32 @@ static int go_round(unsigned threads, int check)
     return rt && !duite_stop(&rt) && right;
 }
 
+/* The last task of a rank ends by a request of MPI alone, while its main thread and its worker
+ * sleep: in each round another rank begins late. */
+static int comes_late(void)
+{
+    enum { ROUNDS = 150 };
+    const struct timespec late = {.tv_nsec = 4000000}; /* longer than a main thread looks around */
+    duite *rt = start(2, 0);
+    duite_object a[MOST_RANKS], b[MOST_RANKS];
+    int right = rt != NULL && ranks <= MOST_RANKS;
+
+    for (int r = 0; r < ranks && right; r++) {
+        a[r] = misuse_new(rt, WIDTH);
+        b[r] = misuse_new(rt, WIDTH);
+    }
+    for (int32_t round = 0; round < ROUNDS && right; round++) {
+        if (round % ranks == rank)
+            nanosleep(&late, NULL);
+        for (int r = 0; r < ranks; r++)
+            right &= !duite_fork_at(rt, r, &PASS, &round, 2, (duite_object[]){a[r], b[r]});
+        right &= !duite_wait(rt);
+    }
+    for (int r = 0; r < ranks && rt; r++)
+        duite_free(rt, a[r]), duite_free(rt, b[r]);
+    return rt && !duite_stop(&rt) && right;
+}
+
 static int failed(void)
 {
     duite *rt = start(2, 0);
@@ -122,6 +149,7 @@ RANKS_CASE(await)
     tap_case(go_round(1, 0), "values go round by requests of the program, on one thread");
     tap_case(go_round(3, 0), "on three");
     tap_case(go_round(2, 1), "in checking mode");
+    tap_case(comes_late(), "a late request wakes the main thread that waits for it");
     tap_case(failed(), "a request that fails fails its task");
     MPI_Comm_free(&own);
     return tap_done();

@@ -3,10 +3,12 @@
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
 
+#include <libgen.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 const char *const scene_right = "schema: 1\n"
@@ -31,8 +33,10 @@ static void remove_files(void)
 {
     if (owner != getpid())
         return;
-    for (size_t i = 0; i < n_written; i++)
+    for (size_t i = 0; i < n_written; i++) {
         unlink(written[i]);
+        rmdir(dirname(written[i])); /* the last file's removes it */
+    }
     rmdir(folder);
 }
 
@@ -50,8 +54,11 @@ static void path_of(char *path, size_t size, const char *name)
 
 void scene_write_file(const char *name, const char *bytes, size_t size)
 {
-    char path[128];
+    char path[128], folder_of[128];
     path_of(path, sizeof path, name);
+    strcpy(folder_of, path);
+    if (strchr(name, '/'))
+        mkdir(dirname(folder_of), 0777);
     size_t i = 0;
     while (i < n_written && strcmp(written[i], path) != 0)
         i++;

@@ -73,25 +73,28 @@ UNIT_TEST(sets_find_entries_by_name)
  * and files are looked for beside the scene that names them. */
 UNIT_TEST(scenes_include_scenes)
 {
-    const char *base = "schema: 1\ninclude: base.yaml\ntime.h: 0.004\ntime.end: 0.2\n"
-                       "cloths.sheet.mesh.disc: {radius: 1, rings: 2}\n";
-    scene_write_file("base.yaml", scene_right, strlen(scene_right));
-    scene_write_file("middle.yaml", base, strlen(base));
+    const char *middle = "schema: 1\ninclude: base.yaml\ntime.h: 0.004\ntime.end: 0.2\n"
+                         "cloths.sheet.mesh.file: square.obj\n";
+    const char *square = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 4 3 2 1\n";
+    scene_write_file("below/base.yaml", scene_right, strlen(scene_right));
+    scene_write_file("below/middle.yaml", middle, strlen(middle));
+    scene_write_file("below/square.obj", square, strlen(square));
     const char *const sets[] = {"time.end=0.3"};
     UNIT_OWNED(model_free)
-    struct model model = scene_read_right("include: middle.yaml\nschema: 1\ntime.h: 0.002\n"
-                                          "time.end: 0.4\nmaterials.cotton.stretch: 7\n"
-                                          "cloths[1]: {mesh: {grid: {width: 1, height: 1, nx: 2, "
-                                          "ny: 2}}, material: cotton}\n",
-                                          1, sets);
+    struct model model =
+        scene_read_right("include: below/middle.yaml\nschema: 1\ntime.h: 0.002\n"
+                         "time.end: 0.4\nmaterials.cotton.stretch: 7\ncloths.sheet.loads: []\n"
+                         "cloths[1]: {mesh: {grid: {width: 1, height: 1, nx: 2, "
+                         "ny: 2}}, material: cotton}\n",
+                         1, sets);
     ck_assert_double_eq(model.h, 0.002);
     ck_assert_double_eq(model.end, 0.3);
     ck_assert_double_eq(model.materials[0].stretch, 7);
     ck_assert_double_eq(model.materials[0].damping_mass, 0.1);
     ck_assert_uint_eq(model.n_cloths, 2);
-    ck_assert_uint_eq(model.cloths[0].mesh.n_vertices, 19);
+    ck_assert_uint_eq(model.cloths[0].mesh.n_vertices, 4);
     ck_assert_str_eq(model.name, "scene");
-    ck_assert_uint_eq(model.n_files, 3);
+    ck_assert_uint_eq(model.n_files, 4);
 }
 
 UNIT_TEST(sets_make_and_append)

@@ -80,6 +80,14 @@ void make_fork(struct maker *m);
 /* Sets some object. */
 void make_set(struct maker *m, enum prog_kind kind, unsigned object, int zeros);
 
+/* Begins a get of some object that is ended later. */
+void make_get_begin(struct maker *m);
+
+/* One or two turns of the main program; splits an object; joins the one that was split last. */
+void make_turns(struct maker *m);
+void make_split(struct maker *m);
+void make_join(struct maker *m);
+
 /* Forks the same tasks again and again, MOST_REPEATED operations at most. */
 void make_rounds(struct maker *m);
 

@@ -11,6 +11,7 @@
 #include "runtime/base/memory.h"
 #include "runtime/data/adopted.h"
 #include "runtime/task/event.h"
+#include "runtime/task/parts.h"
 
 #include <string.h>
 

@@ -7,6 +7,7 @@
 
 #include "runtime/base/memory.h"
 #include "runtime/task/internal.h"
+#include "runtime/task/parts.h"
 
 #include <sched.h>
 #include <stdio.h>

@@ -6,6 +6,7 @@
  * them. Like adopted memory it passes from version to version; a value that lies elsewhere comes
  * there at the join, whose task an event holds until no part uses its memory (data/adopted.h).
  * Until then the split owns the bytes, and the object's version has a view of them. */
+#include "runtime/task/parts.h"
 #include "runtime/task/body.h"
 #include "runtime/task/event.h"
 #include "runtime/task/scope.h"

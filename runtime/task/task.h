@@ -349,22 +349,6 @@ int task_free_object(struct task_scope *scope, struct worker *worker, duite_obje
 int task_adopt(struct task_graph *graph, struct data_object *object, void *values, duite_done *done,
                void *user);
 
-/* ---- Parts (parts.c). body NULL: the main program's call ---- */
-
-extern const duite_kernel task_split_kernel, task_join_kernel;
-
-/* The object becomes n parts of so many elements. Errors: objects, DUITE_E_ARGUMENT, DUITE_E_SIZE,
- * memory. */
-int task_split(struct task_graph *graph, struct duite_call_private *body, struct worker *worker,
-               duite_object object, size_t n, const size_t *counts);
-/* The object and its n parts, as the tasks of split and join name them, until the join; NULL, with
- * the error's message: it is not split, or a part is. */
-const duite_object *task_split_names(struct task_graph *graph, struct duite_call_private *body,
-                                     duite_object object, size_t *n);
-/* The object is whole again, and its parts are gone. Errors: objects, memory. */
-int task_join(struct task_graph *graph, struct duite_call_private *body, struct worker *worker,
-              duite_object object);
-
 /* Starts copying an object to `copy` on rank `to`, or on all ranks with TASK_ANYWHERE. The caller
  * waits for copy->done on the ranks it goes to. Main thread only. */
 int task_copy(struct task_graph *graph, struct worker *worker, duite_object object, int to,

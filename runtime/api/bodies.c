@@ -5,6 +5,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/task/event.h"
+#include "runtime/task/fork.h"
 #include "runtime/task/parts.h"
 
 #include <stdio.h>

@@ -2,6 +2,7 @@
 #include "runtime/api/instance.h"
 
 #include "runtime/base/error.h"
+#include "runtime/task/fork.h"
 #include "runtime/task/parts.h"
 
 #include <string.h>

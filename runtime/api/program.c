@@ -5,6 +5,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/map/map.h"
+#include "runtime/task/fork.h"
 
 #include <stdio.h>
 

@@ -6,6 +6,7 @@
 #include "runtime/plan/memo_round.h"
 
 #include "runtime/base/memory.h"
+#include "runtime/task/fork.h"
 
 /* Forks that must repeat earlier ones; forks skipped after the first failure, and at most;
  * comparisons granted; bodies per mean. */

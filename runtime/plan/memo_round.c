@@ -6,6 +6,7 @@
 
 #include "runtime/base/memory.h"
 #include "runtime/data/object.h"
+#include "runtime/task/fork.h"
 #include "runtime/task/internal.h"
 
 /* Bytes of a ring; rounds in it, at least and at most. */

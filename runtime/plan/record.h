@@ -3,6 +3,7 @@
 
 #include "runtime/base/memory.h"
 #include "runtime/plan/passes.h"
+#include "runtime/task/fork.h"
 #include "runtime/task/task.h"
 
 /* Recorded graphs: what a build function forked, kept for replays.

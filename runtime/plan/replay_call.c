@@ -7,6 +7,7 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/data/object.h"
+#include "runtime/task/fork.h"
 
 /* Returns whether open contributions go on in the first round. */
 static bool replay_continues_sums(const struct plan_record *record)

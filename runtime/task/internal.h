@@ -4,6 +4,7 @@
 #include "runtime/task/body.h"
 
 #include "runtime/base/error.h"
+#include "runtime/task/fork.h"
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 

@@ -311,31 +311,6 @@ static inline void task_mix_fork(struct task_graph *graph, uint64_t hash, enum c
 /* ---- Main thread with the graph's root as scope: collective, the homes of all objects are
  * settled. Or a body with its own scope: local; the task forked runs here. ---- */
 
-/* A fork's options. Priority and cost are the running rank's and stay out of the fingerprint. */
-struct task_options {
-    int at; /* a rank, or TASK_ANYWHERE */
-    int32_t priority;
-    double cost;    /* seconds; 0: not said */
-    uint64_t round; /* of the replay that forks it; task_fork_any alone looks at it */
-};
-
-extern const struct task_options task_no_options;
-
-int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *options,
-              const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects);
-/* The same without options, for the main program of several ranks. */
-int task_fork_ranks(struct task_graph *graph, struct worker *worker, const duite_kernel *kernel,
-                    const void *args, size_t n, const duite_object *objects);
-/* The same by the general way, for rounds of replays. */
-int task_fork_any(struct task_scope *scope, struct worker *worker,
-                  const struct task_options *options, const duite_kernel *kernel, const void *args,
-                  size_t n, const duite_object *objects);
-/* The same without options: for the main program, and for a body. */
-int task_fork_main(struct task_graph *graph, struct worker *worker, const duite_kernel *kernel,
-                   const void *args, size_t n, const duite_object *objects);
-int task_fork_nested(struct task_scope *scope, struct worker *worker, const duite_kernel *kernel,
-                     const void *args, size_t n, const duite_object *objects);
-
 /* Overwrites the object with a copy of *count values, or with zeros if `values` is NULL; waits for
  * nothing. `count` NULL: the object's maximum. at: the rank whose values count, or TASK_ANYWHERE:
  * all have the same. Errors: objects, DUITE_E_SIZE, memory. */

@@ -4,6 +4,7 @@
 #include "runtime/base/clock.h"
 #include "runtime/data/object.h"
 #include "runtime/plan/record.h"
+#include "runtime/task/fork.h"
 #include "runtime/trace/format.h"
 
 #include <mpi.h>

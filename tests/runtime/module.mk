@@ -9,7 +9,7 @@ LONG_SH += tests/runtime/test_random_long.sh tests/runtime/test_memcheck_long.sh
 tests_runtime_random_programs_SOURCES = tests/runtime/random_programs.c tests/runtime/random_program.h \
     tests/runtime/random_make.c tests/runtime/random_make.h tests/runtime/random_forks.c tests/runtime/random_nests.c tests/runtime/random_turns.c tests/runtime/random_graphs.c \
     tests/runtime/random_rounds.c tests/runtime/random_laws.c tests/runtime/random_bodies.c tests/runtime/random_print.c \
-    tests/runtime/random_cells.c tests/runtime/random_cells.h tests/runtime/random_interpret.c tests/runtime/random_interpret.h \
+    tests/runtime/random_cells.c tests/runtime/random_cells.h tests/runtime/random_interpret.c tests/runtime/random_answers.c tests/runtime/random_interpret.h \
     tests/runtime/random_replay.c tests/runtime/random_run.c tests/runtime/random_run.h tests/runtime/random_calls.c \
     tests/runtime/random_memory.c tests/runtime/random_recording.c tests/runtime/random_places.c tests/runtime/random_options.c \
     tests/runtime/random_options.h

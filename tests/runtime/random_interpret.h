@@ -3,7 +3,7 @@
 
 #include "tests/runtime/random_cells.h"
 
-/* The interpreter, shared by random_interpret.c and random_replay.c only. */
+/* The interpreter, shared by random_interpret.c, random_answers.c and random_replay.c only. */
 
 /* The main program, or a task that runs. */
 struct prog_frame {
@@ -44,6 +44,16 @@ void prog_interpret_fork(struct prog_machine *m, struct prog_frame *above, const
                          uint64_t round);
 void prog_interpret_set(struct prog_cell *cell, const struct prog_op *op);
 int prog_interpret_refuse(struct prog_frame *frame, int code);
+
+/* The first call refused since the last get or wait, which tells it. */
+int prog_interpret_told(struct prog_frame *frame);
+int prog_interpret_wait(struct prog_frame *frame);
+void prog_interpret_object(struct prog_frame *frame, const struct prog_op *op);
+
+static inline int prog_is_failure(struct prog_failure failure)
+{
+    return failure.number != PROG_NO_FAILURE.number;
+}
 
 /* An operation of the main program on a graph. A graph that was left out is left alone. */
 void prog_interpret_graph(struct prog_machine *m, const struct prog_op *op,

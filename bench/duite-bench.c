@@ -34,7 +34,8 @@ enum { JSON = 256, LIST, ONLY, QUICK, REPEATS, SCHEDULER, SEED, STATES, THREADS 
 static const struct argp_option OPTIONS[] = {
     {"json", JSON, "FILE", 0, "write the figures and the host as flat JSON, too", 1},
     {"list", LIST, NULL, 0, "print cases and their metrics, and run nothing", 1},
-    {"only", ONLY, "CASE", 0, "run this case alone; may be given several times", 2},
+    {"only", ONLY, "CASE", 0,
+     "run this case alone, or all whose names begin with CASE_; may be given several times", 2},
     {"quick", QUICK, NULL, 0, "tiny sizes, to see that everything works; figures mean nothing", 2},
     {"repeats", REPEATS, "N", 0, "rounds that count (default: 16; quick: 2)", 3},
     {"seed", SEED, "N", 0, "of the order of the runs (default: 1)", 3},
@@ -85,10 +86,17 @@ static int choose_bench(struct command *command, struct argp_state *state, const
     return 0;
 }
 
-static const struct bench_case *find_case(const struct bench *bench, const char *name)
+/* `name` is the case's, or its name up to a `_`. */
+static bool is_named(const char *name, const struct bench_case *one)
+{
+    const size_t length = strlen(name);
+    return !strncmp(name, one->name, length) && (!one->name[length] || one->name[length] == '_');
+}
+
+static bool any_is_named(const char *name, const struct bench *bench)
 {
     const struct bench_case *const *cases = bench->cases;
-    while (*cases && strcmp((*cases)->name, name))
+    while (*cases && !is_named(name, *cases))
         cases++;
     return *cases;
 }
@@ -98,7 +106,7 @@ static int check(struct command *command, struct argp_state *state)
     if (!command->bench)
         argp_error(state, "which bench? The names are in --help");
     for (size_t i = 0; i < command->n_only; i++)
-        if (!find_case(command->bench, command->only[i]))
+        if (!any_is_named(command->only[i], command->bench))
             argp_error(state, "--only %s: %s has no such case; --list names them", command->only[i],
                        command->bench->name);
     if (!duite_scheduler_find(command->options.scheduler))
@@ -155,7 +163,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
 static bool chosen(const struct command *command, const struct bench_case *one)
 {
     for (size_t i = 0; i < command->n_only; i++)
-        if (!strcmp(command->only[i], one->name))
+        if (is_named(command->only[i], one))
             return true;
     return !command->n_only;
 }
@@ -163,6 +171,7 @@ static bool chosen(const struct command *command, const struct bench_case *one)
 static void plan(const struct command *command, const struct bench_case *one,
                  struct measure *measure)
 {
+    measure->name = one->name;
     one->plan(measure, &command->options);
     if (!command->options.quick && command->options.threads == command->bench->target_threads)
         measure_targets(measure, command->bench->targets);

@@ -49,6 +49,7 @@ struct measure_metric {
 };
 
 struct measure {
+    const char *name; /* the case's */
     struct measure_series series[MEASURE_SERIES];
     struct measure_metric metric[MEASURE_METRICS];
     size_t n_series, n_metrics;

@@ -66,8 +66,10 @@ const struct measure_series *contact_plan_scene(struct measure *measure,
                                                 const struct bench_options *options,
                                                 const char *name, const char *what);
 
-extern const struct bench_case contact_self, contact_frames, contact_part, contact_iterations,
-    contact_twist, contact_instructions, contact_intersections, contact_maps, contact_peers,
+extern const struct bench_case contact_self, contact_frames_sphere, contact_frames_stack,
+    contact_part, contact_iterations, contact_twist, contact_instructions, contact_intersections,
+    contact_maps, contact_peers_drape, contact_peers_curtain, contact_peers_twist,
+    contact_peers_needle, contact_peers_stack, contact_peers_ribbon, contact_peers_layers,
     contact_ring, contact_pinch, contact_memory;
 
 #endif

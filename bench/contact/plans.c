@@ -87,31 +87,36 @@ const struct bench_case contact_self = {
 
 /* ---- Frames ---- */
 
-static void plan_frames(struct measure *measure, const struct bench_options *options)
+static void plan_sphere(struct measure *measure, const struct bench_options *options)
 {
-    static const char *const name[] = {"sphere", "stack"};
-    const struct measure_series *ours[2];
-    measure->cold = true;
-    for (int i = 0; i < 2; i++) {
-        ours[i] = contact_plan_scene(measure, options, name[i], "frame");
-        measure_value(measure, ours[i], 1, "s", "%s_seconds_per_frame", name[i]);
-    }
+    const struct measure_series *ours = contact_plan_scene(measure, options, "sphere", "frame");
     const struct measure_series *rival =
         measure_series(measure, (struct subject_shape){"blender", 0, options->threads},
                        "blender threads=%u quick=%d", options->threads, options->quick);
+    measure->cold = true;
+    measure_value(measure, ours, 1, "s", "sphere_seconds_per_frame");
     measure_value(measure, rival, 1, "s", "sphere_blender_seconds_per_frame");
-    measure_ratio(measure, ours[0], rival, "sphere_vs_blender");
+    measure_ratio(measure, ours, rival, "sphere_vs_blender");
 }
 
-const struct bench_case contact_frames = {
-    "frames",
-    "seconds for each 1/25 s of sphere.yaml until 0.6 s and of stack.yaml until 0.2 s, in steps of "
-    "8 ms",
-    plan_frames, contact_scene_runs, 2};
+const struct bench_case contact_frames_sphere = {
+    "frames_sphere", "seconds for each 1/25 s of sphere.yaml until 0.6 s, in steps of 8 ms",
+    plan_sphere, contact_scene_runs, 2};
+
+static void plan_stack(struct measure *measure, const struct bench_options *options)
+{
+    measure->cold = true;
+    measure_value(measure, contact_plan_scene(measure, options, "stack", "frame"), 1, "s",
+                  "stack_seconds_per_frame");
+}
+
+const struct bench_case contact_frames_stack = {
+    "frames_stack", "seconds for each 1/25 s of stack.yaml until 0.2 s, in steps of 8 ms",
+    plan_stack, contact_scene_runs, 2};
 
 /* ---- Scenes that others published ---- */
 
-/* s: what they state, of a frame or a step. */
+/* s: what they state, of a frame or a step. A case each: the large ones take minutes. */
 static const struct {
     const char *name, *what;
     double published;
@@ -119,25 +124,32 @@ static const struct {
              {"peers_twist", "frame", 6.6},  {"peers_needle", "frame", 9.2},
              {"peers_stack", "frame", 18.1}, {"peers_ribbon", "frame", 1.7},
              {"peers_layers", "step", 0.21}};
-enum { N_PEERS = sizeof PEERS / sizeof *PEERS };
 
-static void plan_peers(struct measure *measure, const struct bench_options *options)
+static void plan_peer(struct measure *measure, const struct bench_options *options)
 {
-    measure->cold = true;
-    for (int i = 0; i < N_PEERS; i++) {
+    const size_t n = sizeof PEERS / sizeof *PEERS;
+    for (size_t i = 0; i < n; i++) {
+        if (strcmp(PEERS[i].name, measure->name))
+            continue;
         const struct measure_series *time =
             contact_plan_scene(measure, options, PEERS[i].name, PEERS[i].what);
+        measure->cold = true;
         measure_value(measure, time, 1, "s", "%s", PEERS[i].name);
         measure_value(measure, time, 1 / PEERS[i].published, "x", "%s_vs_published", PEERS[i].name);
     }
 }
 
-const struct bench_case contact_peers = {
-    "peers",
-    "the begin of scenes that others published, bench/contact/peers: seconds for each 1/60 s, of "
-    "layers a step. Published, whole scenes: drape 2.1, curtain 3.9, twist 6.6, needle 9.2, stack "
-    "18.1, ribbon 1.7 on an NVIDIA L4; layers 0.21 on a processor that is not named",
-    plan_peers, contact_scene_runs, 1};
+#define PEER(of, about)                                                                            \
+    const struct bench_case contact_peers_##of = {"peers_" #of,                                    \
+                                                  "bench/contact/peers/" #of ".yaml until " about, \
+                                                  plan_peer, contact_scene_runs, 1}
+PEER(drape, "1 s: seconds for each 1/60 s; published 2.1 on an NVIDIA L4, of the whole scene");
+PEER(curtain, "1 s: seconds for each 1/60 s; published 3.9 on an NVIDIA L4");
+PEER(twist, "0.4 s: seconds for each 1/60 s; published 6.6 on an NVIDIA L4");
+PEER(needle, "0.5 s: seconds for each 1/60 s; published 9.2 on an NVIDIA L4");
+PEER(stack, "0.2 s: seconds for each 1/60 s; published 18.1 on an NVIDIA L4");
+PEER(ribbon, "0.5 s: seconds for each 1/60 s; published 1.7 on an NVIDIA L4");
+PEER(layers, "0.1 s: seconds a step; published 0.21 on a processor that is not named");
 
 static void plan_ring(struct measure *measure, const struct bench_options *options)
 {

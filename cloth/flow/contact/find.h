@@ -12,6 +12,10 @@ struct flow_findings {
     size_t n, before;                  /* found now; of a look before, none unless it looks again */
     const struct flow_meet_args *args; /* room: for so many */
     double *counts;
+    uint32_t n_points[2];   /* of both sides; the second one of a shape, or of the same block: 0 */
+    unsigned char *failing; /* by point of the first side, then of the second one: a pair fails
+                             * there; NULL: no pair fails */
+    bool no_memory;         /* for it */
 };
 
 /* list: parameter i, under rw. counts: of all meetings. */

@@ -11,6 +11,7 @@ static void open_side(struct meeting *m, int k, const struct flow_skin *skin,
                       const phys_vec *points, const unsigned char *boxes)
 {
     m->skin[k] = skin->skin;
+    m->findings.n_points[k] = skin->skin.n_points;
     m->area[k] = skin->area;
     m->kin[k] = skin->kin;
     m->moved[k] = contact_moved_points(m->skin + k, boxes);
@@ -34,8 +35,8 @@ static void begin_meeting(const duite_call *call, size_t near, struct flow_list 
                           .leaves_out =
                               flow_leaves_out(flow->model, args->side[1] >= flow->tables.n_blocks),
                           .attached = own.attached};
-    open_side(m, 0, &own, points, boxes);
     flow_findings_open(call, near, list, args, counts, &m->findings);
+    open_side(m, 0, &own, points, boxes);
 }
 
 /* Keeps items of the list that did not move, in their order. */
@@ -100,5 +101,6 @@ static int meet_figure_body(const duite_call *call, const struct meet_figure_fie
     m.fan = on->body_fans + flow_body_place(m.model, number).vertex;
     flow_body_open(m.model, number, on->body_skins, on->body_points, on->body_boxes, m.skin + 1,
                    m.side + 1);
+    m.findings.n_points[1] = m.skin[1].n_points;
     return query_meeting(&m, m.side + 1);
 }

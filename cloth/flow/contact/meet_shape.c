@@ -393,6 +393,7 @@ static int meet_shape_body(const duite_call *call, const struct meet_shape_field
     m.way = contact_solid_way(&m.solid);
     const struct flow_skin skin = flow_skin_open(on->skin);
     m.skin = skin.skin;
+    m.findings.n_points[0] = m.skin.n_points;
     m.attached = skin.attached;
     m.area = skin.area;
     m.x = on->skin_x;

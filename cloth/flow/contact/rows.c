@@ -18,7 +18,7 @@
 struct found_contacts {
     size_t n;
     const struct flow_contact **contact;
-    struct flow_tie_corners *corners;
+    const struct flow_tie_corners **corners;
 };
 
 /* Finds them in n_lists lists. Returns false without memory. */
@@ -38,7 +38,7 @@ static bool find_contacts(size_t n_lists, const duite_param *lists, uint32_t n_b
         const uint32_t *place = flow_contact_of(list, block, n_blocks, &n);
         for (size_t k = 0; k < n; k++) {
             to->contact[to->n] = contact + place[k];
-            to->corners[to->n++] = contact[place[k]].at;
+            to->corners[to->n++] = &contact[place[k]].at;
         }
     }
     return true;

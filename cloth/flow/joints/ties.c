@@ -8,6 +8,7 @@
 #include "cloth/base/order.h"
 #include "cloth/flow/state/room.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- Memory ---- */
@@ -27,6 +28,22 @@ static size_t lay_ties(size_t n_rows, const struct flow_tie_room *room, void *me
     to->head = flow_room_next(&rest, sizeof *to->head);
 #define LAY(type, name, rows) to->name = flow_room_next(&rest, (size_t)(rows) * sizeof *to->name);
     FLOW_TIE_ARRAYS(LAY, LAY)
+    return rest.used;
+}
+
+/* What is needed while it is made: counts of groups, a bit for each row, keys. */
+struct sorting {
+    uint32_t *count;
+    uint64_t *marks, *keys;
+};
+
+static size_t lay_sorting(size_t n_rows, const struct flow_tie_room *room, void *memory,
+                          struct sorting *to)
+{
+    struct flow_room rest = {.base = memory};
+    to->count = flow_room_next(&rest, (room->others + 3) * sizeof *to->count);
+    to->marks = flow_room_next(&rest, (n_rows + 63) / 64 * sizeof *to->marks);
+    to->keys = flow_room_next(&rest, flow_ties_scratch(room->ties) * sizeof *to->keys);
     return rest.used;
 }
 
@@ -62,7 +79,7 @@ static const struct flow_tie_corners *corners_of(const struct flow_tie_list *lis
 {
     static const struct flow_tie_corners none = {0};
     if (number >= list->n_joints)
-        return list->corners + (number - list->n_joints);
+        return list->corners[number - list->n_joints];
     const struct flow_tie *joint = list->joint + number;
     return flow_tie_acts(joint, list->tick) ? &joint->at : &none;
 }
@@ -222,11 +239,10 @@ static uint32_t group_of_tie(const struct arrays *to, const struct flow_tie_corn
     return lowest == UINT32_MAX ? 0 : 1 + number_of_block(to, lowest);
 }
 
-/* Sorts the ties by group. */
-static void put_order(const struct own *own, struct arrays *to)
+/* Sorts the ties by group. at: zeros, one more than there are groups. */
+static void put_order(const struct own *own, uint32_t *at, struct arrays *to)
 {
     const uint32_t n_groups = to->head->n_others + 2; /* one for blocks that are no others */
-    uint32_t *at = to->count;
     for (uint32_t i = 0; i < own->n; i++)
         at[1 + group_of_tie(to, corners_of(own->list, own->of[i]), own->block)]++;
     to->head->n_inner = at[1];
@@ -301,22 +317,22 @@ static bool put_shown(struct own *own, struct arrays *to)
     return true;
 }
 
-/* The rows of the block's halo and of its ties, each once. */
-static void put_halo(const struct flow_ties_of *of, struct arrays *to)
+/* The rows of the block's halo and of its ties, each once. marks: zeros. */
+static void put_halo(const struct flow_ties_of *of, uint64_t *marks, struct arrays *to)
 {
     struct flow_tie_head *head = to->head;
     for (uint32_t i = 0; i < of->n_halo; i++)
-        to->marks[of->halo[i] / 64] |= UINT64_C(1) << of->halo[i] % 64;
+        marks[of->halo[i] / 64] |= UINT64_C(1) << of->halo[i] % 64;
     for (uint32_t i = 0; i < head->n; i++)
         for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
             if (to->corner[i][k] < of->n_rows && to->weight[i][k] != 0)
-                to->marks[to->corner[i][k] / 64] |= UINT64_C(1) << to->corner[i][k] % 64;
+                marks[to->corner[i][k] / 64] |= UINT64_C(1) << to->corner[i][k] % 64;
     for (uint32_t row = 0; row < of->n_rows; row++)
-        if (to->marks[row / 64] >> row % 64 & 1)
+        if (marks[row / 64] >> row % 64 & 1)
             to->halo[head->n_halo++] = row;
 }
 
-static bool fill_table(const struct flow_ties_of *of, struct arrays *to)
+static bool fill_table(const struct flow_ties_of *of, const struct sorting *by, struct arrays *to)
 {
     const struct flow_tie_room *room = &of->room;
     if (of->n_others > room->others || of->n_others >= MOST_OTHERS || of->n_rows > MOST ||
@@ -327,28 +343,32 @@ static bool fill_table(const struct flow_ties_of *of, struct arrays *to)
         to->other[k] = of->others[k][0];
         to->place[k] = of->others[k][1];
     }
-    struct own own = own_in(of->list, of->block, to->scratch, room->ties);
+    struct own own = own_in(of->list, of->block, by->keys, room->ties);
     if (!list_own(&own, room->ties))
         return false;
     if (!own.n)
         return true;
-    put_order(&own, to);
+    put_order(&own, by->count, to);
     if (!put_ghosts(&own, joints_ties_put_corners(&own, to), to) || !put_shown(&own, to))
         return false;
-    put_halo(of, to);
+    put_halo(of, by->marks, to);
     return true;
 }
 
 bool flow_ties_make(const struct flow_ties_of *of, void *memory)
 {
     struct arrays to;
+    struct sorting by;
+    void *scratch = calloc(lay_sorting(of->n_rows, &of->room, NULL, &by), 1);
+    lay_sorting(of->n_rows, &of->room, scratch, &by);
     memset(memory, 0, flow_ties_bytes(of->n_rows, &of->room));
     lay_ties(of->n_rows, &of->room, memory, &to);
     to.head->n_rows = of->n_rows;
     to.head->room = of->room;
     for (uint32_t i = 0; i < of->room.rows; i++)
         to.at[i] = i;
-    const bool made = fill_table(of, &to);
+    const bool made = scratch && fill_table(of, &by, &to);
+    free(scratch);
     if (!made)
         *to.head = (struct flow_tie_head){.n_rows = of->n_rows, .room = of->room};
     return made;

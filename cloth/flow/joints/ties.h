@@ -53,7 +53,7 @@ struct flow_tie_list {
     uint32_t n_joints, n;
     const struct flow_tie *joint; /* n_joints */
     uint64_t tick;
-    const struct flow_tie_corners *corners; /* n */
+    const struct flow_tie_corners *const *corners; /* n */
 };
 
 /* ---- Records ---- */
@@ -104,11 +104,7 @@ struct flow_tie_room {
     CORNERS(uint32_t, corner, room->ties)  /* n */                                                 \
     CORNERS(double, weight, room->ties)    /* n */                                                 \
     X(unsigned char, held, room->ties)     /* n: bit k: a pin holds corner k */                    \
-    X(uint32_t, halo, room->ties ? n_rows : 0) /* n_halo: rows of the block's halo and of ties, ascending */ \
-    /* while it is made: counts of groups, a bit for each row, keys */                             \
-    X(uint32_t, count, room->ties ? room->others + 3 : 0)                                          \
-    X(uint64_t, marks, room->ties ? (n_rows + 63) / 64 : 0)                                        \
-    X(uint64_t, scratch, flow_ties_scratch(room->ties))
+    X(uint32_t, halo, room->ties ? n_rows : 0) /* n_halo: rows of the block's halo and of ties, ascending */
 /* clang-format on */
 
 /* The ties of one block: inner ones, whose corners are all in the block, then the others, by their
@@ -147,8 +143,8 @@ struct flow_ties_of {
 /* Bytes of the table of a block of so many rows. */
 size_t flow_ties_bytes(uint32_t n_rows, const struct flow_tie_room *room);
 
-/* Makes the table. Writes every byte. Returns false if the room does not do, or if a tie leads to a
- * block that is none of the others: the table has no ties then. Local. */
+/* Makes the table. Writes every byte. Returns false without memory, if the room does not do, or if
+ * a tie leads to a block that is none of the others: the table has no ties then. Local. */
 bool flow_ties_make(const struct flow_ties_of *of, void *memory);
 
 /* Rows of an object that has the rows shown: at least one. */

@@ -79,6 +79,7 @@ enum {
  * its list, with or without room; items that the first side keeps; the second. */
 enum {
     FLOW_COUNT_FAILS,
+    FLOW_COUNT_FAILING, /* points of both sides that pairs fail at */
     FLOW_COUNT_PASSES,
     FLOW_COUNT_ALL,
     FLOW_COUNT_FIRST,

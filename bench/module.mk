@@ -97,6 +97,16 @@ bench_rivals_mpi_LDFLAGS =
 bench_rivals_mpi_LDADD = $(MPI_LIBS)
 endif
 
+# Ours as Task Bench's own programs have others.
+if HAVE_TASKBENCH
+check_PROGRAMS += bench/rivals/taskbench
+BENCH_RIVALS += bench/rivals/taskbench$(EXEEXT)
+bench_rivals_taskbench_SOURCES = bench/rivals/taskbench.c
+bench_rivals_taskbench_CPPFLAGS = $(AM_CPPFLAGS) -isystem $(TASKBENCH_CORE)
+bench_rivals_taskbench_LDFLAGS = $(AM_LDFLAGS) -no-install
+bench_rivals_taskbench_LDADD = $(TASKBENCH_CORE)/libcore.a libduite.la $(MPI_LIBS) -lstdc++ -lm
+endif
+
 # What reads states; with the cloth's own kernels, but without sanitizers.
 RIVAL_STATE = $(BENCH_STATE) bench/serve.c bench/serve.h cloth/base/error.c cloth/base/error.h cloth/solve/system.c \
 	cloth/solve/system.h

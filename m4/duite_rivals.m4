@@ -20,7 +20,18 @@ AC_DEFUN([DUITE_TRY_OPENMP], [
     rm -f conftest.c conftest$EXEEXT
     AC_MSG_RESULT([$duite_found])])
 
+dnl Task Bench's core, on which an adapter of ours is built where DIR has it.
+AC_DEFUN([DUITE_TASKBENCH], [
+    AC_ARG_WITH([taskbench], [AS_HELP_STRING([--with-taskbench=DIR],
+        [a checkout of Task Bench whose core is built (make -C DIR/core): builds bench/rivals/taskbench])], [], [with_taskbench=no])
+    AS_IF([test "x$with_taskbench" != xno], [
+        AS_IF([test -f "$with_taskbench/core/core_c.h" && test -f "$with_taskbench/core/libcore.a"], [],
+            [AC_MSG_ERROR([--with-taskbench=$with_taskbench: there is no core/core_c.h with core/libcore.a: make -C $with_taskbench/core builds it])])
+        AC_SUBST([TASKBENCH_CORE], [`cd "$with_taskbench/core" && pwd`])])
+    AM_CONDITIONAL([HAVE_TASKBENCH], [test "x$with_taskbench" != xno])])
+
 AC_DEFUN([DUITE_RIVALS], [
+    DUITE_TASKBENCH
     duite_rivals_missing=
     AC_ARG_VAR([RIVAL_GCC], [the compiler of the rival libgomp])
     AC_ARG_VAR([RIVAL_CLANG], [the compiler of the rival libomp])

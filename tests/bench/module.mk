@@ -1,6 +1,6 @@
 LONG_SH += tests/bench/test_output.sh tests/bench/test_bench.sh tests/bench/test_cg.sh tests/bench/test_contact.sh \
     tests/bench/test_experiments.sh tests/bench/test_garments.sh tests/bench/test_physics.sh tests/bench/test_ranks.sh \
-    tests/bench/test_scale.sh tests/bench/test_experiments_long.sh tests/bench/test_predict.sh
+    tests/bench/test_scale.sh tests/bench/test_taskbench.sh tests/bench/test_experiments_long.sh tests/bench/test_predict.sh
 check_PROGRAMS += tests/bench/liar
 tests_bench_liar_SOURCES = tests/bench/liar.c bench/serve.c bench/serve.h
 tests_bench_liar_LDADD =

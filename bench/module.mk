@@ -41,7 +41,7 @@ check_PROGRAMS += bench/duite-bench
 bench_duite_bench_SOURCES = bench/duite-bench.c
 bench_duite_bench_LDADD = $(BENCH_LIBRARY)
 EXTRA_DIST += bench/experiments bench/readme.sh bench/contact/peers bench/garments/experiments.sh bench/garments/hanging.yaml bench/garments/worn.yaml \
-	bench/vassilev/panels.awk bench/vassilev/jeans.yaml bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/cg/states.yaml bench/tiles.c \
+	bench/vassilev/panels.awk bench/vassilev/jeans.yaml bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/rivals/openmp_graph.c bench/cg/states.yaml bench/tiles.c \
 	bench/results/epyc-2026-11-22.md bench/results/xeon-2026-11-24.md bench/results/xeon-2026-11-27.md \
 	bench/results/xeon-2026-11-29.md
 
@@ -55,20 +55,29 @@ BENCH_LIBRARY = bench/libbench.a $(TILES_OBJECT) libduite_tools.a $(CLOTH_LIBS)
 
 OPENMP_FILES = bench/rivals/openmp.c bench/problem.c bench/serve.c
 OPENMP_NEEDS = $(OPENMP_FILES) bench/problem.h bench/serve.h bench/tiles.h $(TILES_OBJECT)
-OPENMP_COMPILE = $(MKDIR_P) bench/rivals && { sources=; for source in $(OPENMP_FILES); do \
-	sources="$$sources $(srcdir)/$$source"; done; } && \
-	compile() { compiler=$$1; settings=$$2; shift 2; $$compiler -std=gnu17 -O2 $(WARN_CFLAGS) -D_GNU_SOURCE -I$(srcdir) \
-	-DRIVAL_SETTINGS="\"$$settings\"" "$$@" $$sources $(TILES_OBJECT) -lm; } && compile
+TWIN_FILES = bench/rivals/twin.c tools/compare/graph.c
+TWIN_SHARED = $(TWIN_FILES) bench/rivals/twin.h tools/compare/body.h tools/compare/graph.h
+OPENMP_COMPILE = $(MKDIR_P) bench/rivals && compile() { files=$$1; compiler=$$2; settings=$$3; shift 3; sources=; \
+	for source in $$files; do sources="$$sources $(srcdir)/$$source"; done; \
+	$$compiler -std=gnu17 -O2 $(WARN_CFLAGS) -D_GNU_SOURCE -I$(srcdir) -I$(srcdir)/runtime $(MPI_CFLAGS) \
+	-DRIVAL_SETTINGS="\"$$settings\"" "$$@" $$sources -lm; } && compile
+OPENMP_GRAPH = bench/rivals/openmp_graph.c $(TWIN_FILES)
 bench/rivals/libgomp$(EXEEXT): $(OPENMP_NEEDS)
-	$(AM_V_CC)$(OPENMP_COMPILE) '$(RIVAL_GCC)' "OpenMP tasks, -O2, `$(RIVAL_GCC) --version | head -n 1`" -fopenmp -o $@
+	$(AM_V_CC)$(OPENMP_COMPILE) '$(OPENMP_FILES)' '$(RIVAL_GCC)' "OpenMP tasks, -O2, `$(RIVAL_GCC) --version | head -n 1`" -fopenmp -o $@ $(TILES_OBJECT)
 bench/rivals/libomp$(EXEEXT): $(OPENMP_NEEDS)
-	$(AM_V_CC)$(OPENMP_COMPILE) '$(RIVAL_CLANG)' "OpenMP tasks, -O2, `$(RIVAL_CLANG) --version | head -n 1`" -fopenmp=libomp -o $@
-CLEANFILES += bench/rivals/libgomp$(EXEEXT) bench/rivals/libomp$(EXEEXT)
+	$(AM_V_CC)$(OPENMP_COMPILE) '$(OPENMP_FILES)' '$(RIVAL_CLANG)' "OpenMP tasks, -O2, `$(RIVAL_CLANG) --version | head -n 1`" -fopenmp=libomp -o $@ $(TILES_OBJECT)
+bench/rivals/libgomp-graph$(EXEEXT): bench/rivals/openmp_graph.c $(TWIN_SHARED)
+	$(AM_V_CC)$(OPENMP_COMPILE) '$(OPENMP_GRAPH)' '$(RIVAL_GCC)' libgomp-graph -fopenmp -o $@
+bench/rivals/libomp-graph$(EXEEXT): bench/rivals/openmp_graph.c $(TWIN_SHARED)
+	$(AM_V_CC)$(OPENMP_COMPILE) '$(OPENMP_GRAPH)' '$(RIVAL_CLANG)' libomp-graph -fopenmp=libomp -o $@
+LIBGOMP_RIVALS = bench/rivals/libgomp$(EXEEXT) bench/rivals/libgomp-graph$(EXEEXT)
+LIBOMP_RIVALS = bench/rivals/libomp$(EXEEXT) bench/rivals/libomp-graph$(EXEEXT)
+CLEANFILES += $(LIBGOMP_RIVALS) $(LIBOMP_RIVALS)
 if HAVE_RIVAL_LIBGOMP
-BENCH_RIVALS += bench/rivals/libgomp$(EXEEXT)
+BENCH_RIVALS += $(LIBGOMP_RIVALS)
 endif
 if HAVE_RIVAL_LIBOMP
-BENCH_RIVALS += bench/rivals/libomp$(EXEEXT)
+BENCH_RIVALS += $(LIBOMP_RIVALS)
 endif
 
 RIVAL_CFLAGS = -std=gnu17 $(WARN_CFLAGS)
@@ -82,7 +91,7 @@ bench_rivals_starpu_LDFLAGS =
 bench_rivals_starpu_LDADD = $(STARPU_LIBS)
 check_PROGRAMS += bench/rivals/starpu-graph
 BENCH_RIVALS += bench/rivals/starpu-graph$(EXEEXT)
-bench_rivals_starpu_graph_SOURCES = bench/rivals/starpu_graph.c tools/compare/graph.c tools/compare/graph.h
+bench_rivals_starpu_graph_SOURCES = bench/rivals/starpu_graph.c $(TWIN_SHARED)
 bench_rivals_starpu_graph_CPPFLAGS = $(AM_CPPFLAGS) $(STARPU_CFLAGS)
 bench_rivals_starpu_graph_CFLAGS = $(RIVAL_CFLAGS)
 bench_rivals_starpu_graph_LDFLAGS =
@@ -95,6 +104,12 @@ bench_rivals_mpi_SOURCES = bench/rivals/mpi.c $(BENCH_SHARED)
 bench_rivals_mpi_CFLAGS = $(RIVAL_CFLAGS)
 bench_rivals_mpi_LDFLAGS =
 bench_rivals_mpi_LDADD = $(MPI_LIBS)
+check_PROGRAMS += bench/rivals/mpi-graph
+BENCH_RIVALS += bench/rivals/mpi-graph$(EXEEXT)
+bench_rivals_mpi_graph_SOURCES = bench/rivals/mpi_graph.c $(TWIN_SHARED) bench/serve.c bench/serve.h
+bench_rivals_mpi_graph_CFLAGS = $(RIVAL_CFLAGS)
+bench_rivals_mpi_graph_LDFLAGS =
+bench_rivals_mpi_graph_LDADD = $(MPI_LIBS) -lm
 endif
 
 # Ours as Task Bench's own programs have others.

@@ -14,12 +14,27 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { ROUNDS = 256, SEED, OUTPUT, TIMEOUT, TASKS, COST, BYTES, STEPS, SET, VARY, FIGURE, LIST };
+enum {
+    ROUNDS = 256,
+    SEED,
+    OUTPUT,
+    TIMEOUT,
+    METG,
+    TASKS,
+    COST,
+    BYTES,
+    STEPS,
+    SET,
+    VARY,
+    FIGURE,
+    LIST
+};
 
 static const struct argp_option OPTIONS[] = {
     {"scheduler", LIST + SCHEDULER, "LIST", 0,
-     "schedulers, with commas between them; all: every one but shuffle, which is for tests; "
-     "starpu:NAME: that of StarPU, on graphs (default: steal)",
+     "schedulers, with commas between them; all: every one but shuffle, which is for tests; on "
+     "graphs also forks:NAME, without replays, and RUNTIME:NAME, another runtime's: starpu:NAME, "
+     "libgomp:tasks, libomp:tasks, mpi:isend (default: steal)",
      1},
     {"mapping", LIST + MAPPING, "LIST", 0,
      "mappings, with commas between them; all: every one (default: metis)", 1},
@@ -44,12 +59,18 @@ static const struct argp_option OPTIONS[] = {
      "expression finds in its output, in the last line that has one; the least is the best "
      "(default: the time of the run)",
      2},
+    {"metg", METG, NULL, 0,
+     "draw the efficiency of all cores over the granularity of tasks, and find the least "
+     "granularity with 50 %: on stencil, nearest, fft, spread, tree and random, of steal, "
+     "forks:steal and each other runtime that is there, by default; grains change the cost of "
+     "tasks, but not their number",
+     2},
     {"set", SET, "KEY=VALUE", 0, "change a value of the scenes; may be given several times", 2},
     {"tasks", TASKS, "N", 0, "tasks of a synthetic graph (default: 1000)", 3},
     {"cost", COST, "SECONDS", 0, "what a task of a synthetic graph takes (default: 1e-5)", 3},
     {"bytes", BYTES, "N", 0, "what a task of a synthetic graph writes (default: 4096)", 3},
     {"steps", STEPS, "N", 0, "rounds of a graph in a run (default: 10)", 3},
-    {"rounds", ROUNDS, "N", 0, "runs of each product (default: 10)", 4},
+    {"rounds", ROUNDS, "N", 0, "runs of each product (default: 10; with --metg 3)", 4},
     {"seed", SEED, "N", 0, "of the order of runs (default: 1)", 4},
     {"timeout", TIMEOUT, "SECONDS", 0, "most that a run may take (default: 600)", 4},
     {"output", OUTPUT, "DIR", 0, "the folder of all files (default: comparison)", 4},
@@ -82,11 +103,12 @@ static void check_item(struct argp_state *state, int dimension, const char *item
     const struct compare *compare = state->input;
     const void *found = state;
     char *end = NULL, wrong[2500];
-    const bool starpu = dimension == SCHEDULER && !compare->program && !strncmp(item, "starpu:", 7);
-    if (starpu && compare_starpu_wrong(item + 7, wrong, sizeof wrong))
+    const char *name = dimension == SCHEDULER ? compare_name_in_runtime(item) : NULL;
+    const bool twin = name && !compare->program && compare_is_twin(item);
+    if (twin && compare_twin_wrong(item, wrong, sizeof wrong))
         argp_error(state, "--scheduler %s: %s", item, wrong);
-    if (dimension == SCHEDULER && !starpu)
-        found = duite_scheduler_find(item);
+    if (dimension == SCHEDULER && !twin)
+        found = duite_scheduler_find(name && !compare->program ? name : item);
     else if (dimension == MAPPING)
         found = duite_mapping_find(item);
     else if (dimension == BALANCE)
@@ -171,6 +193,23 @@ static void check_program(struct argp_state *state, const struct compare *compar
         argp_error(state, "--grain: a program gets it as {grain} in its arguments only");
 }
 
+/* Its curves are of tasks that all runtimes run alike. */
+static void check_metg(struct argp_state *state, const struct compare *compare)
+{
+    if (!compare->metg)
+        return;
+    if (compare->program)
+        argp_error(state, "--metg is for graphs, not for a program after --");
+    for (size_t i = 0; i < compare->list[SUBJECT].n; i++)
+        if (compare_graph_is_file(compare->list[SUBJECT].item[i]))
+            argp_error(state, "--metg: %s: one of " COMPARE_GRAPH_KINDS " is expected",
+                       compare->list[SUBJECT].item[i]);
+    for (size_t i = 0; i < compare->list[GRAIN].n; i++)
+        if (!(strtod(compare->list[GRAIN].item[i], NULL) > 0))
+            argp_error(state, "--metg --grain %s: a number above 0 is expected",
+                       compare->list[GRAIN].item[i]);
+}
+
 static uint64_t number(struct argp_state *state, const char *text, uint64_t least, uint64_t most)
 {
     char *end;
@@ -230,6 +269,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
             argp_error(state, "--set %s: KEY=VALUE is expected", text);
         add(state, &compare->sets, text);
         return 0;
+    case METG:
+        compare->metg = true;
+        return 0;
     case ROUNDS:
         compare->rounds = number(state, text, 1, COMPARE_ROUNDS);
         return 0;
@@ -249,10 +291,17 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case ARGP_KEY_NO_ARGS:
         if (compare->program)
             return 0;
-        argp_error(state, "what is to be run? A scene, a graph file, one of stencil, tree, "
-                          "cholesky, random, irregular, chain, or -- and a program");
+        if (!compare->metg)
+            argp_error(state,
+                       "what is to be run? A scene, a graph file, one of " COMPARE_GRAPH_KINDS
+                       ", or -- and a program");
         return 0;
     case ARGP_KEY_END:
+        if (compare->metg && !compare->program)
+            compare_metg_lists(compare);
+        check_metg(state, compare);
+        if (!compare->rounds)
+            compare->rounds = compare->metg ? 3 : 10;
         complete_lists(compare);
         check_program(state, compare);
         return 0;
@@ -288,7 +337,6 @@ int main(int argc, char **argv)
         .bytes = "4096",
         .steps = "10",
         .seed = 1,
-        .rounds = 10,
         .timeout = 600};
     const struct argp argp = {
         OPTIONS,

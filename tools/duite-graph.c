@@ -3,6 +3,7 @@
  * loop (so that a loaded machine does not shorten it), goes through what it reads and writes, and
  * leaves a number that depends on all it read: the hash at the end is the same whatever schedules.
  */
+#include "tools/compare/body.h"
 #include "tools/compare/graph.h"
 
 #include <config.h>
@@ -19,8 +20,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#define TURNS_A_SECOND 1e9 /* about; the same on every machine */
-
 struct command {
     const char *what, *report, *save;
     size_t tasks;
@@ -28,6 +27,7 @@ struct command {
     uint32_t bytes;
     uint64_t rounds, graph_seed;
     unsigned timeout; /* s; 0: there is no limit */
+    bool forks;       /* tasks are forked in each round, not replayed */
     duite_options options;
     struct compare_graph graph;
     duite_object *object;
@@ -39,23 +39,13 @@ struct work {
     uint64_t turns, number;
 };
 
-static uint64_t go_through(const uint64_t *values, size_t n, uint64_t sum)
-{
-    for (size_t i = 0; i < n; i++)
-        sum = sum * 31 + values[i];
-    return sum;
-}
-
 static int work(const duite_call *call)
 {
     const struct work *work = call->args;
     uint64_t state = work->number;
     for (size_t i = 1; i < call->n_params; i++)
-        state = go_through(duite_in(call, i, uint64_t), duite_count(call, i) / 2, state);
-    for (uint64_t i = 0; i < work->turns; i++)
-        state = state * 6364136223846793005u + 1442695040888963407u;
-    for (size_t i = 0; i < duite_count(call, 0) / 2; i++)
-        duite_out(call, 0, uint64_t)[i] = state + i;
+        state = body_read(duite_in(call, i, uint64_t), duite_count(call, i) / 2, state);
+    body_write(duite_out(call, 0, uint64_t), duite_count(call, 0) / 2, work->turns, state);
     return 0;
 }
 
@@ -73,7 +63,7 @@ static int build(duite *rt, void *context)
     int code = objects ? 0 : DUITE_E_MEMORY;
     for (size_t i = 0; i < graph->n && !code; i++) {
         objects[0] = command->object[i];
-        const struct work args = {(uint64_t)(graph->cost[i] * TURNS_A_SECOND), i};
+        const struct work args = {(uint64_t)(graph->cost[i] * BODY_TURNS_A_SECOND), i};
         size_t n = 1;
         for (size_t k = graph->start[i]; k < graph->start[i + 1]; k++)
             objects[n++] = command->object[graph->from[k]];
@@ -134,7 +124,7 @@ static int make_objects(struct command *command, duite *rt)
     const struct compare_graph *graph = &command->graph;
     int code = 0;
     for (size_t i = 0; i < graph->n && !code; i++) {
-        size_t count = 2 * (graph->bytes[i] < 8 ? 1 : graph->bytes[i] / 8);
+        const size_t count = 2 * body_values(graph->bytes[i]);
         code = duite_new(rt, DUITE_I32, count, &command->object[i]);
     }
     if (!code)
@@ -190,28 +180,33 @@ static int find_hash(const struct command *command, duite *rt, uint64_t *hash)
             continue;
         code = values ? duite_get(rt, command->object[i], values) : DUITE_E_MEMORY;
         if (!code)
-            *hash = *hash * 1099511628211u + values[0];
+            *hash = body_hash(*hash, values[0]);
         free(values);
     }
     free(read);
     return code;
 }
 
+static int run_round(struct command *command, duite *rt, duite_graph graph)
+{
+    return command->forks ? build(rt, command) : duite_replay(rt, graph, 1);
+}
+
 static int measure(struct command *command, duite *rt)
 {
     duite_counters before, after;
-    duite_graph graph;
+    duite_graph graph = DUITE_NO_GRAPH;
     uint64_t hash = 0;
     int code = make_objects(command, rt);
-    if (!code)
+    if (!code && !command->forks)
         code = duite_graph_new(rt, build, command, &graph);
     for (int warm = 0; warm < 2 && !code; warm++) /* homes, caches */
-        code = duite_replay(rt, graph, 1);
+        code = run_round(command, rt, graph);
     if (!code && !(code = duite_wait(rt)))
         code = duite_count_all(rt, &before);
     double begin = MPI_Wtime();
     for (uint64_t i = 0; i < command->rounds && !code; i++)
-        if (!(code = duite_replay(rt, graph, 1)))
+        if (!(code = run_round(command, rt, graph)))
             code = duite_wait(rt);
     double seconds = MPI_Wtime() - begin;
     if (!code)
@@ -222,7 +217,7 @@ static int measure(struct command *command, duite *rt)
         fprintf(stderr, "duite-graph: %s: the report cannot be written\n", command->report);
     for (size_t i = 0; i < command->graph.n && !code; i++)
         code = duite_free(rt, command->object[i]);
-    return code ? code : duite_graph_free(rt, graph);
+    return code || command->forks ? code : duite_graph_free(rt, graph);
 }
 
 static int run(struct command *command)
@@ -272,6 +267,7 @@ enum {
     COST,
     BYTES,
     ROUNDS,
+    FORKS,
     SEED,
     REPORT,
     SAVE,
@@ -296,6 +292,7 @@ static const struct argp_option OPTIONS[] = {
      "workers of each rank (default: DUITE_THREADS, else its share of the cores)", 2},
     {"rounds", ROUNDS, "N", 0,
      "rounds of the graph that are measured, after two that are not (default: 10)", 3},
+    {"forks", FORKS, NULL, 0, "fork the tasks in each round; else it is recorded and replayed", 3},
     {"timeout", TIMEOUT, "SECONDS", 0, "most that the run may take (default: any time)", 3},
     {"report", REPORT, "FILE", 0, "where the figures go (default: standard output)", 3},
     {0}};
@@ -349,6 +346,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case ROUNDS:
         command->rounds = (uint64_t)positive(state, text);
         return 0;
+    case FORKS:
+        command->forks = true;
+        return 0;
     case TIMEOUT:
         command->timeout = (unsigned)ceil(positive(state, text));
         return 0;
@@ -369,8 +369,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         command->what = text;
         return 0;
     case ARGP_KEY_NO_ARGS:
-        argp_error(state,
-                   "which graph? stencil, tree, cholesky, random, irregular, chain or a file");
+        argp_error(state, "which graph? A file, or one of " COMPARE_GRAPH_KINDS);
     }
     return ARGP_ERR_UNKNOWN;
 }
@@ -385,15 +384,14 @@ int main(int argc, char **argv)
                               .rounds = 10,
                               .graph_seed = 1,
                               .options = duite_options_default()};
-    const struct argp argp = {
-        OPTIONS,
-        parse,
-        "KIND|FILE",
-        "Schedules a graph of tasks: a synthetic one (stencil, tree, cholesky, random, irregular, "
-        "chain), or one from a file.",
-        NULL,
-        NULL,
-        NULL};
+    const struct argp argp = {OPTIONS,
+                              parse,
+                              "KIND|FILE",
+                              "Schedules a graph of tasks: a synthetic one (" COMPARE_GRAPH_KINDS
+                              "), or one from a file.",
+                              NULL,
+                              NULL,
+                              NULL};
     argp_err_exit_status = 2;
     if (argp_parse(&argp, argc, argv, 0, NULL, &command))
         return 2;

@@ -121,23 +121,56 @@ ok "a damaged one names its line" bad_file
 ok "a full disk" full
 ok "without gnuplot" without_plots
 ok "an unknown scheduler lists the known ones" refused 2 "known are steal, locality" tree --scheduler best
-starpu_graph() { refuses " lws" limited "$bin/bench/rivals/starpu-graph" irregular --scheduler nope; }
+# Every runtime leaves the same results, on every kind of rows: those of other runtimes that were built, forks and replays, two ranks.
+alike() {
+    members=steal,forks:steal$others
+    refused 0 "$((8 * (4 + n_others))) configurations" stencil nearest fft spread tree random cholesky irregular --scheduler "$members" --threads 2 --ranks 1,2 \
+        --rounds 1 --output alike && test "$(grep -c ',fine$' "$scratch/alike/runs.csv")" = $((8 * (4 + n_others))) &&
+        test "$(sed -n 's/.*,\([0-9a-f]\{16\}\),fine$/\1/p' "$scratch/alike/runs.csv" | sort -u | wc -l)" = 8
+}
+unknown_there() { # RUNTIME NAME
+    refuses "there is no scheduler of this name; known are" limited "$bin/bench/rivals/$1-graph" irregular --scheduler nope &&
+        refused 2 "$1:nope: there is no scheduler of this name; known are .*$2" irregular --scheduler "steal,$1:nope" --output n && test ! -e "$scratch/n"
+}
 starpu_runs() {
     STARPU_SCHED=nope refused 0 "1 rounds" irregular --scheduler starpu:eager --rounds 1 --output e &&
         test "$(grep -c '^0,irregular,.*,starpu:eager,.*,fine$' "$scratch/e/runs.csv")" = 1 && ! grep nope "$scratch/e/run.log"
 }
-if test -x "$bin/bench/rivals/starpu-graph"; then
-    ok "a scheduler that StarPU does not have lists those that it has" refused 2 \
-        "starpu:nope: StarPU has no scheduler of this name; known are .*lws" irregular --scheduler steal,starpu:nope --output n
-    ok "... and nothing runs" test ! -e "$scratch/n"
-    ok "... likewise of its twin alone" starpu_graph
-    ok "one that it has runs, also if the environment names another" starpu_runs
-fi
-mkdir "$scratch/alone" && cp "$bin/duite-compare" "$scratch/alone" # no rivals beside it
+others='' n_others=0
+for other in starpu:lws libgomp:tasks libomp:tasks mpi:isend; do
+    test -x "$bin/bench/rivals/${other%:*}-graph" || continue
+    others=$others,$other n_others=$((n_others + 1))
+    ok "a scheduler that ${other%:*} does not have lists those that it has" unknown_there "${other%:*}" "${other#*:}"
+done
+ok "forks, replays and other runtimes leave the same ($others)" alike
+if test -x "$bin/bench/rivals/starpu-graph"; then ok "StarPU's is the one asked for, also if the environment names another" starpu_runs; fi
+mkdir "$scratch/alone" && cp "$bin/duite-compare" "$bin/duite-graph" "$scratch/alone" # no rivals beside it
 ok "StarPU's twin is not there" refuses "alone/bench/rivals/starpu-graph is not there" limited "$scratch/alone/duite-compare" \
     irregular --scheduler starpu:lws --output "$scratch/n"
 ok "duite-graph has none of StarPU's schedulers" refuses "bench/rivals/starpu-graph --schedulers lists them" limited "$bin/duite-graph" \
     irregular --scheduler starpu:lws
+# How short tasks may be, from made-up times: grains of half, the whole and four times a microsecond take 1.5, 2 and 4 us a task of 39.
+metg() {
+    set -- tree random --metg --scheduler steal --threads 1 --grain 0.5,1,4 --rounds 1 --output m
+    refused 0 "6 configurations, 1 rounds" "$@" || return 1
+    sed -i 's/^\(0,tree,0.5,.*,steal\),[^,]*,/\1,58.5e-6,/; s/^\(0,tree,1,.*,steal\),[^,]*,/\1,78e-6,/; s/^\(0,tree,4,.*,steal\),[^,]*,/\1,156e-6,/' "$scratch/m/runs.csv"
+    refused 0 "^| tree | 2 |$" "$@" || return 1
+    cat "$scratch/m/metg.md" "$scratch/m/metg.csv"
+    grep -qx "| tree | 2 |" "$scratch/m/metg.md" && grep -qx "tree,1,1,none,metis,steal,1.5,0.3333" "$scratch/m/metg.csv" &&
+        grep -qx "tree,1,1,none,metis,steal,4,1.0000" "$scratch/m/metg.csv" && test "$(grep -c '^random,' "$scratch/m/metg.csv")" = 3 &&
+        grep -q "^set multiplot layout 1,2$" "$scratch/m/metg.gp"
+}
+metg_by_itself() { # six kinds, all that is there; what is not is named
+    status=0
+    (cd "$scratch" && limited alone/duite-compare --metg --tasks 40 --cost 1e-6 --grain 1,2 --steps 2 --rounds 1 --output a > said 2>&1) || status=$?
+    cat "$scratch/said"
+    test $status = 0 && grep -q "^without libomp:tasks: .*libomp-graph is not there" "$scratch/said" &&
+        grep -q "^24 configurations, 1 rounds" "$scratch/said" && test "$(grep -c '^| [a-z]* | [<>]* *[0-9.]* | [<>]* *[0-9.]* |$' "$scratch/a/metg.md")" = 6
+}
+ok "METG: the curves of two kinds" metg
+ok "... by one command" metg_by_itself
+ok "... of a file" refused 2 "metg: ./g.graph: one of stencil, .* is expected" --metg ./g.graph --output u
+ok "... of a grain that is none" refused 2 "grain 0: a number above 0" --metg tree --grain 0 --output u
 # A member that fails beside one that does not: the page names it and says why; no table and no file has a figure of it.
 failed() {
     refused 1 "duite-compare: 2 runs failed: f/compare.md says which, and why" tree --threads 1,5000 --rounds 2 --output f || return 1
@@ -280,6 +313,7 @@ ok "a variable twice" any 2 "vary KIND: there is a list of this name already" --
 ok "a figure that is no regular expression" any 2 "figure (: " --figure '(' -- sh any.sh
 ok "a figure without a group" any 2 "a group in parentheses is expected around the number" --figure 'took' -- sh any.sh
 ok "a figure without a program" any 2 "figure is for a program after --" tree --figure '(.)'
+ok "METG of a program" any 2 "metg is for graphs, not for a program after --" --metg -- sh any.sh
 ok "a scene's setting for a program" any 2 "are for scenes and graphs, not for a program" --steps 3 -- sh any.sh
 ok "a graph beside a program" any 2 "tree: a scene or graph beside a program" tree -- sh any.sh
 ok "a program's name with a comma" any 2 "a comma or line in a name cannot stand in the files" -- ./a,b

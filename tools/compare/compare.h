@@ -63,6 +63,7 @@ struct compare {
     uint64_t seed;
     size_t rounds;
     unsigned timeout; /* s: a run that takes longer is stopped */
+    bool metg;        /* grains change the cost of tasks alone, and the curves are drawn */
     struct compare_config *config;
     size_t n;
     FILE *journal;
@@ -90,8 +91,13 @@ void compare_describe(FILE *out, const char *before);
 enum { COMPARE_PROGRAM = PATH_MAX + 100 };
 const char *compare_find_program(const char *name, char path[COMPARE_PROGRAM]);
 
-/* NULL if StarPU's scheduler of this name can be run, else the reason, written to text. */
-const char *compare_starpu_wrong(const char *name, char *text, size_t size);
+/* A scheduler RUNTIME:NAME is another runtime's, whose twin of duite-graph runs (bench/rivals), or
+ * duite's own without replays ("forks:NAME"). The name behind the colon; NULL: it has none. */
+const char *compare_name_in_runtime(const char *scheduler);
+/* Returns true if it is another runtime's. */
+bool compare_is_twin(const char *scheduler);
+/* NULL if the twin is there and has the scheduler, else the reason, written to text. */
+const char *compare_twin_wrong(const char *scheduler, char *text, size_t size);
 
 /* The unit of figures, and how many of them a second is. */
 static inline const char *compare_unit(const struct compare *compare)
@@ -102,6 +108,20 @@ static inline double compare_scale(const struct compare *compare)
 {
     return compare->figure ? 1 : 1e3;
 }
+
+/* --metg: fills lists that were not given, and says which runtimes are left out. */
+void compare_metg_lists(struct compare *compare);
+/* Writes the efficiency of each run's tasks over their granularity (metg.csv), draws it (metg.png),
+ * and tells on the terminal and in metg.md how short tasks may be. 1, said on stderr, if a file
+ * cannot be written. */
+int compare_metg(const struct compare *compare);
+
+/* A file of the folder for writing, and its end. NULL and 1, said on stderr, if it cannot be
+ * written. */
+FILE *compare_open(const struct compare *compare, const char *name);
+int compare_close(const struct compare *compare, const char *name, FILE *file);
+/* Has gnuplot draw a file of the folder. Returns true if it did; a sentence says why not. */
+bool compare_draw(const struct compare *compare, const char *name);
 
 /* Starts a run and reads its report; run->done is set in any case. The log of one that failed
  * becomes failed.log. */

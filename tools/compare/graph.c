@@ -81,7 +81,10 @@ size_t compare_graph_most_reads(const struct compare_graph *graph)
 
 /* ---- Kinds ---- */
 
+enum { MOST_READS = 5, SPREAD = 5 };
+
 struct make {
+    const struct kind *kind;
     struct compare_graph *graph;
     size_t n;
     double cost;
@@ -89,15 +92,52 @@ struct make {
     uint64_t random;
 };
 
-static void make_stencil(struct make *make)
+struct kind {
+    const char *name;
+    void (*make)(struct make *make);
+    int64_t most; /* reads of a task, in rows and at random */
+    /* The k-th column that column x of row y reads of the row before; columns outside are none. */
+    int64_t (*column)(int64_t k, int64_t x, int64_t y, int64_t width);
+    double decades; /* that costs are spread over */
+};
+
+static int64_t stencil(int64_t k, int64_t x, int64_t y, int64_t width)
 {
-    size_t width = (size_t)sqrt((double)make->n);
-    for (size_t i = 0; i < width * (make->n / width); i++) {
-        int64_t above = (int64_t)i - (int64_t)width;
-        size_t x = i % width;
-        const int64_t reads[] = {above >= 0 && x ? above - 1 : -1, above,
-                                 above >= 0 && x + 1 < width ? above + 1 : -1};
-        add(make->graph, make->cost, make->bytes, 3, reads);
+    (void)y, (void)width;
+    return x + k - 1;
+}
+
+static int64_t nearest(int64_t k, int64_t x, int64_t y, int64_t width)
+{
+    (void)y, (void)width;
+    return x + k - 2;
+}
+
+static int64_t fft(int64_t k, int64_t x, int64_t y, int64_t width)
+{
+    int64_t levels = 1;
+    while ((int64_t)1 << levels < width)
+        levels++;
+    return x + (k - 1) * ((int64_t)1 << y % levels);
+}
+
+static int64_t spread(int64_t k, int64_t x, int64_t y, int64_t width)
+{
+    return (x + k * width / SPREAD + (k ? y % 3 : 0)) % width;
+}
+
+/* Rows as long as there are. */
+static void make_rows(struct make *make)
+{
+    const int64_t width = (int64_t)sqrt((double)make->n), n = make->kind->most;
+    for (int64_t i = 0; i < width * ((int64_t)make->n / width); i++) {
+        int64_t reads[MOST_READS];
+        for (int64_t k = 0; k < n; k++) {
+            const int64_t column = make->kind->column(k, i % width, i / width, width);
+            const bool none = i < width || column < 0 || column >= width;
+            reads[k] = none ? -1 : (i / width - 1) * width + column;
+        }
+        add(make->graph, make->cost, make->bytes, (size_t)n, reads);
     }
 }
 
@@ -147,13 +187,14 @@ static double toss(struct make *make)
     return (double)(duite_random(&make->random) >> 11) * 0x1p-53;
 }
 
-static void make_random(struct make *make, size_t most, double decades)
+static void make_random(struct make *make)
 {
+    const double decades = make->kind->decades;
     size_t reach = 2 * (size_t)sqrt((double)make->n) + 1;
     double mean = decades > 0 ? (pow(10, decades) - 1) / (decades * log(10)) : 1;
     for (size_t i = 0; i < make->n; i++) {
-        int64_t reads[8];
-        size_t n = i ? (size_t)(toss(make) * (double)(most + 1)) : 0;
+        int64_t reads[MOST_READS];
+        size_t n = i ? (size_t)(toss(make) * (double)(make->kind->most + 1)) : 0;
         for (size_t k = 0; k < n; k++)
             reads[k] = (int64_t)(i - 1) - (int64_t)(toss(make) * (double)(i < reach ? i : reach));
         double cost = make->cost * pow(10, decades * toss(make)) / mean;
@@ -172,25 +213,27 @@ static void make_chain(struct make *make)
             (const int64_t[]){(int64_t)make->graph->n - 1});
 }
 
-const char *const compare_graph_kinds[] = {"stencil",   "tree",  "cholesky", "random",
-                                           "irregular", "chain", NULL};
+static const struct kind KINDS[] = {
+    {"stencil", make_rows, 3, stencil, 0}, {"nearest", make_rows, 5, nearest, 0},
+    {"fft", make_rows, 3, fft, 0},         {"spread", make_rows, SPREAD, spread, 0},
+    {"tree", make_tree, 2, NULL, 0},       {"cholesky", make_cholesky, 3, NULL, 0},
+    {"random", make_random, 3, NULL, 0},   {"irregular", make_random, 5, NULL, 2},
+    {"chain", make_chain, 1, NULL, 0}};
+
+static const struct kind *find_kind(const char *name)
+{
+    for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++)
+        if (!strcmp(KINDS[i].name, name))
+            return &KINDS[i];
+    return NULL;
+}
 
 int compare_graph_make(struct compare_graph *graph, const char *kind, size_t n, double cost,
                        uint32_t bytes, uint64_t seed)
 {
-    struct make make = {graph, n < 4 ? 4 : n, cost, bytes, seed};
-    if (!strcmp(kind, "stencil"))
-        make_stencil(&make);
-    else if (!strcmp(kind, "tree"))
-        make_tree(&make);
-    else if (!strcmp(kind, "cholesky"))
-        make_cholesky(&make);
-    else if (!strcmp(kind, "random"))
-        make_random(&make, 3, 0);
-    else if (!strcmp(kind, "irregular"))
-        make_random(&make, 5, 2);
-    else if (!strcmp(kind, "chain"))
-        make_chain(&make);
+    struct make make = {find_kind(kind), graph, n < 4 ? 4 : n, cost, bytes, seed};
+    if (make.kind)
+        make.kind->make(&make);
     if (!graph->n)
         fprintf(stderr, "there is no kind of graph %s, or no memory for it\n", kind);
     return !graph->n;
@@ -209,13 +252,12 @@ const char *compare_graph_wrong(const char *what, char *text, size_t size)
         snprintf(text, size, "%s: %s", what, strerror(errno));
         return text;
     }
-    size_t used = (size_t)snprintf(text, size, "there is no kind of graph %.60s; known are", what);
-    for (const char *const *kind = compare_graph_kinds; *kind; kind++) {
-        if (!strcmp(*kind, what))
-            return NULL;
-        used += (size_t)snprintf(text + used, size - used, " %s,", *kind);
-    }
-    snprintf(text + used, size - used, " and files by a name with a . or / in it");
+    if (find_kind(what))
+        return NULL;
+    snprintf(text, size,
+             "there is no kind of graph %.60s; known are " COMPARE_GRAPH_KINDS
+             ", and files by a name with a . or / in it",
+             what);
     return text;
 }
 

@@ -25,6 +25,9 @@ size_t compare_graph_most_reads(const struct compare_graph *graph);
 /* Fills an empty graph of one of these kinds with about n tasks that cost `cost` seconds on average
  * and write `bytes` each:
  *   stencil    rows as long as there are; each task reads its three neighbours of the row before
+ *   nearest    likewise, its five
+ *   fft        likewise, itself and those at a distance of 1, 2, 4, ..., the next in each row
+ *   spread     likewise, five all over the row, and others in the next
  *   tree       a reduction by twos
  *   cholesky   of tiles: potrf, trsm, syrk, gemm, of 1/3, 1, 1 and 2 units of work
  *   random     each task reads up to three random ones among the last few rows
@@ -33,8 +36,8 @@ size_t compare_graph_most_reads(const struct compare_graph *graph);
  * 1, said on stderr, without memory or for another kind. */
 int compare_graph_make(struct compare_graph *graph, const char *kind, size_t n, double cost,
                        uint32_t bytes, uint64_t seed);
-/* The kinds, ended by NULL. */
-extern const char *const compare_graph_kinds[];
+#define COMPARE_GRAPH_KINDS                                                                        \
+    "stencil, nearest, fft, spread, tree, cholesky, random, irregular, chain"
 
 /* A name on a command line is a file's if it has a . or / in it, else a kind's. NULL if it can be
  * used, else the reason, written to text. */

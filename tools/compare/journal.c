@@ -71,8 +71,9 @@ static void print_specification(const struct compare *compare, FILE *out)
     }
     for (size_t i = 0; i < compare->sets.n; i++)
         fprintf(out, " --set %s", compare->sets.item[i]);
-    fprintf(out, " tasks=%s cost=%s bytes=%s steps=%s seed=%" PRIu64 "\n", compare->tasks,
-            compare->cost, compare->bytes, compare->steps, compare->seed);
+    fprintf(out, "%s tasks=%s cost=%s bytes=%s steps=%s seed=%" PRIu64 "\n",
+            compare->metg ? " --metg" : "", compare->tasks, compare->cost, compare->bytes,
+            compare->steps, compare->seed);
 }
 
 static void path_of(const struct compare *compare, char *path, size_t size)

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static FILE *open_file(const struct compare *compare, const char *name)
+FILE *compare_open(const struct compare *compare, const char *name)
 {
     char path[PATH_MAX];
     snprintf(path, sizeof path, "%s/%s", compare->folder, name);
@@ -20,7 +20,7 @@ static FILE *open_file(const struct compare *compare, const char *name)
     return file;
 }
 
-static int close_file(const struct compare *compare, const char *name, FILE *file)
+int compare_close(const struct compare *compare, const char *name, FILE *file)
 {
     bool whole = !ferror(file);
     if (fclose(file))
@@ -228,7 +228,7 @@ static void plot_bars(const struct compare *compare, size_t number, const size_t
             continue;
         fputc('"', out);
         print_label(compare, c, -1, out);
-        const double bodies = compare->program ? 0 : fmin(c->bodies, c->median);
+        const double bodies = isfinite(c->bodies) ? fmin(c->bodies, c->median) : 0;
         fprintf(out, "\" %g %g %g %g %g\n", scale * bodies, scale * (c->median - bodies),
                 scale * c->median, scale * c->low, scale * c->high);
     }
@@ -293,11 +293,22 @@ static bool is_line(const struct compare *compare, int dimension)
            varies(compare, dimension);
 }
 
+bool compare_draw(const struct compare *compare, const char *name)
+{
+    char command[PATH_MAX + 100];
+    if (system("command -v gnuplot > /dev/null 2>&1")) {
+        printf("no plots: gnuplot is missing (package gnuplot-nox); %s is what it would draw\n",
+               name);
+        return false;
+    }
+    snprintf(command, sizeof command, "cd '%s' && gnuplot %s", compare->folder, name);
+    return !system(command);
+}
+
 /* Writes plots.gp and has gnuplot draw it. Returns true if there are plots. */
 static bool plot(const struct compare *compare, size_t *row)
 {
-    char command[PATH_MAX + 100];
-    FILE *out = open_file(compare, "plots.gp");
+    FILE *out = compare_open(compare, "plots.gp");
     if (!out)
         return false;
     fputs("set terminal pngcairo size 1100,600\n", out);
@@ -308,15 +319,7 @@ static bool plot(const struct compare *compare, size_t *row)
             if (is_line(compare, d) && has_figures(compare, s))
                 plot_lines(compare, s, d, out);
     }
-    if (close_file(compare, "plots.gp", out))
-        return false;
-    if (system("command -v gnuplot > /dev/null 2>&1")) {
-        printf("no plots: gnuplot is missing (package gnuplot-nox); plots.gp is what it would "
-               "draw\n");
-        return false;
-    }
-    snprintf(command, sizeof command, "cd '%s' && gnuplot plots.gp", compare->folder);
-    return !system(command);
+    return !compare_close(compare, "plots.gp", out) && compare_draw(compare, "plots.gp");
 }
 
 /* ---- The page ---- */
@@ -354,7 +357,7 @@ static void print_rest(const struct compare *compare, FILE *out)
 
 static int print_page(const struct compare *compare, size_t *row, bool plots)
 {
-    FILE *out = open_file(compare, "compare.md");
+    FILE *out = compare_open(compare, "compare.md");
     if (!out)
         return 1;
     fputs("# A comparison\n\n", out);
@@ -374,17 +377,17 @@ static int print_page(const struct compare *compare, size_t *row, bool plots)
         fputs("\nThere are no plots: gnuplot (package gnuplot-nox) was missing or failed.\n", out);
     fputs("\n## Where\n\n", out);
     compare_describe(out, "- ");
-    return close_file(compare, "compare.md", out);
+    return compare_close(compare, "compare.md", out);
 }
 
 int compare_page(const struct compare *compare)
 {
     size_t *row = calloc(compare->n, sizeof *row);
-    FILE *out = row ? open_file(compare, "summary.csv") : NULL;
+    FILE *out = row ? compare_open(compare, "summary.csv") : NULL;
     int failed = !out;
     if (out) {
         print_summary(compare, out);
-        failed = close_file(compare, "summary.csv", out);
+        failed = compare_close(compare, "summary.csv", out);
     }
     for (size_t s = 0; s < compare->list[SUBJECT].n && row; s++) {
         printf("\n%s\n\n", compare->list[SUBJECT].item[s]);

@@ -13,15 +13,18 @@
 
 /* ---- The product ---- */
 
-/* StarPU has no ranks, mappings and balancers here. */
+/* Other runtimes have graphs alone, and no ranks, mappings and balancers. */
 static bool makes_sense(const struct compare *compare, const struct compare_config *config)
 {
-    if (strncmp(config->value[SCHEDULER], "starpu:", 7) != 0)
+    if (compare->program || !compare_name_in_runtime(config->value[SCHEDULER]))
         return true;
     const char *end = strrchr(config->value[SUBJECT], '.');
-    return !strcmp(config->value[RANKS], "1") && !(end && !strcmp(end, ".yaml")) &&
-           config->value[MAPPING] == compare->list[MAPPING].item[0] &&
-           config->value[BALANCE] == compare->list[BALANCE].item[0];
+    if (end && !strcmp(end, ".yaml"))
+        return false;
+    return !compare_is_twin(config->value[SCHEDULER]) ||
+           (!strcmp(config->value[RANKS], "1") &&
+            config->value[MAPPING] == compare->list[MAPPING].item[0] &&
+            config->value[BALANCE] == compare->list[BALANCE].item[0]);
 }
 
 static int multiply(struct compare *compare)
@@ -194,6 +197,7 @@ int compare_run(struct compare *compare)
         failed = run_all(compare);
         compare_judge(compare);
         failed = compare_page(compare) || failed;
+        failed = (compare->metg && compare_metg(compare)) || failed;
     }
     compare_journal_close(compare);
     if (compare->failed)

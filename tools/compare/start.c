@@ -1,7 +1,7 @@
-/* A run is a program of its own: duite-cloth for scenes, duite-graph for graphs, StarPU's twin of
- * it for schedulers named starpu:NAME, or the one behind --. Its report is a file in the folder,
- * which the next run overwrites; what it prints goes to run.log there, and of a run that failed to
- * failed.log. */
+/* A run is a program of its own: duite-cloth for scenes, duite-graph for graphs, a twin of it in
+ * another runtime for schedulers named RUNTIME:NAME, or the one behind --. Its report is a file in
+ * the folder, which the next run overwrites; what it prints goes to run.log there, and of a run
+ * that failed to failed.log. */
 #include "tools/compare/compare.h"
 #include "tools/compare/environment.h"
 #include "tools/compare/program.h"
@@ -15,7 +15,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#define STARPU_GRAPH "bench/rivals/starpu-graph"
+#define FORKS "forks:"
 
 enum { WORDS = 120 };
 
@@ -60,27 +60,46 @@ static void append_program(struct line *line, const char *name)
     append(line, compare_find_program(name, path));
 }
 
-const char *compare_starpu_wrong(const char *name, char *text, size_t size)
+const char *compare_name_in_runtime(const char *scheduler)
+{
+    const size_t letters = strspn(scheduler, "abcdefghijklmnopqrstuvwxyz");
+    return letters && scheduler[letters] == ':' ? scheduler + letters + 1 : NULL;
+}
+
+bool compare_is_twin(const char *scheduler)
+{
+    return compare_name_in_runtime(scheduler) && strncmp(scheduler, FORKS, strlen(FORKS)) != 0;
+}
+
+/* starpu:NAME is of bench/rivals/starpu-graph. */
+static const char *find_twin(const char *scheduler, char path[COMPARE_PROGRAM])
+{
+    char name[100];
+    snprintf(name, sizeof name, "bench/rivals/%.*s-graph", (int)strcspn(scheduler, ":"), scheduler);
+    return compare_find_program(name, path);
+}
+
+const char *compare_twin_wrong(const char *scheduler, char *text, size_t size)
 {
     char path[COMPARE_PROGRAM], command[COMPARE_PROGRAM + 40], known[2000] = "", word[100];
     bool found = false;
-    if (access(compare_find_program(STARPU_GRAPH, path), X_OK)) {
+    if (access(find_twin(scheduler, path), X_OK)) {
         snprintf(text, size,
                  "%s is not there: make bench builds it in the build folder, if configure finds "
-                 "libstarpu-dev",
+                 "what it needs",
                  path);
         return text;
     }
     snprintf(command, sizeof command, "'%s' --schedulers", path);
     FILE *in = popen(command, "r");
     for (size_t used = 0; in && used < sizeof known && fscanf(in, "%99s", word) == 1;) {
-        found = found || !strcmp(word, name);
+        found = found || !strcmp(word, compare_name_in_runtime(scheduler));
         used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "", word);
     }
     if (!in || pclose(in) || !*known)
-        snprintf(text, size, "%s --schedulers does not list StarPU's schedulers", path);
+        snprintf(text, size, "%s --schedulers does not list its schedulers", path);
     else if (!found)
-        snprintf(text, size, "StarPU has no scheduler of this name; known are %s", known);
+        snprintf(text, size, "there is no scheduler of this name; known are %s", known);
     else
         return NULL;
     return text;
@@ -104,7 +123,8 @@ static void append_scene(const struct compare *compare, const struct compare_con
         append_pair(line, "--set", compare->sets.item[i]);
 }
 
-/* The grain of a graph is a factor of its tasks' cost; their number falls as it grows. */
+/* The grain of a graph is a factor of its tasks' cost; their number falls as it grows, but for
+ * --metg. */
 static void append_graph(const struct compare *compare, const struct compare_config *config,
                          struct line *line)
 {
@@ -112,7 +132,8 @@ static void append_graph(const struct compare *compare, const struct compare_con
     double grain = strtod(config->value[GRAIN], NULL);
     grain = grain > 0 ? grain : 1;
     snprintf(cost, sizeof cost, "%.9g", strtod(compare->cost, NULL) * grain);
-    snprintf(tasks, sizeof tasks, "%.0f", strtod(compare->tasks, NULL) / grain);
+    snprintf(tasks, sizeof tasks, "%.0f",
+             strtod(compare->tasks, NULL) / (compare->metg ? 1 : grain));
     append(line, config->value[SUBJECT]);
     append_pair(line, "--cost", cost);
     append_pair(line, "--tasks", tasks);
@@ -123,15 +144,18 @@ static void append_graph(const struct compare *compare, const struct compare_con
 static void make_line(const struct compare *compare, const struct compare_config *config,
                       const char *report, struct line *line)
 {
-    const char *subject = config->value[SUBJECT];
-    char seconds[20];
-    bool starpu = !strncmp(config->value[SCHEDULER], "starpu:", 7);
+    const char *subject = config->value[SUBJECT], *scheduler = config->value[SCHEDULER];
+    const char *name = compare_name_in_runtime(scheduler);
+    const bool twin = compare_is_twin(scheduler);
+    char seconds[20], path[COMPARE_PROGRAM];
     snprintf(seconds, sizeof seconds, "%u", compare->timeout);
     append_pair(line, "timeout", "-k");
     append_pair(line, "5", seconds);
-    if (*config->value[RANKS] && strcmp(config->value[RANKS], "1") != 0) {
+    const char *ranks = strncmp(scheduler, "mpi:", 4) ? config->value[RANKS] : /* a rank a core */
+                            config->value[THREADS];
+    if (*ranks && strcmp(ranks, "1") != 0) {
         append(line, COMPARE_MPIRUN);
-        append_pair(line, "-n", config->value[RANKS]);
+        append_pair(line, "-n", ranks);
     }
     for (char *const *word = compare->program; word && *word; word++)
         append_filled(compare, config, *word, line);
@@ -140,14 +164,16 @@ static void make_line(const struct compare *compare, const struct compare_config
     if (is_scene(subject)) {
         append_scene(compare, config, line);
     } else {
-        append_program(line, starpu ? STARPU_GRAPH : "duite-graph");
+        append(line, twin ? find_twin(scheduler, path) : compare_find_program("duite-graph", path));
         append_graph(compare, config, line);
     }
-    append_pair(line, "--scheduler", config->value[SCHEDULER] + (starpu ? 7 : 0));
+    append_pair(line, "--scheduler", name ? name : scheduler);
     append_pair(line, "--threads", config->value[THREADS]);
     append_pair(line, "--report", report);
-    if (starpu)
+    if (twin)
         return;
+    if (name)
+        append(line, "--forks");
     append_pair(line, "--mapping", config->value[MAPPING]);
     append_pair(line, "--balance", config->value[BALANCE]);
 }
@@ -160,6 +186,15 @@ static void report_standstills_by(unsigned timeout)
     char seconds[30];
     snprintf(seconds, sizeof seconds, "%g", soon < usual ? soon : usual);
     setenv("DUITE_STUCK_SECONDS", seconds, 0);
+}
+
+/* As duite's workers: a thread a core, bound, and waiting actively; on fewer cores it sleeps. The
+ * user's own setting counts. */
+static void settle_openmp(bool alone)
+{
+    setenv("OMP_PROC_BIND", alone ? "true" : "false", 0);
+    setenv("OMP_PLACES", "cores", 0);
+    setenv("OMP_WAIT_POLICY", alone ? "active" : "passive", 0);
 }
 
 /* Returns the status of waitpid; *seconds from the start to the end. */
@@ -177,6 +212,8 @@ static int execute(const struct compare *compare, const struct compare_config *c
     if (!child) {
         environment_forget();
         program_environment(compare, config);
+        if (!strncmp(config->value[SCHEDULER], "lib", 3))
+            settle_openmp(strtod(config->value[THREADS], NULL) <= compare->load.cores);
         report_standstills_by(compare->timeout);
         const bool closed = freopen("/dev/null", "r", stdin); /* a question would have no answer */
         if (closed && freopen(log, "w", stdout))
@@ -215,7 +252,8 @@ static void read_report(const char *file, struct compare_run *run)
         fclose(in);
     text[n] = 0;
     run->seconds = number_of(text, "seconds_per_step");
-    run->bodies = run->seconds * number_of(text, "busy_fraction");
+    const bool says_busy = value_of(text, "busy_fraction");
+    run->bodies = says_busy ? run->seconds * number_of(text, "busy_fraction") : NAN;
     run->stolen = number_of(text, "tasks_stolen");
     run->messages = number_of(text, "messages");
     run->bytes = number_of(text, "bytes_moved");
@@ -230,7 +268,8 @@ static void read_report(const char *file, struct compare_run *run)
 static bool is_error(const char *line)
 {
     static const char *const programs[] = {
-        "duite-cloth: ", "duite-graph: ", "starpu-graph: ", "duite: ", "timeout: "};
+        "duite-cloth: ",  "duite-graph: ", "starpu-graph: ", "libgomp-graph: ",
+        "libomp-graph: ", "mpi-graph: ",   "duite: ",        "timeout: "};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         if (!strncmp(line, programs[i], strlen(programs[i])))
             return true;

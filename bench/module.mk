@@ -8,7 +8,7 @@ check_LIBRARIES += bench/libbench.a
 bench_libbench_a_SOURCES = bench/bench.h bench/instructions.c bench/instructions.h \
 	bench/loops.c bench/loops.h bench/measure.c bench/measure.h bench/temporary.c bench/temporary.h \
 	bench/program.c bench/program.h bench/report.c bench/report.h bench/subject.c bench/subject.h \
-	bench/tasks/tasks.c bench/tasks/tasks.h bench/tasks/adopt.c bench/tasks/bytes.c bench/tasks/chain.c bench/tasks/event.c bench/tasks/fib.c bench/tasks/fib.h \
+	bench/tasks/tasks.c bench/tasks/tasks.h bench/tasks/adopt.c bench/tasks/bytes.c bench/tasks/chain.c bench/tasks/event.c bench/tasks/fib.c bench/tasks/fib.h bench/tasks/forks.c bench/forks.h \
 	bench/tasks/granularity.c bench/tasks/growth.c bench/tasks/independent.c bench/tasks/instructions.c \
 	bench/tasks/stencil.c bench/tasks/tiles.c bench/tasks/tree.c bench/tasks/wake.c bench/tiles.h \
 	bench/ranks/await.c bench/ranks/cg.c bench/ranks/delegate.c bench/ranks/forks.c bench/ranks/loaded.c bench/ranks/memory.c \
@@ -41,20 +41,23 @@ check_PROGRAMS += bench/duite-bench
 bench_duite_bench_SOURCES = bench/duite-bench.c
 bench_duite_bench_LDADD = $(BENCH_LIBRARY)
 EXTRA_DIST += bench/experiments bench/readme.sh bench/contact/peers bench/garments/experiments.sh bench/garments/hanging.yaml bench/garments/worn.yaml \
-	bench/vassilev/panels.awk bench/vassilev/jeans.yaml bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/rivals/openmp_graph.c bench/cg/states.yaml bench/tiles.c \
+	bench/vassilev/panels.awk bench/vassilev/jeans.yaml bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/rivals/openmp_forks.c bench/rivals/openmp_graph.c bench/rivals/forks.cpp bench/rivals/openmp.h bench/cg/states.yaml bench/tiles.c \
 	bench/results/epyc-2026-11-22.md bench/results/xeon-2026-11-24.md bench/results/xeon-2026-11-27.md \
 	bench/results/xeon-2026-11-29.md
 
-# The arithmetic of the case tiles, which would otherwise compare compilers: compiled once, for us and the rivals.
-TILES_OBJECT = bench/rivals/tiles.$(OBJEXT)
-$(TILES_OBJECT): bench/tiles.c bench/tiles.h
-	$(AM_V_CC)$(MKDIR_P) bench/rivals && $(CC) -std=gnu17 -O2 -fPIE $(WARN_CFLAGS) -I$(srcdir) -c -o $@ $(srcdir)/bench/tiles.c
-CLEANFILES += $(TILES_OBJECT)
+# The arithmetic of tiles and of what forks, which would otherwise compare compilers: compiled once, for us and the rivals. The rivals in
+# C++ have all that they share with the others so.
+ARITHMETIC = bench/rivals/tiles.$(OBJEXT) bench/rivals/forks.$(OBJEXT)
+FORKS_OBJECTS = bench/rivals/forks.$(OBJEXT) bench/rivals/problem.$(OBJEXT) bench/rivals/serve.$(OBJEXT)
+$(ARITHMETIC) bench/rivals/problem.$(OBJEXT) bench/rivals/serve.$(OBJEXT): bench/tiles.c bench/tiles.h bench/forks.c bench/forks.h $(BENCH_SHARED)
+	$(AM_V_CC)$(MKDIR_P) bench/rivals && $(CC) -std=gnu17 -O2 -fPIE $(WARN_CFLAGS) -D_GNU_SOURCE -I$(srcdir) -c -o $@ \
+	$(srcdir)/bench/`basename $@ .$(OBJEXT)`.c
+CLEANFILES += $(ARITHMETIC) bench/rivals/problem.$(OBJEXT) bench/rivals/serve.$(OBJEXT)
 # What a program links that uses libbench.
-BENCH_LIBRARY = bench/libbench.a $(TILES_OBJECT) libduite_tools.a $(CLOTH_LIBS)
+BENCH_LIBRARY = bench/libbench.a $(ARITHMETIC) libduite_tools.a $(CLOTH_LIBS)
 
-OPENMP_FILES = bench/rivals/openmp.c bench/problem.c bench/serve.c
-OPENMP_NEEDS = $(OPENMP_FILES) bench/problem.h bench/serve.h bench/tiles.h $(TILES_OBJECT)
+OPENMP_FILES = bench/rivals/openmp.c bench/rivals/openmp_forks.c bench/problem.c bench/serve.c
+OPENMP_NEEDS = $(OPENMP_FILES) bench/forks.h bench/problem.h bench/rivals/openmp.h bench/serve.h bench/tiles.h $(ARITHMETIC)
 TWIN_FILES = bench/rivals/twin.c tools/compare/graph.c
 TWIN_SHARED = $(TWIN_FILES) bench/rivals/twin.h tools/compare/body.h tools/compare/graph.h
 OPENMP_COMPILE = $(MKDIR_P) bench/rivals && compile() { files=$$1; compiler=$$2; settings=$$3; shift 3; sources=; \
@@ -63,9 +66,9 @@ OPENMP_COMPILE = $(MKDIR_P) bench/rivals && compile() { files=$$1; compiler=$$2;
 	-DRIVAL_SETTINGS="\"$$settings\"" "$$@" $$sources -lm; } && compile
 OPENMP_GRAPH = bench/rivals/openmp_graph.c $(TWIN_FILES)
 bench/rivals/libgomp$(EXEEXT): $(OPENMP_NEEDS)
-	$(AM_V_CC)$(OPENMP_COMPILE) '$(OPENMP_FILES)' '$(RIVAL_GCC)' "OpenMP tasks, -O2, `$(RIVAL_GCC) --version | head -n 1`" -fopenmp -o $@ $(TILES_OBJECT)
+	$(AM_V_CC)$(OPENMP_COMPILE) '$(OPENMP_FILES)' '$(RIVAL_GCC)' "OpenMP tasks, -O2, `$(RIVAL_GCC) --version | head -n 1`" -fopenmp -o $@ $(ARITHMETIC)
 bench/rivals/libomp$(EXEEXT): $(OPENMP_NEEDS)
-	$(AM_V_CC)$(OPENMP_COMPILE) '$(OPENMP_FILES)' '$(RIVAL_CLANG)' "OpenMP tasks, -O2, `$(RIVAL_CLANG) --version | head -n 1`" -fopenmp=libomp -o $@ $(TILES_OBJECT)
+	$(AM_V_CC)$(OPENMP_COMPILE) '$(OPENMP_FILES)' '$(RIVAL_CLANG)' "OpenMP tasks, -O2, `$(RIVAL_CLANG) --version | head -n 1`" -fopenmp=libomp -o $@ $(ARITHMETIC)
 bench/rivals/libgomp-graph$(EXEEXT): bench/rivals/openmp_graph.c $(TWIN_SHARED)
 	$(AM_V_CC)$(OPENMP_COMPILE) '$(OPENMP_GRAPH)' '$(RIVAL_GCC)' libgomp-graph -fopenmp -o $@
 bench/rivals/libomp-graph$(EXEEXT): bench/rivals/openmp_graph.c $(TWIN_SHARED)
@@ -78,6 +81,21 @@ BENCH_RIVALS += $(LIBGOMP_RIVALS)
 endif
 if HAVE_RIVAL_LIBOMP
 BENCH_RIVALS += $(LIBOMP_RIVALS)
+endif
+
+# The two in C++ are one source.
+FORKS_COMPILE = compile() { $(CXX) -std=c++20 -O2 -Wall -Wextra -I$(srcdir) $(srcdir)/bench/rivals/forks.cpp $(FORKS_OBJECTS) \
+	-DRIVAL_SETTINGS="\"$$1, -O2, `$(CXX) --version | head -n 1`\"" -o $@ $$2; } && compile
+bench/rivals/tbb$(EXEEXT): bench/rivals/forks.cpp $(FORKS_OBJECTS)
+	$(AM_V_CC)$(FORKS_COMPILE) oneTBB -ltbb
+bench/rivals/taskflow$(EXEEXT): bench/rivals/forks.cpp $(FORKS_OBJECTS)
+	$(AM_V_CC)$(FORKS_COMPILE) Taskflow '-DRIVAL_TASKFLOW $(TASKFLOW_CPPFLAGS) -pthread'
+CLEANFILES += bench/rivals/tbb$(EXEEXT) bench/rivals/taskflow$(EXEEXT)
+if HAVE_RIVAL_TBB
+BENCH_RIVALS += bench/rivals/tbb$(EXEEXT)
+endif
+if HAVE_RIVAL_TASKFLOW
+BENCH_RIVALS += bench/rivals/taskflow$(EXEEXT)
 endif
 
 RIVAL_CFLAGS = -std=gnu17 $(WARN_CFLAGS)

@@ -56,6 +56,8 @@ static const struct program PROGRAMS[] = {
     {"libgomp_passive", "rivals/libgomp", RIVAL_LIBGOMP_MISSING, NULL, NULL, false, PASSIVE},
     {"libomp", "rivals/libomp", RIVAL_LIBOMP_MISSING, "libomp_passive", NULL, false, ACTIVE},
     {"libomp_passive", "rivals/libomp", RIVAL_LIBOMP_MISSING, NULL, NULL, false, PASSIVE},
+    {"tbb", "rivals/tbb", RIVAL_TBB_MISSING, NULL, NULL, false, {0}, {0}},
+    {"taskflow", "rivals/taskflow", RIVAL_TASKFLOW_MISSING, NULL, NULL, false, {0}, {0}},
     {"starpu", "rivals/starpu", RIVAL_STARPU_MISSING, NULL, NULL, false, {"STARPU_SILENT=1"}, {0}},
     {"mpi", "rivals/mpi", RIVAL_MPI_MISSING, NULL, NULL, false, TURNS, {0}},
     {"openmp", "cg/twin", RIVAL_OPENMP_MISSING, NULL, NULL, false, ACTIVE},

@@ -30,6 +30,16 @@ AC_DEFUN([DUITE_TASKBENCH], [
         AC_SUBST([TASKBENCH_CORE], [`cd "$with_taskbench/core" && pwd`])])
     AM_CONDITIONAL([HAVE_TASKBENCH], [test "x$with_taskbench" != xno])])
 
+dnl DUITE_TRY_FORKS(HEADER, FLAGS, [STATEMENT]): sets duite_found to yes if CXX makes programs with it.
+AC_DEFUN([DUITE_TRY_FORKS], [
+    AC_MSG_CHECKING([whether ${CXX:-no compiler} makes programs with $1])
+    duite_found=no
+    AS_ECHO(["#include <$1>
+        int main() { $3 return 0; }"]) > conftest.cpp
+    AS_IF([test -n "$CXX" && $CXX -std=c++20 conftest.cpp -o conftest$EXEEXT $2 >&AS_MESSAGE_LOG_FD 2>&1], [duite_found=yes])
+    rm -f conftest.cpp conftest$EXEEXT
+    AC_MSG_RESULT([$duite_found])])
+
 AC_DEFUN([DUITE_RIVALS], [
     DUITE_TASKBENCH
     duite_rivals_missing=
@@ -41,6 +51,13 @@ AC_DEFUN([DUITE_RIVALS], [
     DUITE_RIVAL([LIBGOMP], [$duite_found], [gcc], [libgomp])
     DUITE_TRY_OPENMP([RIVAL_CLANG], [-fopenmp=libomp])
     DUITE_RIVAL([LIBOMP], [$duite_found], [clang with libomp-dev], [libomp])
+    DUITE_TRY_FORKS([tbb/tbb.h], [-ltbb])
+    DUITE_RIVAL([TBB], [$duite_found], [libtbb-dev with a C++ compiler], [oneTBB])
+    AC_ARG_WITH([taskflow], [AS_HELP_STRING([--with-taskflow=DIR], [the folder that has taskflow/taskflow.hpp, version 4])],
+        [TASKFLOW_CPPFLAGS="-isystem `cd "$with_taskflow" && pwd`"], [TASKFLOW_CPPFLAGS=])
+    AC_SUBST([TASKFLOW_CPPFLAGS])
+    DUITE_TRY_FORKS([taskflow/taskflow.hpp], [$TASKFLOW_CPPFLAGS -pthread], [tf::Executor executor; executor.task_group();])
+    DUITE_RIVAL([TASKFLOW], [$duite_found], [Taskflow 4 (--with-taskflow=DIR)], [Taskflow])
     PKG_CHECK_MODULES([STARPU], [starpu-1.3], [duite_found=yes], [duite_found=no])
     STARPU_CFLAGS=`AS_ECHO(["$STARPU_CFLAGS"]) | $SED 's/-I/-isystem /g'` # its macros are not pedantic
     DUITE_RIVAL([STARPU], [$duite_found], [libstarpu-dev], [StarPU])

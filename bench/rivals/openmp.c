@@ -1,5 +1,6 @@
 /* The cases with OpenMP tasks: built once with gcc for libgomp and once with clang for libomp. One
  * thread makes all tasks, and takes part when it waits for them. */
+#include "bench/rivals/openmp.h"
 #include "bench/problem.h"
 #include "bench/serve.h"
 #include "bench/tiles.h"
@@ -313,6 +314,6 @@ int main(void)
                                             {"cholesky", cholesky},
                                             {"lu", lu},
                                             {0}};
-    const struct serve_run *const all[] = {runs, NULL};
+    const struct serve_run *const all[] = {runs, openmp_forks, NULL};
     return serve(RIVAL_SETTINGS, all, NULL);
 }

@@ -1,6 +1,6 @@
 /* Tasks that fork tasks: Fibonacci numbers by the book. Once as OpenMP does it, a task waits for
  * the two it forked and adds what they left in two shared objects; once by handing on the right to
- * write the result, without any waiting ("flow"). A figure is the time of a call. */
+ * write the result, without any waiting ("flow"). A figure is the time of a core for a call. */
 #include "bench/tasks/fib.h"
 #include "bench/tasks/tasks.h"
 
@@ -9,7 +9,6 @@
 static void plan(struct measure *measure, const struct bench_options *options)
 {
     static const char *const variants[] = {"", "flow", NULL};
-    static const char *const rivals[] = {"libgomp", "libomp", NULL};
     unsigned n = options->quick ? 8 : 22;
     char size[40];
     snprintf(size, sizeof size, "n=%u", n);
@@ -17,8 +16,9 @@ static void plan(struct measure *measure, const struct bench_options *options)
                        &(struct tasks_contest){.name = "fib",
                                                .size = size,
                                                .tasks = (double)problem_fib_calls(n),
+                                               .core = true,
                                                .variants = variants,
-                                               .rivals = rivals});
+                                               .rivals = tasks_forking_rivals});
     const struct measure_series *series[2];
     for (unsigned i = 0; i < 2; i++) {
         unsigned threads = i ? options->threads : 1;

@@ -5,11 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct bench_case *const CASES[] = {&tasks_stencil,  &tasks_chain, &tasks_independent,
-                                                 &tasks_fib_case, &tasks_tree,  &tasks_tiles,
-                                                 &tasks_growth,   &tasks_bytes, &tasks_granularity,
-                                                 &tasks_wake,     &tasks_event, &tasks_instructions,
-                                                 &tasks_adopt,    NULL};
+static const struct bench_case *const CASES[] = {
+    &tasks_stencil,  &tasks_chain,  &tasks_independent,
+    &tasks_fib_case, &tasks_skynet, &tasks_queens,
+    &tasks_matmul,   &tasks_tree,   &tasks_tiles,
+    &tasks_growth,   &tasks_bytes,  &tasks_granularity,
+    &tasks_wake,     &tasks_event,  &tasks_instructions,
+    &tasks_adopt,    NULL};
 enum { N_CASES = sizeof CASES / sizeof *CASES - 1 };
 
 /* For two cores and the full sizes. */
@@ -21,7 +23,11 @@ static const struct measure_target TARGETS[] = {
     {"chain_replay_ns_per_task_vs_libomp", 0.03, false},
     {"chain_dynamic_ns_per_task_vs_libomp", 0.12, false},
     {"independent_dynamic_ns_per_task_vs_libomp", 0.7, false},
-    {"fib_ns_per_task_vs_libomp", 1, false},
+    {"fib_core_ns_vs_libomp", 1, false},
+    {"fib_core_ns_vs_tbb", 1, false},
+    {"fib_core_ns_vs_taskflow", 1, false},
+    {"skynet_core_ns_vs_tbb", 1, false},
+    {"skynet_core_ns_vs_taskflow", 1, false},
     {"fib_speedup_t2", 1.8, true},
     {"tree_vs_libomp", 1.3, false},
     {"tiles_vs_libomp", 1, false},
@@ -51,6 +57,9 @@ static const duite_kernel *const KERNELS[] = {&tasks_gate,
                                               &tasks_fib_flow,
                                               &tasks_fib_put,
                                               &tasks_fib_add,
+                                              &tasks_forks_kernels[TASKS_SKYNET],
+                                              &tasks_forks_kernels[TASKS_QUEENS],
+                                              &tasks_forks_kernels[TASKS_MATMUL],
                                               &tasks_tree_node,
                                               &tasks_wake_up,
                                               &tasks_adopt_change,
@@ -178,6 +187,19 @@ static struct measure_series *add(struct measure *measure, const struct tasks_co
     return series;
 }
 
+static const char *figure_of(const struct tasks_contest *contest)
+{
+    return contest->core ? "core_ns" : "ns_per_task";
+}
+
+/* Of a subject on so many cores. */
+static void plan_figure(struct measure *measure, const struct tasks_contest *contest,
+                        const struct measure_series *of, unsigned cores, const char *name)
+{
+    measure_value(measure, of, 1e9 * (contest->core ? cores : 1) / contest->tasks, "ns", "%s_%s",
+                  name, figure_of(contest));
+}
+
 static const char *run_of(const struct tasks_contest *contest)
 {
     return contest->run ? contest->run : contest->name;
@@ -221,10 +243,10 @@ static void plan_ours(struct measure *measure, const struct bench_options *optio
         add(measure, contest, tasks_ours(options->threads), run, scheduler);
     if (contest->twice)
         ours->other = add(measure, contest, tasks_ours(options->threads), run, scheduler);
-    measure_value(measure, ours, 1e9 / contest->tasks, "ns", "%s_ns_per_task", name);
+    plan_figure(measure, contest, ours, options->threads, name);
     for (size_t i = 0; contest->rivals[i]; i++)
-        measure_ratio(measure, ours, rival[i], "%s%s_vs_%s", name,
-                      contest->brief ? "" : "_ns_per_task", contest->rivals[i]);
+        measure_ratio(measure, ours, rival[i], "%s%s%s_vs_%s", name, contest->brief ? "" : "_",
+                      contest->brief ? "" : figure_of(contest), contest->rivals[i]);
 }
 
 void tasks_plan_contest(struct measure *measure, const struct bench_options *options,
@@ -239,11 +261,10 @@ void tasks_plan_contest(struct measure *measure, const struct bench_options *opt
         plan_ours(measure, options, contest, contest->variants[i], rival);
     join(run, sizeof run, run_of(contest), "sequential");
     const struct measure_series *twin = add(measure, contest, tasks_twin(), run, "");
-    measure_value(measure, twin, 1e9 / contest->tasks, "ns", "%s_sequential_ns_per_task",
-                  contest->name);
+    plan_figure(measure, contest, twin, 1, join(run, sizeof run, contest->name, "sequential"));
     for (size_t i = 0; contest->rivals[i]; i++)
-        measure_value(measure, rival[i], 1e9 / contest->tasks, "ns", "%s_%s_ns_per_task",
-                      contest->name, contest->rivals[i]);
+        plan_figure(measure, contest, rival[i], options->threads,
+                    join(run, sizeof run, contest->name, contest->rivals[i]));
 }
 
 /* ---- Serving ---- */

@@ -11,7 +11,8 @@
 /* Shared by the cases of the bench "tasks". Each case is a file: its plan, its kernels, our runs
  * and the sequential twin's. */
 
-enum { TASKS_WORKERS = 256 }; /* that a tree can be counted by */
+enum { TASKS_WORKERS = 256 };                                   /* that a tree can be counted by */
+enum { TASKS_SKYNET, TASKS_QUEENS, TASKS_MATMUL, TASKS_FORKS }; /* kernels of forks.c */
 
 /* Our process keeps one runtime from run to run; bodies find this as their context. */
 struct tasks_session {
@@ -26,6 +27,7 @@ struct tasks_session {
     atomic_uint waiting;      /* gates that run */
     _Atomic uint64_t woken;
     double began;      /* when a task began, once woken says so */
+    int32_t *matrices; /* of matmul */
     struct held *held; /* what the tasks of `event` are to fill */
 };
 
@@ -66,11 +68,12 @@ extern const duite_kernel tasks_gate_write, tasks_gate;
  * to each rival, NAME_VARIANT_ns_per_task_vs_RIVAL, or if they are brief NAME_VARIANT_vs_RIVAL. */
 struct tasks_contest {
     const char *name;
-    const char *run;                             /* that serves it; NULL: called as `name` */
-    const char *size;                            /* "points=64 steps=200" */
-    double tasks;                                /* in a run */
-    bool brief;                                  /* names of ratios */
-    bool twice;                                  /* ours runs as often as an OpenMP rival does */
+    const char *run;  /* that serves it; NULL: called as `name` */
+    const char *size; /* "points=64 steps=200" */
+    double tasks;     /* in a run */
+    bool brief;       /* names of ratios */
+    bool core;        /* NAME_VARIANT_core_ns: nanoseconds of a core, in place of ..._ns_per_task */
+    bool twice;       /* ours runs as often as an OpenMP rival does */
     const char *const *variants, *const *rivals; /* ended by NULL; a variant "" has no name */
 };
 void tasks_plan_contest(struct measure *measure, const struct bench_options *options,
@@ -82,12 +85,15 @@ struct subject_shape tasks_twin(void);
 
 /* ---- Cases ---- */
 
+/* Those that have the cases of fib.c and forks.c. */
+extern const char *const tasks_forking_rivals[];
+
 extern const struct bench_case tasks_stencil, tasks_chain, tasks_independent, tasks_fib_case,
-    tasks_tree, tasks_tiles, tasks_growth, tasks_bytes, tasks_granularity, tasks_wake, tasks_event,
-    tasks_instructions, tasks_adopt;
+    tasks_skynet, tasks_queens, tasks_matmul, tasks_tree, tasks_tiles, tasks_growth, tasks_bytes,
+    tasks_granularity, tasks_wake, tasks_event, tasks_instructions, tasks_adopt;
 extern const duite_kernel tasks_stencil_combine, tasks_stencil_empty, tasks_stencil_padded,
     tasks_chain_next, tasks_adopt_change, tasks_independent_mark, tasks_granularity_point,
     tasks_wake_up, tasks_event_hold, tasks_fib, tasks_fib_flow, tasks_fib_put, tasks_fib_add,
-    tasks_tree_node, tasks_tiles_kernels[TILES_ROUTINES];
+    tasks_tree_node, tasks_forks_kernels[TASKS_FORKS], tasks_tiles_kernels[TILES_ROUTINES];
 
 #endif

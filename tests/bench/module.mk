@@ -6,7 +6,7 @@ tests_bench_liar_SOURCES = tests/bench/liar.c bench/serve.c bench/serve.h
 tests_bench_liar_LDADD =
 if HAVE_CHECK
 PLAIN_TESTS += tests/bench/test_problem tests/bench/test_sheet tests/bench/test_states
-tests_bench_test_problem_SOURCES = tests/bench/test_problem.c bench/problem.c bench/problem.h bench/tiles.c bench/tiles.h
+tests_bench_test_problem_SOURCES = tests/bench/test_problem.c bench/forks.c bench/forks.h bench/problem.c bench/problem.h bench/tiles.c bench/tiles.h
 tests_bench_test_problem_LDADD = tests/support/libunit.a $(CHECK_LIBS) -lm
 tests_bench_test_sheet_LDADD = tests/support/libunit.a $(BENCH_LIBRARY) $(CHECK_LIBS)
 tests_bench_test_states_LDADD = tests/support/libunit.a $(BENCH_LIBRARY) $(CHECK_LIBS)

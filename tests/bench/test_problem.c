@@ -1,4 +1,5 @@
 /* The answers of the bench's problems: a wrong one is seen, whatever is wrong with it. */
+#include "bench/forks.h"
 #include "bench/problem.h"
 #include "bench/tiles.h"
 
@@ -86,6 +87,40 @@ UNIT_TEST(test_fib)
         ck_assert_int_eq(problem_fib(n), numbers[n]);
         ck_assert_uint_eq(problem_fib_calls(n), calls[n]);
     }
+}
+
+UNIT_TEST(test_skynet)
+{
+    ck_assert_uint_eq(forks_skynet(7, 1), 7);
+    ck_assert_uint_eq(forks_skynet(0, 1000), 499500);
+    ck_assert_uint_eq(forks_skynet_calls(1000), 1111);
+}
+
+/* Published numbers of solutions; on four rows 17 boards have no queen that takes another. */
+UNIT_TEST(test_queens)
+{
+    static const uint64_t solutions[] = {1, 0, 0, 2, 10, 4, 40, 92};
+    for (uint8_t n = 1; n <= 8; n++)
+        ck_assert_uint_eq(forks_queens(&(struct forks_board){.n = n}), solutions[n - 1]);
+    ck_assert_uint_eq(forks_queens_calls(&(struct forks_board){.n = 4}), 17);
+}
+
+UNIT_TEST(test_matrices)
+{
+    struct forks_square square;
+    const size_t n = 4 * FORKS_TILE;
+    int32_t *matrices = forks_matrices(n, &square);
+    ck_assert_ptr_nonnull(matrices);
+    forks_multiply(matrices, square);
+    matrices[square.c + 5]++;
+    ck_assert_int_ne(forks_matrices_wrong(matrices, n), 0);
+    forks_multiply(matrices, square);
+    ck_assert_int_eq(forks_matrices_wrong(matrices, n), 0); /* c was cleared */
+    for (unsigned k = 0; k < 7; k++)
+        forks_multiply(matrices, forks_quarter(square, k));
+    ck_assert_int_ne(forks_matrices_wrong(matrices, n), 0);
+    ck_assert_uint_eq(forks_multiply_calls(n), 1 + 8 + 64);
+    free(matrices);
 }
 
 /* The published size of T1, with all 10 levels. */

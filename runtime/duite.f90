@@ -63,11 +63,11 @@ module duite
     type, bind(C) :: duite_kernel
         type(c_ptr) :: name = c_null_ptr
         type(c_funptr) :: body = c_null_funptr
-        integer(c_int) :: access(DUITE_MAX_ACCESS) = DUITE_NONE
+        integer(c_int8_t) :: access(DUITE_MAX_ACCESS) = 0_c_int8_t ! DUITE_NONE
         integer(c_int) :: variadic = DUITE_NONE
         integer(c_size_t) :: args_size = 0
         integer(c_int) :: side_effects = 0, fixed = 0
-        type(c_ptr) :: law(DUITE_MAX_ACCESS) = c_null_ptr
+        type(c_ptr) :: law = c_null_ptr
         type(c_ptr) :: variadic_law = c_null_ptr
         integer(c_int) :: replicated = 0, events = 0
     end type
@@ -403,6 +403,12 @@ module duite
             type(duite_call), intent(in) :: call
             type(duite_event), intent(out) :: event
         end function
+        integer(c_int) function duite_await_mpi(call, n, requests) bind(C, name='duite_await_fortran')
+            import :: c_int, duite_call
+            type(duite_call), intent(in) :: call
+            integer(c_int), value :: n
+            integer(c_int), intent(inout) :: requests(*) ! of mpi, or requests%mpi_val of mpi_f08
+        end function
         integer(c_int) function duite_complete(rt, event, code) bind(C, name='duite_complete')
             import :: c_int, c_ptr, duite_event
             type(c_ptr), value :: rt
@@ -513,17 +519,25 @@ contains
         if (code /= DUITE_OK) options%size = 0 ! which duite_start refuses
     end function
 
-    ! access: modes of the parameters. Further components are set in the kernel itself.
-    function duite_kernel_of(name, body, access, args_size) result(kernel)
+    ! access: modes of the parameters; laws: those of the parameters under DUITE_CW and DUITE_CWP, c_null_ptr for the others
+    ! and for a sum. Further components are set in the kernel itself.
+    function duite_kernel_of(name, body, access, args_size, laws) result(kernel)
         character(*), intent(in) :: name
         procedure(duite_body) :: body
         integer(c_int), intent(in) :: access(:)
         integer(c_size_t), intent(in), optional :: args_size
+        type(c_ptr), intent(in), optional :: laws(:)
         type(duite_kernel) :: kernel
+        type(c_ptr), pointer :: law(:) ! lasts as long as the program
         kernel%name = text_for(name)
         kernel%body = c_funloc(body)
-        kernel%access(1:size(access)) = access
+        kernel%access(1:size(access)) = int(access, c_int8_t)
         if (present(args_size)) kernel%args_size = args_size
+        if (.not. present(laws)) return
+        allocate (law(size(access)))
+        law = c_null_ptr
+        law(1:size(laws)) = laws
+        kernel%law = c_loc(law)
     end function
 
     ! kernels: all of the program, in place of options%kernels.

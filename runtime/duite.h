@@ -209,10 +209,10 @@ typedef int duite_body(const duite_call *call);
  * duite_new, duite_new_sized, duite_free, duite_set, duite_set_sized, duite_get, duite_get_count,
  * duite_split, duite_join. Tasks: duite_fork, duite_fork_with (without a rank), duite_wait,
  * duite_wait_for, duite_resize, duite_contribute, duite_fail, duite_event_new, duite_complete,
- * duite_await_mpi, duite_mpi_begin, duite_mpi_end. Also calls that describe the runtime (duite_rank
- * and the like). All others are DUITE_E_STATE, as is any call from a thread of the program's own.
- * In a body the calls are local: children run on the rank of the task, unless a balancer delegates
- * them, and no other rank knows of them.
+ * duite_await_mpi, duite_await_fortran, duite_mpi_begin, duite_mpi_end. Also calls that describe
+ * the runtime (duite_rank and the like). All others are DUITE_E_STATE, as is any call from a thread
+ * of the program's own. In a body the calls are local: children run on the rank of the task, unless
+ * a balancer delegates them, and no other rank knows of them.
  *
  * Objects: a body names those it was given (param[i].object) and those it made. The table at
  * duite_mode lists the modes it may fork its children with. Other modes are DUITE_E_RIGHT, as are
@@ -268,21 +268,27 @@ enum { DUITE_MAX_ACCESS = 64 }; /* max. modes that a kernel lists */
 typedef struct duite_kernel {
     const char *name;
     duite_body *body;
-    duite_mode access[DUITE_MAX_ACCESS]; /* modes of the first parameters, ended by DUITE_NONE */
-    duite_mode variadic;                 /* mode of any further ones; DUITE_NONE: none allowed */
+    uint8_t access[DUITE_MAX_ACCESS]; /* duite_mode of the first parameters, ended by DUITE_NONE */
+    duite_mode variadic;              /* mode of any further ones; DUITE_NONE: none allowed */
     size_t args_size; /* bytes of arguments, copied at the fork; no pointers inside */
     int side_effects; /* 1: does more than write its parameters (files): checking mode runs it once
                        */
     int fixed; /* 1: its tasks run only where duite_fork says, and the objects that those of the
                   main program ran for keep their home: for bodies that need that rank's context. A
                   kernel whose body forks such tasks must set it, too */
-    const duite_law
-        *law[DUITE_MAX_ACCESS];    /* of the parameters with DUITE_CW or CWP; NULL: duite_sum */
+    const duite_law *const *law;   /* of the parameters with DUITE_CW or CWP, NULL: duite_sum; as
+                                      many as there are modes (DUITE_LAWS). NULL: duite_sum for all */
     const duite_law *variadic_law; /* if variadic is DUITE_CW or CWP; NULL: duite_sum */
     int replicated;                /* 1: a task of the main program runs on every rank, see below */
     int events; /* 1: its tasks may end later than their bodies, see duite_event_new. Rounds with
                    such a task are forked when they are replayed */
 } duite_kernel;
+
+/* The laws of a kernel by parameter, at file scope: .law = DUITE_LAWS([1] = &duite_max). In a
+ * function, and in C++, a static array of DUITE_MAX_ACCESS does the same. */
+#ifndef __cplusplus
+#define DUITE_LAWS(...) ((const duite_law *const[DUITE_MAX_ACCESS]){__VA_ARGS__})
+#endif
 
 /* Adds a kernel after the start: one of a library that was loaded into the running program. From
  * then on it is like those that were listed, and so are laws that it names and the program has not:
@@ -340,6 +346,10 @@ int duite_complete(duite *rt, duite_event event, int code);
  * that is MPI_REQUEST_NULL), DUITE_E_STATE (its kernel has no `events`), DUITE_E_MEMORY; the
  * requests then stay the body's. */
 int duite_await_mpi(const duite_call *call, int n, MPI_Request *requests);
+
+/* duite_await_mpi with Fortran's handles of the requests, for programs in other languages. In a
+ * body; local. Errors: as of duite_await_mpi. */
+int duite_await_fortran(const duite_call *call, int n, MPI_Fint *requests);
 
 /* ---- Start and stop ---- */
 
@@ -412,8 +422,10 @@ typedef struct duite_options {
  * parameter, or uses an earlier task's memory. A read too close to the end to fault is found if the
  * body runs twice and its results depend on it. The task also fails if it leaves bytes of a w
  * parameter unwritten, or writes other bytes the second time. The message names the task, the
- * parameter and the byte. Results of correct programs are the same, at many times the cost. Other
- * memory (globals, heap) is not watched. A body that faults is left by a jump: its locks and memory
+ * parameter and the byte. Data that duite_acquire returns, but for adopted memory, are a copy, too;
+ * the program ends with a sentence, and a task fails, if it uses them after duite_release. Results
+ * of correct programs are the same, at many times the cost. Other memory (globals, heap) is not
+ * watched. A body that faults is left by a jump: its locks and memory
  * stay held. Meanwhile the runtime handles SIGSEGV and SIGBUS; other faults go on to the previous
  * handler. */
 

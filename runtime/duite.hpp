@@ -302,9 +302,11 @@ class runtime : public calls
             laws.push_back(*each);
         (list.push_back(kernels.c()), ..., list.push_back(nullptr));
         for (const duite_kernel *kernel : std::initializer_list<const duite_kernel *>{kernels.c()...})
-            for (std::size_t i = 0; i <= DUITE_MAX_ACCESS; i++)
-                if (const duite_law *law = i < DUITE_MAX_ACCESS ? kernel->law[i] : kernel->variadic_law)
+            for (std::size_t i = 0, listed = 1; listed; i++) {
+                listed = i < DUITE_MAX_ACCESS && kernel->access[i] != DUITE_NONE;
+                if (const duite_law *law = listed ? kernel->law[i] : kernel->variadic_law)
                     laws.push_back(law);
+            }
         laws.push_back(nullptr);
         duite_options whole = given;
         whole.kernels = list.data();

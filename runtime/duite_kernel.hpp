@@ -200,8 +200,11 @@ template <typename F> class kernel_of
         kernel_.name = name;
         kernel_.body = body;
         set_objects(std::make_index_sequence<form::fixed>());
-        if constexpr (form::rests > 0)
-            set_object<form::fixed>(kernel_.variadic, kernel_.variadic_law);
+        kernel_.law = laws_;
+        if constexpr (form::rests > 0) {
+            kernel_.variadic = form::template object<form::fixed>::mode;
+            kernel_.variadic_law = law<form::fixed>();
+        }
         kernel_.args_size = form::has_args ? sizeof(typename form::args) : 0;
         kernel_.side_effects = (traits & side_effects) != 0;
         kernel_.fixed = (traits & fixed) != 0;
@@ -213,16 +216,16 @@ template <typename F> class kernel_of
 
   private:
     duite_kernel kernel_{};
+    const duite_law *laws_[form::fixed + 1]{}; /* an array has elements, also that of no objects */
 
-    template <std::size_t I> static void set_object(duite_mode &mode, const duite_law *&law)
+    template <std::size_t I> static const duite_law *law()
     {
         using P = typename form::template object<I>;
-        mode = P::mode;
-        law = P::mode == DUITE_CW || P::mode == DUITE_CWP ? &P::law : nullptr;
+        return P::mode == DUITE_CW || P::mode == DUITE_CWP ? &P::law : nullptr;
     }
     template <std::size_t... I> void set_objects(std::index_sequence<I...>)
     {
-        (set_object<I>(kernel_.access[I], kernel_.law[I]), ...);
+        ((kernel_.access[I] = static_cast<std::uint8_t>(form::template object<I>::mode), laws_[I] = law<I>()), ...);
     }
     template <std::size_t I> static decltype(auto) pass([[maybe_unused]] task &here, [[maybe_unused]] const duite_call *call)
     {

@@ -10,7 +10,7 @@ dist_man_MANS += runtime/duite.3
 man_MANS += $(RUNTIME_PAGES)
 # A page for each function, macro and type of the headers; tests/documents.sh compares.
 RUNTIME_PAGES = \
-	runtime/man/duite_abandon.3 runtime/man/duite_acquire.3 runtime/man/duite_adopt.3 runtime/man/duite_await_mpi.3 runtime/man/duite_release.3 runtime/man/DUITE_ARGS.3 runtime/man/duite_balancer.3 runtime/man/duite_balancer_find.3 \
+	runtime/man/duite_abandon.3 runtime/man/duite_acquire.3 runtime/man/duite_adopt.3 runtime/man/duite_await_fortran.3 runtime/man/duite_await_mpi.3 runtime/man/duite_release.3 runtime/man/DUITE_ARGS.3 runtime/man/duite_balancer.3 runtime/man/duite_balancer_find.3 \
 	runtime/man/duite_balancer_names.3 runtime/man/duite_blocks.3 runtime/man/duite_body.3 runtime/man/duite_build.3 \
 	runtime/man/duite_call.3 runtime/man/duite_code.3 runtime/man/duite_code_text.3 runtime/man/duite_colocate.3 \
 	runtime/man/duite_contribute.3 runtime/man/duite_cores.3 runtime/man/duite_done.3 runtime/man/duite_count.3 runtime/man/duite_count_all.3 runtime/man/duite_count_sized.3 \
@@ -19,7 +19,7 @@ RUNTIME_PAGES = \
 	runtime/man/duite_get.3 runtime/man/duite_get_at.3 runtime/man/duite_get_begin.3 runtime/man/duite_get_end.3 runtime/man/duite_get_count.3 runtime/man/duite_graph.3 \
 	runtime/man/duite_graph_args.3 runtime/man/duite_graph_bind.3 runtime/man/duite_graph_free.3 runtime/man/duite_graph_new.3 \
 	runtime/man/duite_graph_rounds.3 runtime/man/duite_hint.3 runtime/man/duite_home.3 runtime/man/duite_in.3 \
-	runtime/man/duite_is_local.3 runtime/man/duite_kernel.3 runtime/man/duite_kernel_add.3 runtime/man/duite_law.3 runtime/man/duite_law_find.3 runtime/man/duite_leaf.3 \
+	runtime/man/duite_is_local.3 runtime/man/duite_kernel.3 runtime/man/duite_kernel_add.3 runtime/man/duite_law.3 runtime/man/duite_law_find.3 runtime/man/DUITE_LAWS.3 runtime/man/duite_leaf.3 \
 	runtime/man/duite_mapping.3 runtime/man/duite_mapping_find.3 runtime/man/duite_mapping_names.3 runtime/man/duite_message.3 \
 	runtime/man/duite_mode.3 runtime/man/duite_mpi_begin.3 runtime/man/duite_mpi_end.3 runtime/man/duite_near.3 \
 	runtime/man/duite_new.3 runtime/man/duite_new_sized.3 runtime/man/duite_object.3 runtime/man/duite_object_graph.3 \

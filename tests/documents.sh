@@ -254,7 +254,7 @@ exported() {
     } | LC_ALL=C sort -u | diff "$srcdir/runtime/duite.sym" -
 }
 # Fortran binds each of them, but for what it does in another way: printf's form, lists of C's texts, and laws, which duite_law_find finds; and for
-# requests of MPI, which are others in C.
+# requests of MPI as C has them.
 bound() {
     grep -o "name='duite_[a-z_]*'" "$srcdir/runtime/duite.f90" | cut -d "'" -f 2 | LC_ALL=C sort -u > "$scratch/bound"
     grep -v -x -e duite_fail -e duite_await_mpi -e 'duite_[a-z]*_names' -e 'duite_\(sum\|product\|min\|max\|bits_[a-z]*\|all\|any\)' "$srcdir/runtime/duite.sym" |

@@ -9,6 +9,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/check/check.h"
 #include "runtime/data/adopted.h"
 #include "runtime/task/event.h"
 #include "runtime/task/parts.h"
@@ -20,8 +21,11 @@ struct api_turn {
     duite_object object;
     duite_event event; /* written before `begun`, as are: */
     void *data;
+    size_t bytes;
     struct data_version *version;
     struct data_packet *kept; /* adopted memory that it reads and no version has, or NULL */
+    bool writes;
+    struct check_region lent;           /* checking mode: the copy that the program has instead */
     const struct data_failure *failure; /* of its task, written before `over` */
     _Atomic int holders, begun, over, released;
 };
@@ -47,6 +51,7 @@ static int acquire_body(const duite_call *call)
     if (code)
         return code;
     turn->data = call->param[0].data;
+    turn->bytes = call->param[0].count * data_type_size(call->param[0].type);
     turn->version = call->own->task->access[0].waiter.version;
     atomic_store(&turn->begun, 1);
     turn_complete(call->own->graph, turn);
@@ -116,6 +121,8 @@ static void turn_end(duite *rt, struct api_turn **place)
 {
     struct api_turn *turn = *place;
     *place = turn->next;
+    if (turn->lent.base)
+        check_take_back(rt->check, &turn->lent, turn->writes ? turn->data : NULL);
     data_packet_free(turn->kept);
     turn->kept = NULL;
     atomic_store(&turn->released, 1);
@@ -180,6 +187,16 @@ static int turn_come_home(duite *rt, struct api_turn *turn, duite_mode mode)
     return DUITE_OK;
 }
 
+/* The data that the program gets. In checking mode, and unless they are its own memory, a copy. */
+static void *turn_data(duite *rt, struct api_turn *turn)
+{
+    const struct data_object *object = data_object_here(&rt->graph.table, turn->object);
+    void *copy = NULL;
+    if (rt->check && turn->data && object && !object->memory)
+        copy = check_lend(&turn->lent, turn->object, turn->data, turn->bytes);
+    return copy ? copy : turn->data;
+}
+
 /* On the object's home: works until the turn begins, or its task is over without it. */
 static int turn_wait(duite *rt, struct api_turn *turn, duite_mode mode)
 {
@@ -229,9 +246,10 @@ int duite_acquire(duite *rt, duite_object object, duite_mode mode, void **data)
     if (!turn)
         return api_remember(rt, base_no_memory("a turn on an object"));
     turn->object = object;
+    turn->writes = mode != DUITE_R;
     code = turn_begin(rt, turn, mode);
     if (!code && rt->turns == turn)
-        *data = turn->data;
+        *data = turn_data(rt, turn);
     turn_drop(turn);
     return code;
 }

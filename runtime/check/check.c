@@ -5,7 +5,6 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/check/region.h"
 #include "runtime/data/law.h"
 #include "runtime/data/sum.h"
 #include "runtime/task/body.h"
@@ -13,6 +12,7 @@
 #include <pthread.h>
 #include <setjmp.h>
 #include <signal.h>
+#include <stdio.h>
 #include <string.h>
 
 #define VIOLATION(call, ...) duite_fail(call, DUITE_E_CHECK, __VA_ARGS__)
@@ -67,13 +67,13 @@ static bool mode_writes(duite_mode mode)
 
 /* ---- Faults ---- */
 
-/* The region an address belongs to: of this call, or of an earlier one. Called by the handler: the
- * ring is read without its lock, which at worst misses a region that another thread retires right
- * now. */
+/* The region an address belongs to: of this call, if any, or an earlier one. Called by the handler:
+ * the ring is read without its lock, which at worst misses a region that another thread retires
+ * right now. */
 static const struct check_region *frame_region_at(const struct check *check,
                                                   const struct frame *frame, const void *address)
 {
-    for (size_t i = 0; i <= frame->call->n_params; i++)
+    for (size_t i = 0; frame && i <= frame->call->n_params; i++)
         if (check_region_has(&frame->region[i], address))
             return &frame->region[i];
     for (unsigned i = 0; i < RETIRED; i++)
@@ -82,17 +82,31 @@ static const struct check_region *frame_region_at(const struct check *check,
     return NULL;
 }
 
+#define USES_RELEASED "uses data of object %u.%u after duite_release"
+
+/* The program itself does: nobody can end that but the handler before. */
+static void fault_tell(const struct check_region *region)
+{
+    char text[100];
+    if (region->param != CHECK_TURN)
+        return;
+    snprintf(text, sizeof text, "duite: the program " USES_RELEASED "\n", region->object.slot,
+             region->object.generation);
+    base_report(text);
+}
+
 static void fault_handle(int signal, siginfo_t *info, void *context)
 {
     struct check *check = atomic_load(&installed);
     struct frame *frame = current;
-    const struct check_region *region =
-        check && frame ? frame_region_at(check, frame, info->si_addr) : NULL;
-    if (region) {
+    const struct check_region *region = check ? frame_region_at(check, frame, info->si_addr) : NULL;
+    if (region && frame) {
         frame->hit = *region;
         frame->at = info->si_addr;
         siglongjmp(frame->jump, 1);
     }
+    if (region)
+        fault_tell(region);
     const struct sigaction *before = check && signal == SIGBUS ? &check->bus : &check->segv;
     if (check && before->sa_flags & SA_SIGINFO && before->sa_sigaction)
         before->sa_sigaction(signal, info, context);
@@ -138,6 +152,8 @@ static int fault_report(const struct frame *frame)
     bool own = false;
     for (size_t i = 0; i <= call->n_params; i++)
         own = own || check_region_has(&frame->region[i], frame->at);
+    if (hit->param == CHECK_TURN)
+        return VIOLATION(call, USES_RELEASED, hit->object.slot, hit->object.generation);
     if (!own)
         return VIOLATION(call,
                          "uses what was parameter %zu of task %llu (kernel %s), which is over",
@@ -378,4 +394,22 @@ int check_call(struct check *check, const struct check_task *task, duite_call *c
     base_free(param);
     base_free(region);
     return code;
+}
+
+/* ---- Turns of the main program ---- */
+
+void *check_lend(struct check_region *region, duite_object object, const void *values, size_t bytes)
+{
+    *region = (struct check_region){.param = CHECK_TURN, .object = object};
+    if (check_region_map(region, bytes, REST[0]))
+        return memcpy(region->data, values, bytes);
+    check_region_unmap(region);
+    return NULL;
+}
+
+void check_take_back(struct check *check, struct check_region *region, void *values)
+{
+    if (values)
+        memcpy(values, region->data, region->bytes);
+    region_retire(check, region);
 }

@@ -1,6 +1,8 @@
 #ifndef DUITE_CHECK_REGION_H
 #define DUITE_CHECK_REGION_H
 
+#include <duite.h>
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -15,13 +17,16 @@ struct check_region {
     char *data;
     size_t bytes;
     unsigned char rest; /* the byte that fills the pages */
-    /* The owner: the task, its kernel, the parameter (CHECK_ARGS: the arguments). */
+    /* The owner: the task, its kernel, the parameter (CHECK_ARGS: the arguments); or an object in a
+     * turn of the main program (CHECK_TURN). */
     uint64_t number;
     const char *kernel;
     size_t param;
+    duite_object object;
 };
 
 #define CHECK_ARGS SIZE_MAX
+#define CHECK_TURN (SIZE_MAX - 1)
 
 /* Maps the region, all of it filled with `rest`, readable and writable. False without memory. */
 bool check_region_map(struct check_region *region, size_t bytes, unsigned char rest);

@@ -196,16 +196,17 @@ int data_laws_check(const duite_law *const *laws)
 
 int data_law_check_kernel(const duite_kernel *kernel, const duite_law *const *laws)
 {
-    for (unsigned i = 0; i <= DUITE_MAX_ACCESS; i++) {
-        bool variadic = i == DUITE_MAX_ACCESS;
-        const duite_law *law = variadic ? kernel->variadic_law : kernel->law[i];
-        duite_mode mode = variadic ? kernel->variadic : kernel->access[i];
+    const size_t n = data_modes_listed(kernel);
+    for (size_t i = 0; i <= n; i++) {
+        bool variadic = i == n;
+        const duite_law *law = variadic ? kernel->variadic_law : data_law_named(kernel, i);
+        duite_mode mode = variadic ? kernel->variadic : (duite_mode)kernel->access[i];
         bool known = law_is_listed(built_in, law) || law_is_listed(laws, law);
         if (!law || ((mode == DUITE_CW || mode == DUITE_CWP) && known))
             continue;
         char where[24] = "`variadic`";
         if (!variadic)
-            snprintf(where, sizeof where, "parameter %u", i);
+            snprintf(where, sizeof where, "parameter %zu", i);
         return base_error(DUITE_E_LAW, "kernel %s, %s: law %s %s", kernel->name, where,
                           law->name ? law->name : "without a name",
                           known ? "for a parameter that is not cw or cwp"
@@ -239,7 +240,8 @@ uint64_t data_laws_hash(const duite_law *const *laws, uint64_t hash)
 
 uint64_t data_law_hash_kernel(const duite_kernel *kernel, uint64_t hash)
 {
-    for (unsigned i = 0; i < DUITE_MAX_ACCESS; i++)
-        hash = law_hash(kernel->law[i], hash);
+    const size_t n = data_modes_listed(kernel);
+    for (size_t i = 0; i < n; i++)
+        hash = law_hash(data_law_named(kernel, i), hash);
     return law_hash(kernel->variadic_law, hash);
 }

@@ -25,8 +25,17 @@ const char *data_type_name(duite_type type);
 /* The mode of parameter i of a kernel; DUITE_NONE: it has none. */
 static inline duite_mode data_mode_of(const duite_kernel *kernel, size_t i)
 {
-    duite_mode mode = i < DUITE_MAX_ACCESS ? kernel->access[i] : DUITE_NONE;
-    return mode != DUITE_NONE ? mode : kernel->variadic;
+    const uint8_t mode = i < DUITE_MAX_ACCESS ? kernel->access[i] : DUITE_NONE;
+    return mode != DUITE_NONE ? (duite_mode)mode : kernel->variadic;
+}
+
+/* The modes that a kernel lists. */
+static inline size_t data_modes_listed(const duite_kernel *kernel)
+{
+    size_t n = 0;
+    while (n < DUITE_MAX_ACCESS && kernel->access[n] != DUITE_NONE)
+        n++;
+    return n;
 }
 
 /* ---- Laws ---- */
@@ -38,6 +47,12 @@ static inline duite_mode data_mode_of(const duite_kernel *kernel, size_t i)
  * ones. `laws` NULL: none are listed. Error: DUITE_E_LAW. */
 int data_laws_check(const duite_law *const *laws);
 
+/* The law that the kernel names for parameter i, which has a mode; NULL: none. */
+static inline const duite_law *data_law_named(const duite_kernel *kernel, size_t i)
+{
+    return kernel->law ? kernel->law[i] : NULL;
+}
+
 /* Checks that the kernel names laws only for cw and cwp parameters, each built in or listed. Its
  * modes were checked before. Error: DUITE_E_LAW. */
 int data_law_check_kernel(const duite_kernel *kernel, const duite_law *const *laws);
@@ -46,7 +61,7 @@ int data_law_check_kernel(const duite_kernel *kernel, const duite_law *const *la
 static inline const duite_law *data_law_of(const duite_kernel *kernel, size_t i)
 {
     const bool listed = i < DUITE_MAX_ACCESS && kernel->access[i] != DUITE_NONE;
-    const duite_law *law = listed ? kernel->law[i] : kernel->variadic_law;
+    const duite_law *law = listed ? data_law_named(kernel, i) : kernel->variadic_law;
     return law ? law : &duite_sum;
 }
 

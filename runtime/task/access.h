@@ -19,7 +19,7 @@ ACCESS_INLINE duite_mode access_mode(const struct task_fixed *fixed, size_t i,
                                      enum access_kernels kernels)
 {
     return kernels == ACCESS_ANY ? task_immediate(task_mode_of(fixed, i))
-                                 : fixed->kernel->access[i];
+                                 : (duite_mode)fixed->kernel->access[i];
 }
 
 /* How a fork looks for its objects. */

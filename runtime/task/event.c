@@ -218,6 +218,30 @@ int duite_await_mpi(const duite_call *call, int n, MPI_Request *requests)
     return DUITE_OK;
 }
 
+/* MPI's table of handles, too, is for one thread at a time. */
+int duite_await_fortran(const duite_call *call, int n, MPI_Fint *requests)
+{
+    struct comm_guests *guests = &call->own->graph->guests;
+    const bool holds = task_holds_mpi(call->own);
+    MPI_Request *list;
+    if (n <= 0 || !requests)
+        return duite_await_mpi(call, n, NULL);
+    if (!(list = base_alloc((size_t)n * sizeof *list)))
+        return base_no_memory("requests of MPI");
+    if (!holds)
+        comm_guests_hold(guests, call->own);
+    for (int i = 0; i < n; i++)
+        list[i] = MPI_Request_f2c(requests[i]);
+    const MPI_Fint none = MPI_Request_c2f(MPI_REQUEST_NULL);
+    if (!holds)
+        comm_guests_let_go(guests);
+    const int code = duite_await_mpi(call, n, list);
+    base_free(list);
+    for (int i = 0; i < n && !code; i++)
+        requests[i] = none;
+    return code;
+}
+
 void task_guest_over(void *context, struct worker *worker, struct comm_guest *guest)
 {
     struct task_graph *graph = context;

@@ -212,7 +212,7 @@ static inline void task_fork_call_init(struct task_fork_call *call, struct task_
 /* The mode of parameter i, as data_mode_of. */
 static inline duite_mode task_mode_of(const struct task_fixed *fixed, size_t i)
 {
-    return i < fixed->n ? fixed->kernel->access[i] : fixed->kernel->variadic;
+    return i < fixed->n ? (duite_mode)fixed->kernel->access[i] : fixed->kernel->variadic;
 }
 
 /* True if arguments and number of objects are right. */

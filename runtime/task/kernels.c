@@ -8,6 +8,8 @@
 
 #include <string.h>
 
+_Static_assert(sizeof(duite_kernel) <= 128, "a kernel takes two cache lines");
+
 /* A replicated kernel leaves the same values on all ranks, and has no other effect. */
 static int kernel_check_replicated(const duite_kernel *kernel)
 {
@@ -15,7 +17,7 @@ static int kernel_check_replicated(const duite_kernel *kernel)
                       : kernel->events     ? "has events, which would complete once for each rank"
                                            : NULL;
     for (uint32_t i = 0; i <= DUITE_MAX_ACCESS && !why; i++) {
-        duite_mode mode = i < DUITE_MAX_ACCESS ? kernel->access[i] : kernel->variadic;
+        duite_mode mode = i < DUITE_MAX_ACCESS ? (duite_mode)kernel->access[i] : kernel->variadic;
         if (mode == DUITE_CW)
             why = "accumulates (cw), which would count once for each rank";
         else if (task_postponed(mode))
@@ -39,8 +41,8 @@ static int kernel_check(const duite_kernel *kernel, uint32_t index, struct task_
                                         !kernel->events};
     bool contributes = false;
     for (uint32_t i = 0; i < DUITE_MAX_ACCESS; i++) {
-        duite_mode mode = kernel->access[i];
-        if ((int)mode < DUITE_NONE || mode > DUITE_CWP)
+        duite_mode mode = (duite_mode)kernel->access[i];
+        if (mode > DUITE_CWP)
             return base_error(DUITE_E_KERNEL, "kernel %s: parameter %u has no such mode: %d",
                               kernel->name, i, (int)mode);
         if (mode != DUITE_NONE && i != fixed->n)
@@ -137,13 +139,13 @@ static const duite_law **laws_with(const duite_law *const *laws, const duite_ker
     size_t n = 0;
     while (laws && laws[n])
         n++;
-    const size_t more = kernel ? DUITE_MAX_ACCESS + 1 : 0;
+    const size_t listed = kernel ? data_modes_listed(kernel) : 0, more = kernel ? listed + 1 : 0;
     const duite_law **all = base_alloc((n + more + 1) * sizeof *all);
     if (!all)
         return NULL;
     memcpy(all, laws ? (const void *)laws : all, n * sizeof *all);
     for (size_t i = 0; i < more; i++) {
-        const duite_law *law = i < DUITE_MAX_ACCESS ? kernel->law[i] : kernel->variadic_law;
+        const duite_law *law = i < listed ? data_law_named(kernel, i) : kernel->variadic_law;
         size_t k = 0;
         while (k < n && all[k] != law)
             k++;

@@ -20,13 +20,13 @@ enum {
  * first one that it reads; TASK_NOBODY if it only accumulates. Postponed modes count like those
  * without delay. `access` has DUITE_MAX_ACCESS modes or is ended by DUITE_NONE; further parameters
  * have the mode `variadic`. */
-static inline uint32_t task_owner(const duite_mode *access, duite_mode variadic, size_t n)
+static inline uint32_t task_owner(const uint8_t *access, duite_mode variadic, size_t n)
 {
     uint32_t first_read = TASK_NOBODY;
     bool ended = false;
     for (uint32_t i = 0; i < n && i <= DUITE_MAX_ACCESS; i++) { /* further ones are like the last */
         ended |= i == DUITE_MAX_ACCESS || access[i] == DUITE_NONE;
-        switch (ended ? variadic : access[i]) {
+        switch (ended ? variadic : (duite_mode)access[i]) {
         case DUITE_W:
         case DUITE_WP:
         case DUITE_RW:

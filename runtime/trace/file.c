@@ -80,7 +80,7 @@ static bool file_write_kernels(struct trace *trace)
         const duite_kernel *from = kernels[i];
         struct trace_kernel *to = &kernel[i];
         while (to->n_modes < DUITE_MAX_ACCESS && from->access[to->n_modes]) {
-            to->mode[to->n_modes] = (uint8_t)from->access[to->n_modes];
+            to->mode[to->n_modes] = from->access[to->n_modes];
             to->n_modes++;
         }
         to->variadic = (uint8_t)from->variadic;

@@ -85,8 +85,8 @@ program main
 
     kernel(FILL) = duite_kernel_of('fill', fill_block, [DUITE_W], c_sizeof(fill_args(0, 0)))
     kernel(DOT) = duite_kernel_of('dot', dot_blocks, [DUITE_R, DUITE_R, DUITE_CW])
-    kernel(LARGEST) = duite_kernel_of('largest', largest_of, [DUITE_R, DUITE_CW])
-    kernel(LARGEST)%law(2) = duite_law_find('max' // c_null_char)
+    kernel(LARGEST) = duite_kernel_of('largest', largest_of, [DUITE_R, DUITE_CW], &
+                                      laws=[c_null_ptr, duite_law_find('max' // c_null_char)])
     if (duite_start(rt, kernel) /= DUITE_OK) call give_up()
 
     code = duite_new(rt, DUITE_F64, 1_c_size_t, total)

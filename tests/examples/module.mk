@@ -19,4 +19,4 @@ tests_examples_adopt_LDFLAGS = $(AM_LDFLAGS) -no-install
 tests_examples_adopt_LDADD = libduite.la
 tests_examples_ring_LDFLAGS = $(AM_LDFLAGS) -no-install
 tests_examples_ring_LDADD = libduite.la $(MPI_LIBS)
-EXTRA_DIST += tests/examples/dot.cpp tests/examples/dot.f90 tests/examples/stencil.cpp tests/runtime/front.cpp
+EXTRA_DIST += tests/examples/dot.cpp tests/examples/dot.f90 tests/examples/ring.f90 tests/examples/stencil.cpp tests/runtime/front.cpp

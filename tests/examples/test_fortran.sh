@@ -19,6 +19,16 @@ esac
 module() { (cd "$scratch" && ${FC:-gfortran} $strict -O1 -c "$(pc --variable=fortran)"); }
 # shellcheck disable=SC2046,SC2086 # lists of flags
 program() { (cd "$scratch" && ${FC:-gfortran} $strict -O1 -o "$1" "$2" duite.o $(pc --libs)); }
+# The compiler of the MPI that duite was built with, where there is one.
+case $(sed -n 's/^mpi=//p' runtime/duite.pc) in
+    MPICH) mpifort=mpifort.mpich ;;
+    *) mpifort=mpifort.openmpi ;;
+esac
+command -v $mpifort > "$scratch/output" || mpifort=mpifort
+# shellcheck disable=SC2046,SC2086
+program_of_mpi() {
+    (cd "$scratch" && OMPI_FC=${FC:-gfortran} MPICH_FC=${FC:-gfortran} $mpifort $strict -O1 -o "$1" "$2" duite.o $(pc --libs))
+}
 checking() { (DUITE_CHECK=accesses; export DUITE_CHECK; "$@"); }
 
 # The enumerators of duite.h, and the structures of the module with their components: C and Fortran print values, sizes and offsets.
@@ -67,6 +77,13 @@ ok "an example compiles with it" program dot "$srcdir/tests/examples/dot.f90"
 ok "it runs" limited "$scratch/dot"
 ok "it runs on 3 ranks" ranks 3 "$scratch/dot"
 ok "it runs in checking mode" checking limited "$scratch/dot"
+if command -v $mpifort > "$scratch/output"; then
+    ok "one that hands requests of mpi_f08 over compiles" program_of_mpi ring "$srcdir/tests/examples/ring.f90"
+    ok "it runs by itself" limited "$scratch/ring"
+    ok "on 3 ranks" ranks 3 "$scratch/ring"
+else
+    skip "one that hands requests of mpi_f08 over compiles" "no mpifort"
+fi
 ok "constants of duite.h and structures of the module are found" list_both
 ok "their values, sizes and offsets in C" print_c
 ok "and in Fortran" print_fortran

@@ -69,10 +69,10 @@ static void different_laws(void)
     duite_options options = misuse_options(MPI_COMM_WORLD);
     duite *rt;
 
-    kernel.law[0] = last ? &duite_min : &duite_max;
+    kernel.law = DUITE_LAWS(last ? &duite_min : &duite_max);
     tap_case(start_with((const duite_kernel *[]){&kernel, NULL}) == DUITE_E_DIFFERENT,
              "another law of a kernel");
-    kernel.law[0] = last ? NULL : &duite_sum;
+    kernel.law = DUITE_LAWS(last ? NULL : &duite_sum);
     tap_case(start_with((const duite_kernel *[]){&kernel, NULL}) == DUITE_OK, "no law is a sum");
     options.laws = (const duite_law *[]){last ? NULL : &law, NULL};
     tap_case(duite_start(&rt, &options) == DUITE_E_DIFFERENT, "a law less");

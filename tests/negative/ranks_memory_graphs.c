@@ -59,7 +59,7 @@ static const duite_law LAW = {.name = "thrice", .type = DUITE_I32, .combine = ad
 static const duite_kernel DIGIT = {
     .name = "digit", .body = digit, .access = {DUITE_RW}, .args_size = sizeof(int32_t)};
 static const duite_kernel ONE = {
-    .name = "one", .body = one, .access = {DUITE_CW, DUITE_R}, .law = {&LAW}};
+    .name = "one", .body = one, .access = {DUITE_CW, DUITE_R}, .law = DUITE_LAWS(&LAW)};
 static const duite_kernel SHRINK = {.name = "shrink", .body = shrink, .access = {DUITE_RW}};
 static const duite_kernel LOOK = {.name = "look", .body = copy, .access = {DUITE_R, DUITE_W}};
 static const duite_kernel DOWN = {.name = "down", .body = count_down, .access = {DUITE_RW}};

@@ -19,8 +19,10 @@ static int body(const duite_call *call)
     return 0;
 }
 
-static const duite_kernel BY_DOUBLES = {
-    .name = "by doubles", .body = body, .access = {DUITE_R, DUITE_CW}, .law = {[1] = &DOUBLES}};
+static const duite_kernel BY_DOUBLES = {.name = "by doubles",
+                                        .body = body,
+                                        .access = {DUITE_R, DUITE_CW},
+                                        .law = DUITE_LAWS([1] = &DOUBLES)};
 static const duite_kernel BY_BYTES = {
     .name = "by bytes", .body = body, .variadic = DUITE_CW, .variadic_law = &BYTES};
 static const duite_kernel BY_SUM = {.name = "by sum", .body = body, .access = {DUITE_CW}};
@@ -70,10 +72,11 @@ UNIT_TEST(no_cw)
     duite_kernel kernel = BY_SUM;
 
     kernel.access[0] = DUITE_RW;
-    kernel.law[0] = &duite_max;
+    kernel.law = DUITE_LAWS(&duite_max);
     refuses(kernel, NULL, "parameter 0: law max for a parameter that is not cw");
     kernel = BY_SUM;
-    kernel.law[1] = &duite_min;
+    kernel.access[1] = DUITE_R;
+    kernel.law = DUITE_LAWS([1] = &duite_min);
     refuses(kernel, NULL, "parameter 1: law min for a parameter that is not cw");
     kernel = BY_SUM;
     kernel.variadic_law = &duite_sum;

@@ -60,9 +60,11 @@ static int child(const duite_call *call)
 }
 
 static const duite_kernel LEAST = {
-    .name = "least", .body = child, .access = {DUITE_CW}, .law = {&duite_min}};
-static const duite_kernel LEAST_POSTPONED = {
-    .name = "least, postponed", .body = child, .access = {DUITE_CWP}, .law = {&duite_min}};
+    .name = "least", .body = child, .access = {DUITE_CW}, .law = DUITE_LAWS(&duite_min)};
+static const duite_kernel LEAST_POSTPONED = {.name = "least, postponed",
+                                             .body = child,
+                                             .access = {DUITE_CWP},
+                                             .law = DUITE_LAWS(&duite_min)};
 static const duite_kernel TWO = {.name = "two", .body = child, .access = {DUITE_R, DUITE_RW}};
 
 static int fork_made(const duite_call *call, const duite_kernel *kernel, enum deed deed)

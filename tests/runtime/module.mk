@@ -47,6 +47,7 @@ tests_runtime_test_window_SOURCES = tests/runtime/test_window.c tests/negative/m
 tests_runtime_test_window_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_environment_SOURCES = tests/runtime/test_environment.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_environment_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_check_SOURCES = tests/runtime/test_check.c tests/support/said.c tests/support/said.h
 tests_runtime_test_check_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_nested_tasks_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_busy_LDADD = $(DUITE_TEST_LIBS)

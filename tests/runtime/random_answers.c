@@ -42,42 +42,6 @@ static void acquire(struct prog_cell *cell, const struct prog_op *op, struct pro
         cell->writes++;
 }
 
-/* The parts take the value, or the poison; and give it back. */
-static void split(struct prog_frame *main, const struct prog_op *op)
-{
-    struct prog_cell *whole = prog_cell_settle(&main->cells[op->object]);
-    const unsigned char *from = whole->value;
-
-    for (unsigned i = 0; i < op->n; i++) {
-        struct prog_cell *part = &main->cells[op->objects[i]];
-
-        prog_cell_start(part, &main->shape[op->objects[i]]);
-        memcpy(part->value, from, prog_cell_bytes(part));
-        part->poison = whole->poison;
-        part->writes++;
-        from += prog_cell_bytes(part);
-    }
-    prog_cell_end(whole);
-}
-
-static void join(struct prog_frame *main, const struct prog_op *op)
-{
-    struct prog_cell *whole = &main->cells[op->object];
-
-    prog_cell_start(whole, &main->shape[op->object]);
-    unsigned char *to = whole->value;
-
-    for (unsigned i = 0; i < op->n; i++) {
-        struct prog_cell *part = prog_cell_settle(&main->cells[op->objects[i]]);
-
-        memcpy(to, part->value, prog_cell_bytes(part));
-        to += prog_cell_bytes(part);
-        whole->poison = prog_first_failure(whole->poison, part->poison);
-        prog_cell_end(part);
-    }
-    whole->writes++;
-}
-
 /* The first failure of some objects. */
 static void wait_for(struct prog_frame *main, const struct prog_op *op, struct prog_expect *expect)
 {
@@ -129,10 +93,10 @@ static void operation(struct prog_machine *m, const struct prog_op *op, struct p
         acquire(cell, op, expect);
         break;
     case PROG_SPLIT:
-        split(main, op);
+        prog_interpret_split(main, op);
         break;
     case PROG_JOIN:
-        join(main, op);
+        prog_interpret_join(main, op);
         break;
     case PROG_SET:
         prog_interpret_set(cell, op);

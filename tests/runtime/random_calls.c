@@ -64,6 +64,19 @@ int prog_call_fork(struct run_scope *scope, const struct prog_op *op)
     return code;
 }
 
+int prog_call_split(struct run_scope *scope, const struct prog_op *op)
+{
+    const duite_type type = scope->shape[op->object].type;
+    duite_object part[PROG_MAX_PARTS];
+    const int code = duite_split(scope->rt, scope->name[op->object], op->n, op->part, part);
+
+    for (unsigned i = 0; i < op->n; i++) {
+        scope->name[op->objects[i]] = part[i];
+        scope->shape[op->objects[i]] = (struct prog_object){type, op->part[i], 0, -1, 0};
+    }
+    return code;
+}
+
 /* ---- Bodies ---- */
 
 static uint64_t get_count(struct run_scope *scope, const struct prog_op *op, uint64_t hash)
@@ -127,6 +140,10 @@ static uint64_t make_call(struct run_scope *scope, const struct prog_op *op, uin
         code = prog_call_set(scope, op);
     else if (op->kind == PROG_FORK)
         code = prog_call_fork(scope, op);
+    else if (op->kind == PROG_SPLIT)
+        code = prog_call_split(scope, op);
+    else if (op->kind == PROG_JOIN)
+        code = duite_join(scope->rt, scope->name[op->object]);
     else if (op->kind == PROG_CONTRIBUTE)
         code = contribute(scope, op);
     else if (op->kind == PROG_WRONG)

@@ -62,6 +62,7 @@ static duite_kernel *make_kernel(struct maker *m)
         return NULL;
     snprintf(prog->name[k], sizeof prog->name[k], "kernel %zu", k);
     kernel->name = prog->name[k];
+    kernel->law = prog->law[k];
     kernel->body = prog_body;
     kernel->args_size = sizeof(struct prog_args) - make_below(m, PROG_ARGS_PADDING);
     prog->n_kernels++;
@@ -84,8 +85,8 @@ void make_kernels(struct maker *m)
         const unsigned n = k < 2 ? 1 : make_below(m, 7);
 
         for (unsigned i = 0; i < n; i++) {
-            kernel->access[i] = k == 0 ? DUITE_CW : k == 1 ? DUITE_RW : draw_mode(m);
-            kernel->law[i] = draw_any_law(m, kernel->access[i]);
+            kernel->access[i] = (uint8_t)(k == 0 ? DUITE_CW : k == 1 ? DUITE_RW : draw_mode(m));
+            m->prog->law[k][i] = draw_any_law(m, (duite_mode)kernel->access[i]);
         }
         if (k >= 2 && make_one_in(m, 3))
             kernel->variadic = draw_mode(m);
@@ -196,17 +197,23 @@ static const duite_law *draw_law(struct maker *m, unsigned place, duite_mode mod
     return prog_law_given((enum prog_law)make_below(m, PROG_WEAVE));
 }
 
-/* Makes the kernel with these modes and laws, or finds it. */
-static int find_kernel(struct maker *m, const duite_kernel *like)
+/* The modes and laws of a kernel. */
+struct modes {
+    uint8_t access[DUITE_MAX_ACCESS];
+    const duite_law *law[DUITE_MAX_ACCESS];
+};
+
+/* Makes the kernel with these, or finds it. */
+static int find_kernel(struct maker *m, const struct modes *like)
 {
-    const struct prog *prog = m->prog;
+    struct prog *prog = m->prog;
 
     for (size_t k = 0; k < prog->n_kernels; k++) {
         const duite_kernel *kernel = &prog->kernel[k];
 
         if (!kernel->variadic && !kernel->replicated &&
             !memcmp(kernel->access, like->access, sizeof like->access) &&
-            !memcmp(kernel->law, like->law, sizeof like->law))
+            !memcmp(prog->law[k], like->law, sizeof like->law))
             return (int)k;
     }
     duite_kernel *kernel = make_kernel(m);
@@ -214,7 +221,7 @@ static int find_kernel(struct maker *m, const duite_kernel *like)
     if (!kernel)
         return -1;
     memcpy(kernel->access, like->access, sizeof like->access);
-    memcpy(kernel->law, like->law, sizeof like->law);
+    memcpy(prog->law[prog->n_kernels - 1], like->law, sizeof like->law);
     return (int)prog->n_kernels - 1;
 }
 
@@ -222,7 +229,7 @@ int make_fitting(struct maker *m, struct prog_op *draft, duite_mode first, int o
 {
     struct make_scope *scope = m->scope;
     const unsigned n = first ? 1 : make_below(m, 4);
-    duite_kernel like = {0};
+    struct modes like = {0};
 
     for (unsigned tries = 0; scope->n_live && draft->n < n && tries < 12; tries++) {
         const unsigned place = object >= 0 ? (unsigned)object : make_draw_object(m);
@@ -233,7 +240,7 @@ int make_fitting(struct maker *m, struct prog_op *draft, duite_mode first, int o
             continue;
         const duite_mode mode = first ? first : draw_allowed(m, place);
 
-        like.access[draft->n] = mode;
+        like.access[draft->n] = (uint8_t)mode;
         like.law[draft->n] = draw_law(m, place, mode);
         draft->objects[draft->n++] = place;
     }

@@ -42,6 +42,45 @@ void prog_interpret_set(struct prog_cell *cell, const struct prog_op *op)
         prog_values(cell->type, cell->count, op->seed, cell->value);
 }
 
+void prog_interpret_split(struct prog_frame *frame, const struct prog_op *op)
+{
+    struct prog_cell *whole = prog_cell_settle(frame->object[op->object]);
+    const unsigned char *from = whole->value;
+
+    for (unsigned i = 0; i < op->n; i++) {
+        const unsigned place = op->objects[i];
+        struct prog_cell *part = frame->object[place] = &frame->cells[place];
+
+        frame->shape[place] = (struct prog_object){whole->type, op->part[i], 0, -1, 0};
+        prog_cell_start(part, &frame->shape[place]);
+        memcpy(part->value, from, prog_cell_bytes(part));
+        part->poison = whole->poison;
+        part->writes++;
+        from += prog_cell_bytes(part);
+    }
+    prog_cell_end(whole);
+    frame->split[frame->n_split++] = op;
+}
+
+void prog_interpret_join(struct prog_frame *frame, const struct prog_op *op)
+{
+    struct prog_cell *whole = frame->object[op->object];
+
+    prog_cell_start(whole, &frame->shape[op->object]);
+    unsigned char *to = whole->value;
+
+    for (unsigned i = 0; i < op->n; i++) {
+        struct prog_cell *part = prog_cell_settle(frame->object[op->objects[i]]);
+
+        memcpy(to, part->value, prog_cell_bytes(part));
+        to += prog_cell_bytes(part);
+        whole->poison = prog_first_failure(whole->poison, part->poison);
+        prog_cell_end(part);
+    }
+    whole->writes++;
+    frame->n_split--; /* the last one is joined first */
+}
+
 static void contribute(struct prog_frame *frame, const struct prog_op *op)
 {
     struct prog_cell *cell = frame->object[op->object];
@@ -61,6 +100,10 @@ static void end_segment(struct prog_machine *m, struct prog_frame *frame)
             prog_interpret_fork(m, frame, op, 0);
         else if (op->kind == PROG_SET)
             prog_interpret_set(frame->object[op->object], op);
+        else if (op->kind == PROG_SPLIT)
+            prog_interpret_split(frame, op);
+        else if (op->kind == PROG_JOIN)
+            prog_interpret_join(frame, op);
         else if (op->kind == PROG_CONTRIBUTE)
             contribute(frame, op);
     }
@@ -221,6 +264,8 @@ static struct prog_failure run_task(struct prog_machine *m, struct prog_frame *f
     if (code)
         failure = fail(m, frame->above, code);
     end_segment(m, frame);
+    while (frame->n_split)
+        prog_interpret_join(frame, frame->split[frame->n_split - 1]);
     return failure;
 }
 

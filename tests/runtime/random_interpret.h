@@ -17,6 +17,8 @@ struct prog_frame {
     unsigned writes[PROG_MAX_PARAMS]; /* of what it was given, before it */
     struct prog_failure failed;       /* of its descendants since its last wait */
     int refused;                      /* the first refused call since the last get or wait */
+    unsigned n_split;                 /* what a body has split and not joined, oldest first */
+    const struct prog_op *split[PROG_MAX_TABLE];
 };
 
 /* A graph: its recorded operations, with the seeds and failures of now, and the object that stands
@@ -44,6 +46,9 @@ void prog_interpret_fork(struct prog_machine *m, struct prog_frame *above, const
                          uint64_t round);
 void prog_interpret_set(struct prog_cell *cell, const struct prog_op *op);
 int prog_interpret_refuse(struct prog_frame *frame, int code);
+/* The parts take the value, or the poison; and give it back. */
+void prog_interpret_split(struct prog_frame *frame, const struct prog_op *op);
+void prog_interpret_join(struct prog_frame *frame, const struct prog_op *op);
 
 /* The first call refused since the last get or wait, which tells it. */
 int prog_interpret_told(struct prog_frame *frame);

@@ -40,7 +40,7 @@ duite_mode prog_mode(const duite_kernel *kernel, size_t i)
 {
     for (size_t k = 0; k < DUITE_MAX_ACCESS && kernel->access[k] != DUITE_NONE; k++)
         if (k == i)
-            return kernel->access[k];
+            return (duite_mode)kernel->access[k];
     return kernel->variadic;
 }
 

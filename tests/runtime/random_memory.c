@@ -1,4 +1,4 @@
-/* Memory of the program's own, its turns on objects, and their parts. */
+/* Memory of the program's own, and its turns on objects. */
 
 #include "tests/runtime/random_run.h"
 
@@ -65,20 +65,6 @@ void prog_call_acquire(struct run *run, const struct prog_op *op, const struct p
     if (turn->data && answer->bytes &&
         memcmp(turn->data, answer->bytes, answer->count * prog_size(object->type)) != 0)
         prog_found(run, "object %u has other values in its turn", op->object);
-}
-
-void prog_call_split(struct run *run, const struct prog_op *op)
-{
-    struct run_scope *main = &run->main;
-    duite_object part[PROG_MAX_PARAMS];
-    size_t counts[PROG_MAX_PARAMS];
-
-    for (unsigned i = 0; i < op->n; i++)
-        counts[i] = main->shape[op->objects[i]].count;
-    prog_expect_code(run, "split",
-                     duite_split(main->rt, main->name[op->object], op->n, counts, part), DUITE_OK);
-    for (unsigned i = 0; i < op->n; i++)
-        main->name[op->objects[i]] = part[i];
 }
 
 /* A turn that was left out has no release. */

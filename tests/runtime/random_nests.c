@@ -1,4 +1,5 @@
-/* Bodies that make calls: they fork, make objects, set, get and wait, as their rights allow. */
+/* Bodies that make calls: they fork, make objects, split, set, get and wait, as their rights
+ * allow. */
 
 #include "tests/runtime/random_make.h"
 
@@ -51,7 +52,9 @@ static void make_calls(struct maker *m)
     while (*m->n_ops < max) {
         const unsigned choice = make_below(m, 10);
 
-        if (choice < 2 && scope->n < PROG_MAX_PARAMS + 9)
+        if (make_has(m, PROG_MEMORY) && scope->n_live && make_one_in(m, 5))
+            make_one_in(m, 3) ? make_join(m) : make_split(m);
+        else if (choice < 2 && scope->n < PROG_MAX_PARAMS + 9)
             make_new(m);
         else if (choice < 8 && scope->n_live && scope->depth < MAX_DEPTH)
             make_fork(m);
@@ -108,6 +111,7 @@ void make_body(struct maker *m, struct prog_op *draft, unsigned depth, int asks)
         scope.depth = depth;
     enter(&scope, m->scope, kernel, draft);
     inner.bodies++;
+    inner.n_splits = 0;
     inner.scope = &scope;
     inner.ops = ops;
     inner.n_ops = &n;

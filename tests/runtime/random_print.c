@@ -67,7 +67,10 @@ static void print_fork(FILE *file, const struct prog *prog, const struct prog_op
 
 static void print_object(FILE *file, const struct prog_op *op)
 {
-    static const char *const TYPES[] = {"", "byte", "i32", "i64", "f32", "f64"};
+    static const char *const TYPES[] = {
+        [DUITE_BYTE] = "byte", [DUITE_I32] = "i32", [DUITE_I64] = "i64",   [DUITE_F32] = "f32",
+        [DUITE_F64] = "f64",   [DUITE_U16] = "u16", [DUITE_CF64] = "cf64",
+    };
 
     fprintf(file, " object %u", op->object);
     if (op->kind == PROG_NEW)

@@ -17,6 +17,7 @@
 
 enum { PROG_MAX_PARAMS = 32, PROG_MAX_KERNELS = 40, PROG_ARGS_PADDING = 64 };
 enum { PROG_MAX_TABLE = 48 }; /* objects of the main program, or of a body */
+enum { PROG_MAX_PARTS = 3 };
 
 /* Most features come by chance; all may be forced to be there or not. */
 enum prog_feature {
@@ -27,7 +28,8 @@ enum prog_feature {
     PROG_FAILURES, /* bodies fail */
     PROG_REFUSALS, /* forks that are refused */
     PROG_LARGE,    /* large objects */
-    PROG_MEMORY,   /* adopted memory, turns of the main program, sets of one rank, parts */
+    PROG_MEMORY,   /* adopted memory, turns of the main program, sets of one rank; parts, in bodies,
+                      too */
     PROG_ADDS,     /* kernels are added */
     PROG_N_FEATURES
 };
@@ -57,7 +59,7 @@ enum prog_kind {
     PROG_ACQUIRE, /* by `mode`; what is written stands there at the release */
     PROG_RELEASE,
     PROG_SPLIT, /* into objects[] */
-    PROG_JOIN,  /* of these */
+    PROG_JOIN,  /* of these; what a body has split and not joined is joined when it ends */
     PROG_GRAPH, /* records what follows it: `n` operations of the next two kinds */
     PROG_GRAPH_FORK,
     PROG_GRAPH_SET,
@@ -85,8 +87,9 @@ struct prog_op {
     int rank;             /* fork, get_at, set; new: that of its adopted memory; -1: none named */
     duite_mode mode;      /* acquire */
     duite_type type;      /* new */
-    size_t count;   /* new: elements; set: of an object whose size changes; graphs: see there */
-    size_t max;     /* new: elements at most, 0: the size is fixed */
+    size_t count; /* new: elements; set: of an object whose size changes; graphs: see there */
+    size_t max;   /* new: elements at most, 0: the size is fixed */
+    size_t part[PROG_MAX_PARTS]; /* split: the elements of each */
     uint64_t seed;  /* set, acquire, adopted: of the values, 0: zeros; fork: of the body */
     unsigned pause; /* fork: how the body wastes time */
     int fails;      /* fork: the code the body returns */
@@ -127,6 +130,7 @@ struct prog {
     size_t n_kernels, n_listed, n_ops, n_inner, n_objects, n_forks, n_graphs;
     char name[PROG_MAX_KERNELS][16];
     duite_kernel kernel[PROG_MAX_KERNELS];
+    const duite_law *law[PROG_MAX_KERNELS][DUITE_MAX_ACCESS];
     const duite_kernel *list[PROG_MAX_KERNELS + 1]; /* without those that are added */
     struct prog_op *ops, *inner;                    /* of the main program; of all bodies */
     struct prog_object objects[PROG_MAX_TABLE];

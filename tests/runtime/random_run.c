@@ -182,7 +182,7 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
         break;
     case PROG_SPLIT:
         ask_home(run, op->object);
-        prog_call_split(run, op);
+        prog_expect_code(run, "split", prog_call_split(&run->main, op), DUITE_OK);
         for (unsigned i = 0; i < op->n; i++)
             ask_home(run, op->objects[i]);
         break;

@@ -66,13 +66,13 @@ void prog_expect_code(struct run *run, const char *call, int code, int expected)
 int prog_call_new(struct run_scope *scope, const struct prog_op *op);
 int prog_call_set(struct run_scope *scope, const struct prog_op *op);
 int prog_call_fork(struct run_scope *scope, const struct prog_op *op);
+int prog_call_split(struct run_scope *scope, const struct prog_op *op);
 
 /* Adopted memory and turns (random_memory.c). `wait`: a wait has returned, so what was freed was
  * given back; else the runtime is stopped, and everything was. */
 int prog_call_adopt(struct run *run, const struct prog_op *op);
 void prog_call_acquire(struct run *run, const struct prog_op *op, const struct prog_expect *answer);
 void prog_call_release(struct run *run, const struct prog_op *op);
-void prog_call_split(struct run *run, const struct prog_op *op);
 void prog_check_memory(struct run *run, int wait);
 
 /* An operation on a graph. */

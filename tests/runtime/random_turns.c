@@ -1,5 +1,5 @@
-/* The maker's turns of the main program on objects, and their parts, which are joined last first.
- */
+/* The maker's turns of the main program on objects; and parts, also in bodies, which are joined
+ * last first. */
 #include "tests/runtime/random_make.h"
 
 #include <string.h>
@@ -47,17 +47,18 @@ static void make_dead(struct make_scope *scope, unsigned object)
             (--scope->n_live - place) * sizeof *scope->live);
 }
 
-/* Two or three parts; the last one gets what the others leave. */
+/* Two or three parts of an object that may be written as one likes; the last one gets what the
+ * others leave. */
 void make_split(struct maker *m)
 {
     struct make_scope *scope = m->scope;
     const unsigned whole = make_draw_object(m);
     const struct prog_object *object = &scope->object[whole];
-    const unsigned n = object->count > 2 ? 2 + make_below(m, 2) : 2;
+    const unsigned n = object->count > 2 ? 2 + make_below(m, PROG_MAX_PARTS - 1) : 2;
     size_t left = object->count;
 
     if (object->max || left < 2 || m->n_splits == MAX_SPLITS || scope->n + n > PROG_MAX_TABLE ||
-        scope->n_live + n > MAX_LIVE)
+        scope->n_live + n > MAX_LIVE || scope->right[whole] != DUITE_RWP)
         return;
     m->split[m->n_splits++] = *m->n_ops;
     struct prog_op *op = make_push(m, PROG_SPLIT, whole);
@@ -68,6 +69,7 @@ void make_split(struct maker *m)
         const size_t count = after ? 1 + make_below(m, (unsigned)(left - after)) : left;
 
         left -= count;
+        op->part[op->n] = count;
         op->objects[op->n] = part;
         scope->object[part] = (struct prog_object){object->type, count, 0, -1, 0};
         scope->right[part] = DUITE_RWP;

@@ -31,7 +31,7 @@ static int digit(const duite_call *call)
 static const duite_kernel DIGIT = {.name = "digit",
                                    .body = digit,
                                    .access = {DUITE_CW},
-                                   .law = {&APPEND},
+                                   .law = DUITE_LAWS(&APPEND),
                                    .args_size = sizeof(int32_t)};
 
 static int increase(const duite_call *call)
@@ -113,11 +113,11 @@ static void refused(void)
     wrong.body = NULL;
     tap_case(is_told(duite_kernel_add(rt, &wrong), DUITE_E_KERNEL, "no body"), "no body");
     wrong.body = digit;
-    wrong.law[0] = &SAME_NAME;
+    wrong.law = DUITE_LAWS(&SAME_NAME);
     tap_case(is_told(duite_kernel_add(rt, &wrong), DUITE_E_LAW, "the name append"),
              "a law whose name is taken");
     wrong.access[0] = DUITE_RW;
-    wrong.law[0] = &APPEND;
+    wrong.law = DUITE_LAWS(&APPEND);
     tap_case(is_told(duite_kernel_add(rt, &wrong), DUITE_E_LAW, "not cw"), "a law without a sum");
     tap_case(duite_fork(rt, &wrong, &seven, 1, &object) == DUITE_E_KERNEL &&
                  duite_wait(rt) == DUITE_E_KERNEL,

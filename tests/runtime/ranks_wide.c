@@ -54,7 +54,7 @@ static int last_body(const duite_call *call)
 static const duite_kernel WIDE = {.name = "wide",
                                   .body = wide_body,
                                   .access = {READ_37, DUITE_RW, DUITE_CW, DUITE_CW},
-                                  .law = {[LARGEST] = &duite_max}};
+                                  .law = DUITE_LAWS([LARGEST] = &duite_max)};
 static const duite_kernel PLAIN = {
     .name = "plain", .body = plain_body, .access = {READ_37, DUITE_RW}};
 static const duite_kernel CLEAR = {.name = "clear", .body = clear_body, .access = {DUITE_W}};

@@ -1,6 +1,7 @@
 /* Checking mode finds what a body does beyond its declaration, and leaves honest programs as they
  * are. */
 
+#include "tests/support/said.h"
 #include "tests/support/unit.h"
 
 #include <duite.h>
@@ -325,6 +326,43 @@ UNIT_TEST(other_faults_go_to_the_handler_there_was)
     if (!sigsetjmp(out, 1)) {
         *nowhere = 1;
         ck_abort_msg("nothing happened after stop");
+    }
+}
+
+/* The program uses what it kept, and the handler before is called. */
+static void faults_with_a_sentence(const char *sentence)
+{
+    said_begin();
+    if (!sigsetjmp(out, 1)) {
+        *(volatile int32_t *)kept = 1;
+        ck_abort_msg("nothing happened");
+    }
+    ck_assert_int_eq(said_lines("duite: the program ", sentence), 1);
+    said_end();
+}
+
+/* Data of a turn, used by a body and by the program when it is over. */
+UNIT_TEST(released_pointers)
+{
+    signal(SIGSEGV, on_segv);
+    for (int mode = DUITE_R; mode <= DUITE_RW; mode++) {
+        duite_object mine;
+        void *data;
+        int32_t value[COUNT];
+
+        start(1);
+        ck_assert_int_eq(duite_new(rt, DUITE_I32, COUNT, &mine), DUITE_OK);
+        ck_assert_int_eq(duite_acquire(rt, mine, (duite_mode)mode, &data), DUITE_OK);
+        kept = data;
+        kept[COUNT - 1] = 5;
+        ck_assert_int_eq(duite_release(rt, mine), DUITE_OK);
+        ck_assert_int_eq(duite_get(rt, mine, value), DUITE_OK);
+        ck_assert_int_eq(value[COUNT - 1], mode == DUITE_R ? 0 : 5);
+        ck_assert_int_eq(run(&BODY, USE_KEPT, 0), DUITE_E_CHECK);
+        unit_says(duite_message(), "after duite_release");
+        faults_with_a_sentence("after duite_release");
+        duite_free(rt, mine);
+        stop();
     }
 }
 

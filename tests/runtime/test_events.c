@@ -300,19 +300,29 @@ UNIT_TEST(never_completed)
 
 static int32_t there; /* that goes to this process itself */
 
-/* Receives parameter 0, and a SENDER or this body itself sends it. */
+/* Receives parameter 0, and a SENDER or this body itself sends it, which may hand Fortran's handles
+ * over. */
+enum { AWAITS_SENDER, SENDS, SENDS_BY_HANDLES };
 static int receive(const duite_call *call)
 {
-    const int sends = *(const int *)call->args;
+    const int how = *(const int *)call->args, sends = how != AWAITS_SENDER;
     MPI_Request request[2];
+    MPI_Fint handle[2];
 
     there = 9;
     ck_assert_int_eq(duite_mpi_begin(call->rt), DUITE_OK);
     MPI_Irecv(call->param[0].data, 1, MPI_INT32_T, 0, 5, MPI_COMM_SELF, &request[0]);
     if (sends)
         MPI_Isend(&there, 1, MPI_INT32_T, 0, 5, MPI_COMM_SELF, &request[1]);
+    for (int i = 0; i < 2 && how == SENDS_BY_HANDLES; i++)
+        handle[i] = MPI_Request_c2f(request[i]);
     ck_assert_int_eq(duite_mpi_end(call->rt), DUITE_OK);
-    return duite_await_mpi(call, 1 + sends, request);
+    if (how != SENDS_BY_HANDLES)
+        return duite_await_mpi(call, 1 + sends, request);
+    const int code = duite_await_fortran(call, 2, handle);
+    ck_assert(MPI_Request_f2c(handle[0]) == MPI_REQUEST_NULL);
+    ck_assert(MPI_Request_f2c(handle[1]) == MPI_REQUEST_NULL);
+    return code;
 }
 
 static int send_late(const duite_call *call)
@@ -327,6 +337,7 @@ static int send_late(const duite_call *call)
 static int misuses(const duite_call *call)
 {
     MPI_Request request[2] = {MPI_REQUEST_NULL, MPI_REQUEST_NULL};
+    MPI_Fint handle[2] = {MPI_Request_c2f(MPI_REQUEST_NULL), 0};
 
     ck_assert_int_eq(duite_await_mpi(call, 0, NULL), DUITE_OK);
     ck_assert_int_eq(duite_await_mpi(call, 1, NULL), DUITE_E_ARGUMENT);
@@ -335,6 +346,10 @@ static int misuses(const duite_call *call)
     ck_assert_ptr_nonnull(strstr(duite_message(), "-1 requests"));
     ck_assert_int_eq(duite_await_mpi(call, 2, request), DUITE_E_ARGUMENT);
     ck_assert_ptr_nonnull(strstr(duite_message(), "request 1 of 2 is MPI_REQUEST_NULL"));
+    ck_assert_int_eq(duite_await_fortran(call, 1, NULL), DUITE_E_ARGUMENT);
+    ck_assert_ptr_nonnull(strstr(duite_message(), "at NULL"));
+    ck_assert_int_eq(duite_await_fortran(call, 1, handle), DUITE_E_ARGUMENT);
+    ck_assert_ptr_nonnull(strstr(duite_message(), "request 1 of 1 is MPI_REQUEST_NULL"));
     ck_assert_int_eq(duite_mpi_end(call->rt), DUITE_E_STATE);
     ck_assert_int_eq(duite_mpi_begin(call->rt), DUITE_OK);
     ck_assert_int_eq(duite_mpi_begin(call->rt), DUITE_E_STATE);
@@ -388,7 +403,7 @@ UNIT_TEST(requests)
                 int32_t value = 0;
 
                 ck_assert_int_eq(duite_new(rt, DUITE_I32, 1, &a), DUITE_OK);
-                DUITE_FORK(rt, &RECEIVE, DUITE_ARGS(int, 1), a);
+                DUITE_FORK(rt, &RECEIVE, DUITE_ARGS(int, SENDS + i % 2), a);
                 ck_assert_int_eq(duite_get(rt, a, &value), DUITE_OK);
                 ck_assert_int_eq(value, 9);
                 duite_free(rt, a);
@@ -406,7 +421,7 @@ UNIT_TEST(requests_late)
     setenv("DUITE_STUCK_SECONDS", "0.2", 1);
     start_with(MPI_KERNELS, 2, 0, 0);
     ck_assert_int_eq(duite_new(rt, DUITE_I32, 1, &a), DUITE_OK);
-    DUITE_FORK(rt, &RECEIVE, DUITE_ARGS(int, 0), a);
+    DUITE_FORK(rt, &RECEIVE, DUITE_ARGS(int, AWAITS_SENDER), a);
     duite_fork(rt, &SEND_LATE, NULL, 0, NULL);
     reports(a, &value, "(kernel receive) waits for 1 requests of MPI that it handed over");
     ck_assert_int_eq(value, 9);

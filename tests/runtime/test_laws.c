@@ -44,9 +44,7 @@ static int give(const duite_call *call)
 #define GIVES(law_)                                                                                \
     {                                                                                              \
         .name = "give by " #law_, .body = give, .access = {DUITE_CW},                              \
-        .args_size = WIDTH * LARGEST, .law = {                                                     \
-            &duite_##law_                                                                          \
-        }                                                                                          \
+        .args_size = WIDTH * LARGEST, .law = DUITE_LAWS(&duite_##law_)                             \
     }
 static const duite_kernel GIVE_SUM = GIVES(sum), GIVE_PRODUCT = GIVES(product),
                           GIVE_MIN = GIVES(min), GIVE_MAX = GIVES(max), GIVE_AND = GIVES(bits_and),
@@ -108,13 +106,13 @@ static const duite_kernel FIND_LEAST = {.name = "find least",
                                         .body = find_least,
                                         .access = {DUITE_CW},
                                         .args_size = 2 * sizeof(double),
-                                        .law = {&LEAST}};
+                                        .law = DUITE_LAWS(&LEAST)};
 static const duite_kernel GIVE_ALL = {.name = "give all",
                                       .body = give_all,
                                       .access = {DUITE_CW, DUITE_CW, DUITE_CW},
                                       .variadic = DUITE_CW,
                                       .args_size = sizeof(int64_t),
-                                      .law = {[1] = &duite_max, [2] = &DIGITS},
+                                      .law = DUITE_LAWS([1] = &duite_max, [2] = &DIGITS),
                                       .variadic_law = &duite_min};
 
 static duite *rt;

@@ -4,7 +4,7 @@
 
 /* The parameter that a task with n objects runs for, of a kernel with these first modes. */
 #define OWNER(variadic, n, ...)                                                                    \
-    task_owner((const duite_mode[DUITE_MAX_ACCESS]){__VA_ARGS__}, variadic, n)
+    task_owner((const uint8_t[DUITE_MAX_ACCESS]){__VA_ARGS__}, variadic, n)
 
 UNIT_TEST(the_first_written)
 {
@@ -35,7 +35,7 @@ UNIT_TEST(further_parameters)
     ck_assert_uint_eq(OWNER(DUITE_RW, 2, DUITE_R), 1);
     ck_assert_uint_eq(OWNER(DUITE_RW, 3, DUITE_CW), 1);
     ck_assert_uint_eq(OWNER(DUITE_R, 1u << 20, DUITE_CW, DUITE_CW), 2);
-    duite_mode full[DUITE_MAX_ACCESS];
+    uint8_t full[DUITE_MAX_ACCESS];
     for (int i = 0; i < DUITE_MAX_ACCESS; i++)
         full[i] = DUITE_CW;
     ck_assert_uint_eq(task_owner(full, DUITE_W, DUITE_MAX_ACCESS), TASK_NOBODY);

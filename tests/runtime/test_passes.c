@@ -56,7 +56,7 @@ static void made_access(struct rounds_made *made, uint32_t object, duite_mode mo
 static void made_own(struct rounds_made *made)
 {
     struct plan_source_fork *fork = &made->fork[made->source.n_forks - 1];
-    duite_mode mode[DUITE_MAX_ACCESS] = {DUITE_NONE};
+    uint8_t mode[DUITE_MAX_ACCESS] = {DUITE_NONE};
     ck_assert_uint_lt(fork->n, DUITE_MAX_ACCESS);
     for (uint32_t k = 0; k < fork->n; k++)
         mode[k] = made->access[fork->first + k].mode;

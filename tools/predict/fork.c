@@ -9,9 +9,9 @@ uint32_t predict_owner(const struct predict_graph *graph, const struct predict_f
                        const uint32_t *objects)
 {
     const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
-    duite_mode access[DUITE_MAX_ACCESS] = {DUITE_NONE};
+    uint8_t access[DUITE_MAX_ACCESS] = {DUITE_NONE};
     for (size_t i = 0; i < kernel->n_modes; i++)
-        access[i] = trace_mode(kernel, i);
+        access[i] = (uint8_t)trace_mode(kernel, i);
     const uint32_t own = task_owner(access, trace_mode(kernel, SIZE_MAX), fork->n);
     return own == TASK_NOBODY ? PREDICT_NONE : objects[own];
 }

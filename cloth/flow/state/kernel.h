@@ -245,7 +245,7 @@ struct flow_kernel {
 #define FLOW_TASK(k, text, form, arguments, fields, ...)                                           \
     {                                                                                              \
         .name = text, .body = k##_task, .access = {FLOW_EACH(FLOW_MODE, form, fields) DUITE_NONE}, \
-        .law = {FLOW_EACH(FLOW_LAW, form, fields) NULL},                                           \
+        .law = (const duite_law *const[]){FLOW_EACH(FLOW_LAW, form, fields) NULL},                 \
         .variadic = 0 FLOW_EACH(FLOW_FURTHER, k, fields), .args_size = sizeof(arguments),          \
         __VA_ARGS__                                                                                \
     }

@@ -4,6 +4,7 @@
 #include "cloth/app/cli.h"
 #include "cloth/mannequin/pose.h"
 #include "cloth/output/mannequin.h"
+#include "cloth/output/output.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -133,7 +134,7 @@ static int mannequin_cli_run(const struct options *options, struct cloth_error *
     struct mannequin_rig rig = {0};
     double girth[MANNEQUIN_GIRTHS];
     int code = mannequin_make(&mesh, &rig, &options->mannequin, girth, error);
-    code = code ? code : output_mannequin_obj(options->output, &mesh, error);
+    code = code ? code : output_mesh_obj(options->output, &mesh, "body", error);
     if (!code && options->walk > 0)
         code = write_walk(options, &rig, &mesh, error);
     if (!code && !options->quiet)

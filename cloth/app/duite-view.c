@@ -19,13 +19,13 @@ const char *argp_program_version = "duite-view " PACKAGE_VERSION;
 
 enum { EXIT_INTERSECTS = 4 }; /* as duite-cloth has it */
 
-/* Marks of options that are given: one of frames, of numbered frames, of films, of the chart; the
- * size; the seconds to wait. */
-enum { FRAMED = 1, NUMBERED = 2, FILMED = 4, CHARTED = 8, SIZED = 16, WAITS = 32 };
+/* Marks of options that are given: one of frames, of numbered frames, of the rate of films, of the
+ * chart; the size; the seconds to wait; from which frame to which. */
+enum { FRAMED = 1, NUMBERED = 2, FILMED = 4, CHARTED = 8, SIZED = 16, WAITS = 32, RANGED = 64 };
 
 struct options {
     struct view_wish wish;
-    const char *folder, *png, *mp4;
+    const char *folder, *png, *mp4, *export;
     uint64_t frame, first, last; /* VIEW_LAST_FRAME: the last one */
     double fps;                  /* of a film; 0: of the folder */
     bool check_intersections;
@@ -68,6 +68,13 @@ static bool read_frames(const char *text, void *to, struct argp_state *state)
     text = end;
     return (!*text || (read_number(text, &options->last, &end) && !*end)) &&
            options->first <= options->last;
+}
+
+static bool read_export(const char *text, void *to, struct argp_state *state)
+{
+    (void)state;
+    ((struct options *)to)->export = text;
+    return view_frames_can_export(text);
 }
 
 static bool read_fps(const char *text, void *to, struct argp_state *state)
@@ -137,8 +144,14 @@ static const struct cli_option OPTIONS[] = {
      CLI_OTHER, 0, "a number from 0 or `last'", read_frame, FRAMED | NUMBERED},
     {"mp4", 'm', "FILE", "Write a film to FILE, encoded by ffmpeg", CLI_FILE, TO(mp4), NULL, NULL,
      0},
-    {"frames", 'n', "A:B", "Frames of the film, from A to B; either may be left out (all)",
-     CLI_OTHER, 0, "A:B, A up to B, such as 0:24, 10: or :24", read_frames, FILMED},
+    {"export", 'x', "FILE",
+     "Write frames for other programs to FILE: .usda (USD, all of --frames), or one --frame as "
+     ".glb "
+     "(glTF) or .obj",
+     CLI_OTHER, 0, "a FILE that ends in .usda, .usd, .glb or .obj", read_export, 0},
+    {"frames", 'n', "A:B",
+     "Frames of the film or of USD, from A to B; either may be left out (all)", CLI_OTHER, 0,
+     "A:B, A up to B, such as 0:24, 10: or :24", read_frames, RANGED},
     {"fps", 'r', "RATE", "Frames a second of the film (those of the scene: its own time)",
      CLI_OTHER, 0, "a rate from 0.1 to 1000 frames a second", read_fps, FILMED},
     {"size", 's', "WxH",
@@ -174,7 +187,8 @@ static const struct cli_option OPTIONS[] = {
 
 static bool opens_window(const struct options *options)
 {
-    return !options->trace && !options->png && !options->mp4 && !options->check_intersections;
+    return !options->trace && !options->png && !options->mp4 && !options->export &&
+           !options->check_intersections;
 }
 
 static void check_live(const struct options *options, struct argp_state *state)
@@ -186,11 +200,11 @@ static void check_live(const struct options *options, struct argp_state *state)
         return;
     if (lacks)
         argp_error(state, "--connect: %s", lacks);
-    if (options->folder || options->trace || options->mp4 || options->check_intersections ||
-        options->given & NUMBERED)
+    if (options->folder || options->trace || options->mp4 || options->export ||
+        options->check_intersections || options->given & NUMBERED)
         argp_error(state,
                    "--connect shows the newest frame of a run: no folder, trace, number of a "
-                   "frame, film, colour or check goes with it");
+                   "frame, film, export, colour or check goes with it");
 }
 
 /* Refuses options that lack their partner. */
@@ -201,11 +215,14 @@ static void check_together(void *to, struct argp_state *state)
     if (!options->trace && options->given & CHARTED)
         argp_error(state, "--svg and --window are of charts: --trace FILE");
     if (options->trace && (options->folder || options->given & FRAMED || options->mp4 ||
-                           options->check_intersections))
-        argp_error(state, "--trace draws a chart of a run: no folder, frame, film, camera, colour "
-                          "or check goes with it");
+                           options->export || options->check_intersections))
+        argp_error(state, "--trace draws a chart of a run: no folder, frame, film, export, camera, "
+                          "colour or check goes with it");
     if (options->given & FILMED && !options->mp4)
-        argp_error(state, "--frames and --fps are of films: --mp4 FILE");
+        argp_error(state, "--fps is of films: --mp4 FILE");
+    if (options->given & RANGED && !options->mp4 &&
+        !(options->export && view_frames_exports_many(options->export)))
+        argp_error(state, "--frames is of films and of USD: --mp4 FILE or --export FILE.usda");
     if (options->trace && !options->png && !options->svg)
         argp_error(state, "say where the chart goes: --svg FILE or --png FILE");
     if (!options->trace && !options->host && !options->folder)
@@ -219,8 +236,9 @@ static void check_together(void *to, struct argp_state *state)
 
 static const struct cli CLI = {
     .arguments = "DIR\n--connect HOST:PORT\n--trace FILE",
-    .about = "Shows a simulated cloth in a window, makes a picture or a film of it, or checks all "
-             "frames; DIR is what duite-cloth --output wrote. Or shows a run that goes on, or "
+    .about = "Shows a simulated cloth in a window, makes a picture or a film of it, writes it for "
+             "other programs, or checks all frames; DIR is what duite-cloth --output wrote. Or "
+             "shows a run that goes on, or "
              "draws the Gantt chart of one.",
     .option = OPTIONS,
     .n_options = sizeof OPTIONS / sizeof *OPTIONS,
@@ -271,6 +289,11 @@ static int show_folder(struct options *options, bool *bad, struct cloth_error *e
         code = view_frames_open(&show, &cache, &options->wish, error);
         code = code ? code : show_frames(show, options, error);
         view_show_close(show);
+    }
+    if (!code && options->export) {
+        const struct view_frames frames = {
+            .path = options->export, .first = options->first, .last = options->last};
+        code = view_frames_export(&cache, options->folder, &frames, options->frame, error);
     }
     if (!code && options->check_intersections)
         code = check_frames(&cache, bad, error);

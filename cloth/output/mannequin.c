@@ -2,18 +2,10 @@
 #include "cloth/output/mannequin.h"
 #include "cloth/base/bytes.h"
 #include "cloth/base/memory.h"
+#include "cloth/output/files/files.h"
 #include "cloth/output/files/pc2.h"
-#include "cloth/output/files/scene.h"
 
 #include <stdlib.h>
-
-int output_mannequin_obj(const char *path, const struct mesh *mesh, struct cloth_error *error)
-{
-    const struct output_setup alone = {.n_meshes = 1,
-                                       .meshes = (const struct mesh *const[]){mesh},
-                                       .names = (const char *const[]){"body"}};
-    return output_replace_file(path, output_fill_obj, &alone, error);
-}
 
 struct writing {
     const struct output_shapes *shapes;

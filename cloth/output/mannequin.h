@@ -6,11 +6,6 @@
 
 #include <stdint.h>
 
-/* Writes a body's mesh as a Wavefront OBJ, v in metres, with 17 digits. An old file of that name is
- * replaced when the new one is whole. Errors: CLOTH_E_INPUT where it cannot be written to,
- * CLOTH_E_IO, CLOTH_E_MEMORY. Local. */
-int output_mannequin_obj(const char *path, const struct mesh *mesh, struct cloth_error *error);
-
 /* A body's vertices in frames: each frame is asked for once, in their order. place: fills x, m,
  * n_points x 3. */
 struct output_shapes {
@@ -19,7 +14,9 @@ struct output_shapes {
     const void *context;
 };
 
-/* Writes them as a PC2 point cache, as `frames` of a scene's body reads it. Errors: as above. */
+/* Writes them as a PC2 point cache, as `frames` of a scene's body reads it. An old file of that
+ * name is replaced when the new one is whole. Errors: CLOTH_E_INPUT where it cannot be written to,
+ * CLOTH_E_IO, CLOTH_E_MEMORY. Local. */
 int output_mannequin_pc2(const char *path, const struct output_shapes *shapes,
                          struct cloth_error *error);
 

@@ -195,6 +195,12 @@ int output_cache_frame(struct output_cache *cache, uint64_t frame, double *posit
 int output_cache_pose(struct output_cache *cache, uint64_t frame, struct cloth_error *error);
 void output_cache_close(struct output_cache *cache);
 
+/* Writes a mesh as a Wavefront OBJ of one object, v in metres, with 17 digits. An old file of that
+ * name is replaced when the new one is whole. Errors: CLOTH_E_INPUT where it cannot be written to,
+ * CLOTH_E_IO, CLOTH_E_MEMORY. Local. */
+int output_mesh_obj(const char *path, const struct mesh *mesh, const char *name,
+                    struct cloth_error *error);
+
 /* Writes a system for other solvers, in Matrix Market form (Boisvert, Pozo & Remington 1996), into
  * an existing folder (output_lock_take). matrix.mtx is S A S + I - S: symmetric, its lower
  * triangle, column by column, one entry a place. The others are arrays: rhs.mtx (S b), solution.mtx

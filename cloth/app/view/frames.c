@@ -5,12 +5,14 @@
 
 #include "cloth/base/memory.h"
 #include "cloth/contact/soup.h"
+#include "cloth/view/export.h"
 #include "cloth/view/film.h"
 #include "cloth/view/window.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 /* The number of a frame that is asked for. */
@@ -117,6 +119,53 @@ int view_frames_film(struct view_show *show, const struct view_frames *wanted,
     view_show_undraw(show);
     view_context_close(context);
     return code ? code : closed;
+}
+
+/* ---- Files for other programs ---- */
+
+static bool ends_with(const char *path, const char *ending)
+{
+    const size_t length = strlen(path), n = strlen(ending);
+    return length > n && strcmp(path + length - n, ending) == 0;
+}
+
+bool view_frames_exports_many(const char *path)
+{
+    return ends_with(path, ".usda") || ends_with(path, ".usd");
+}
+
+bool view_frames_can_export(const char *path)
+{
+    return view_frames_exports_many(path) || ends_with(path, ".glb") || ends_with(path, ".obj");
+}
+
+static int export_obj(struct output_cache *cache, uint64_t frame, const char *path,
+                      struct cloth_error *error)
+{
+    struct mesh mesh = cache->mesh;
+    mesh.position = cloth_alloc(mesh.n_vertices, 3 * sizeof *mesh.position, error);
+    int code =
+        mesh.position ? output_cache_frame(cache, frame, mesh.position, error) : CLOTH_E_MEMORY;
+    code = code ? code : output_mesh_obj(path, &mesh, "cloth", error);
+    free(mesh.position);
+    return code;
+}
+
+int view_frames_export(struct output_cache *cache, const char *folder,
+                       const struct view_frames *frames, uint64_t frame, struct cloth_error *error)
+{
+    uint64_t first, last;
+    if (!view_frames_exports_many(frames->path)) {
+        const int code = find_frame(cache, folder, frame, &frame, error);
+        if (code)
+            return code;
+        return ends_with(frames->path, ".obj")
+                   ? export_obj(cache, frame, frames->path, error)
+                   : view_export_gltf(cache, frame, frames->path, error);
+    }
+    int code = find_frame(cache, folder, frames->last, &last, error);
+    code = code ? code : find_frame(cache, folder, frames->first, &first, error);
+    return code ? code : view_export_usd(cache, first, last, frames->path, error);
 }
 
 /* ---- The check ---- */

@@ -31,6 +31,14 @@ struct view_frames {
 int view_frames_film(struct view_show *show, const struct view_frames *frames,
                      struct cloth_error *error);
 
+/* Writes a file for other programs, whose ending says of which kind: .usd or .usda the frames from
+ * first to last, .glb or .obj one frame. view_frames_can_export: there is such a kind. Errors: as
+ * of pictures, and of cloth/view/export.h. */
+bool view_frames_can_export(const char *path);
+bool view_frames_exports_many(const char *path);
+int view_frames_export(struct output_cache *cache, const char *folder,
+                       const struct view_frames *frames, uint64_t frame, struct cloth_error *error);
+
 /* Checks all frames, as they are written; *found is zero before. Vertices that are in the same
  * place in each frame count as one: welds. Errors: of output_cache_frame, too. */
 int view_frames_check(struct output_cache *cache, struct intersections_found *found,

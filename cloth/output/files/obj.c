@@ -1,5 +1,6 @@
 /* The OBJ of a folder: vertices in the order of the input meshes, cloth after cloth, so that vertex
  * i of the file is point i of the cache; faces are the input's polygons. */
+#include "cloth/output/files/files.h"
 #include "cloth/output/files/scene.h"
 
 #include <ctype.h>
@@ -161,4 +162,11 @@ int output_fill_obj(FILE *file, const void *what)
         start.uv += has_uv ? (uint64_t)mesh->n_vertices + mesh->n_more_uv : 0;
     }
     return failed || ferror(file);
+}
+
+int output_mesh_obj(const char *path, const struct mesh *mesh, const char *name,
+                    struct cloth_error *error)
+{
+    const struct output_setup alone = {.n_meshes = 1, .meshes = &mesh, .names = &name};
+    return output_replace_file(path, output_fill_obj, &alone, error);
 }

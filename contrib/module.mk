@@ -16,3 +16,8 @@ deb: dist
 clean-local:
 	rm -rf deb
 .PHONY: deb
+
+if CLOTH
+blenderdir = $(pkgdatadir)/blender
+dist_blender_DATA = contrib/blender/duite_cloth.py
+endif

@@ -18,7 +18,7 @@ LONG_SH += tests/whole/test_same_hash_long.sh tests/whole/test_levels_long.sh te
     tests/whole/test_closed_forms_long.sh tests/whole/test_solvers_agree_long.sh tests/whole/test_contact_long.sh \
     tests/whole/test_capstan_long.sh tests/whole/test_pinch_long.sh tests/whole/test_contact_scenes_long.sh tests/whole/test_drape_long.sh \
     tests/whole/test_checkpoint_long.sh tests/whole/test_dressing_long.sh tests/whole/test_paraview_long.sh \
-    tests/whole/test_blender_long.sh
+    tests/whole/test_blender_long.sh tests/whole/test_addon_long.sh
 check_PROGRAMS += tests/whole/same_hash
 tests_whole_same_hash_LDADD = $(CLOTH_LIBS)
 if HAVE_ZMQ
@@ -35,4 +35,4 @@ EXTRA_DIST += tests/whole/golden.sh tests/whole/golden.txt tests/whole/balance.a
 EXTRA_DIST += tests/whole/garment_golden.txt
 EXTRA_DIST += tests/whole/mannequin_golden.txt
 EXTRA_DIST += tests/whole/dressing.sh tests/whole/garment.awk
-EXTRA_DIST += tests/whole/read_back.sh tests/whole/read_back.py tests/whole/read_paraview.py tests/whole/read_blender.py tests/whole/read_export.py
+EXTRA_DIST += tests/whole/read_back.sh tests/whole/read_back.py tests/whole/read_paraview.py tests/whole/read_blender.py tests/whole/read_export.py tests/whole/read_addon.py

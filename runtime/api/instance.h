@@ -40,6 +40,7 @@ struct duite {
     struct recorded_graph *recorded; /* by slot, from 1 on */
     size_t n_recorded, recorded_capacity;
     struct api_get *gets;         /* begun and not ended, the first one first */
+    uint32_t gets_begun;          /* so far: numbers them in traces */
     struct api_turn *turns;       /* objects that the program has acquired, the last one first */
     struct plan_record *building; /* the one that build forks into, or NULL */
     uint64_t graphs_recorded;

@@ -168,6 +168,7 @@ struct api_get {
     duite_object object;
     struct data_key version;
     struct task_copy copy;
+    uint32_t number; /* for traces */
 };
 
 /* The oldest get of the object. */
@@ -192,6 +193,8 @@ static int get_begin(duite *rt, struct api_get *get)
     while (*end)
         end = &(*end)->next;
     *end = get;
+    get->number = rt->gets_begun++;
+    trace_get_begin(rt->trace, get->object, get->number);
     return DUITE_OK;
 }
 
@@ -250,9 +253,9 @@ int duite_get_end(duite *rt, duite_object object)
                                            "duite_get_end: no get of object %u.%u was begun",
                                            object.slot, object.generation));
     const uint64_t from = rt->trace ? base_ticks() : 0;
+    const uint32_t number = (*get)->number;
     code = get_end(rt, get);
-    if (rt->trace && data_object_here(&rt->graph.table, object))
-        trace_get(rt->trace, object, TASK_ANYWHERE, from);
+    trace_get_end(rt->trace, number, from);
     const int before = api_recall(rt);
     return before ? before : code;
 }

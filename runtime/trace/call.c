@@ -161,22 +161,41 @@ void trace_set(struct trace *trace, duite_object name)
     word_put(trace, name.slot);
 }
 
+static void word_put_span(struct trace *trace, uint64_t from)
+{
+    word_put_long(trace, from);
+    word_put_long(trace, base_ticks());
+}
+
 void trace_get(struct trace *trace, duite_object name, int rank, uint64_t from)
 {
     if (!entry_begin(trace, TRACE_GET, 0))
         return;
     word_put(trace, name.slot);
     word_put(trace, (uint32_t)rank);
-    word_put_long(trace, from);
-    word_put_long(trace, base_ticks());
+    word_put_span(trace, from);
+}
+
+void trace_get_begin(struct trace *trace, duite_object name, uint32_t get)
+{
+    if (!entry_begin(trace, TRACE_GET_BEGIN, 0))
+        return;
+    word_put(trace, get);
+    word_put(trace, name.slot);
+}
+
+void trace_get_end(struct trace *trace, uint32_t get, uint64_t from)
+{
+    if (!entry_begin(trace, TRACE_GET_END, 0))
+        return;
+    word_put(trace, get);
+    word_put_span(trace, from);
 }
 
 void trace_wait(struct trace *trace, uint64_t from)
 {
-    if (!entry_begin(trace, TRACE_WAIT, 0))
-        return;
-    word_put_long(trace, from);
-    word_put_long(trace, base_ticks());
+    if (entry_begin(trace, TRACE_WAIT, 0))
+        word_put_span(trace, from);
 }
 
 /* ---- Recorded graphs ---- */

@@ -107,22 +107,25 @@ struct trace_counters {
  * object that was made in it last. 64-bit numbers are two words, the low one first. Objects, homes
  * and graphs are always there; all others only while steps are recorded. */
 enum trace_call {
-    TRACE_FILLS,    /* no entry: the last word of a section that fills its 64 bits */
-    TRACE_OBJECT,   /* slot; bytes (64 bits) */
-    TRACE_FREE = 3, /* slot; the number before stays unused */
-    TRACE_HINT,     /* slot; weight (double); n neighbours: slot; weight (double) */
-    TRACE_COLOCATE, /* slot; its leader's */
-    TRACE_HOMES,    /* n: slot; home: by the mapping, of all that had none, or by migration */
-    TRACE_ON,       /* number of the last fork (64 bits); step (64); ticks (64) */
-    TRACE_OFF,      /* the same */
-    TRACE_FORK,     /* n slots; kernel before them */
-    TRACE_FORKED,   /* the same, between both: rank or -1; priority; cost (float) */
-    TRACE_SET,      /* slot */
-    TRACE_GET,      /* slot; rank or -1: all; ticks from .. to (64 bits each) */
-    TRACE_WAIT,     /* ticks from .. to (64 bits each) */
-    TRACE_GRAPH,    /* name; n objects: slot; see below */
-    TRACE_REPLAY,   /* name; flag's slot or 0; rounds at most (64); number of the last fork before
-                       (64); n objects of the graph: slot bound to it */
+    TRACE_FILLS,     /* no entry: the last word of a section that fills its 64 bits */
+    TRACE_OBJECT,    /* slot; bytes (64 bits) */
+    TRACE_FREE = 3,  /* slot; the number before stays unused */
+    TRACE_HINT,      /* slot; weight (double); n neighbours: slot; weight (double) */
+    TRACE_COLOCATE,  /* slot; its leader's */
+    TRACE_HOMES,     /* n: slot; home: by the mapping, of all that had none, or by migration */
+    TRACE_ON,        /* number of the last fork (64 bits); step (64); ticks (64) */
+    TRACE_OFF,       /* the same */
+    TRACE_FORK,      /* n slots; kernel before them */
+    TRACE_FORKED,    /* the same, between both: rank or -1; priority; cost (float) */
+    TRACE_SET,       /* slot */
+    TRACE_GET,       /* slot; rank or -1: all; ticks from .. to (64 bits each) */
+    TRACE_WAIT,      /* ticks from .. to (64 bits each) */
+    TRACE_GRAPH,     /* name; n objects: slot; see below */
+    TRACE_REPLAY,    /* name; flag's slot or 0; rounds at most (64); number of the last fork before
+                        (64); n objects of the graph: slot bound to it */
+    TRACE_GET_BEGIN, /* number of the get; slot */
+    TRACE_GET_END,   /* number of the get, whose begin may be missing; ticks from .. to (64 bits
+                        each) */
     TRACE_CALLS
 };
 

@@ -136,6 +136,8 @@ void trace_fork(struct trace *trace, const duite_kernel *kernel, const struct ta
                 size_t n, const duite_object *objects);
 void trace_set(struct trace *trace, duite_object name);
 void trace_get(struct trace *trace, duite_object name, int rank, uint64_t from);
+void trace_get_begin(struct trace *trace, duite_object name, uint32_t get);
+void trace_get_end(struct trace *trace, uint32_t get, uint64_t from);
 void trace_wait(struct trace *trace, uint64_t from);
 /* The graph has a kernel more: all kernels once again. On every rank. */
 void trace_kernels(struct trace *trace);

@@ -163,6 +163,21 @@ void trace_file_get(struct trace_file *file, uint32_t slot)
     put_long(file, 0);
 }
 
+void trace_file_get_begin(struct trace_file *file, uint32_t number, uint32_t slot)
+{
+    trace_file_word(file, TRACE_GET_BEGIN);
+    trace_file_word(file, number);
+    trace_file_word(file, slot);
+}
+
+void trace_file_get_end(struct trace_file *file, uint32_t number)
+{
+    trace_file_word(file, TRACE_GET_END);
+    trace_file_word(file, number);
+    put_long(file, 0);
+    put_long(file, 0);
+}
+
 static const struct {
     const char *name;
     uint8_t mode[3];

@@ -59,6 +59,9 @@ void trace_file_event(struct trace_file *file, const struct trace_event *event);
 void trace_file_wait(struct trace_file *file);
 void trace_file_forked(struct trace_file *file, double seconds);
 void trace_file_get(struct trace_file *file, uint32_t slot);
+/* The same in two calls, of the get of this number. */
+void trace_file_get_begin(struct trace_file *file, uint32_t number, uint32_t slot);
+void trace_file_get_end(struct trace_file *file, uint32_t number);
 void trace_file_word(struct trace_file *file, uint32_t word);
 /* Writes it, and frees all. False: it could not. */
 bool trace_file_write(struct trace_file *file, const char *path);

@@ -210,6 +210,30 @@ UNIT_TEST(waits)
     }
 }
 
+/* A get that was begun has the value of then: a task that overwrites the object meanwhile, on the
+ * other core, is not waited for. One that was begun before the trace waits for nothing, and the
+ * last task comes before the second one. */
+UNIT_TEST(gets_that_were_begun)
+{
+    static const double makespan[] = {9 * MS, 6 * MS, 6.5 * MS};
+    for (int begun = 0; begun < 3; begun++) {
+        struct trace_file file = predicted_trace(3, 8);
+        trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
+        if (begun == 1)
+            trace_file_get_begin(&file, 7, 1);
+        trace_file_fork(&file, FILE_RW, 5 * MS, 0, 1, SLOTS(1));
+        trace_file_fork(&file, FILE_W, 1.5 * MS, 0, 1, SLOTS(2)); /* beside the first one */
+        if (begun)
+            trace_file_get_end(&file, 7);
+        else
+            trace_file_get(&file, 1);
+        trace_file_fork(&file, FILE_W, 3 * MS, 0, 1, SLOTS(3));
+        trace_file_wait(&file);
+        const struct predict_cluster two = predicted_machine(1, 2);
+        is(predicted(&file, &two).makespan, makespan[begun]);
+    }
+}
+
 /* A core of twice the speed, and half a millisecond between tasks. */
 UNIT_TEST(speed_and_overhead)
 {

@@ -124,6 +124,33 @@ static void entry_get(struct predict_program *p)
     op_end(p, from, to, node, host <= 0 && node != PREDICT_NONE);
 }
 
+/* The value is that of the begin, and on its way from then on. */
+static void entry_get_begin(struct predict_program *p)
+{
+    const uint32_t number = trace_words_next(&p->words);
+    const uint32_t own = predict_object_at(p, trace_words_next(&p->words));
+    if (p->damaged || p->words.short_of)
+        return;
+    const uint32_t node = predict_prepare_all(p->graph, own, DUITE_R);
+    if (predict_grew(p->graph, BASE_GROW(p->begun, p->begun_capacity, p->n_begun + 1)))
+        p->begun[p->n_begun++] = (struct predict_begun){number, node};
+}
+
+/* A get that was begun before the trace waits for nothing. */
+static void entry_get_end(struct predict_program *p)
+{
+    const uint32_t number = trace_words_next(&p->words);
+    const uint64_t from = trace_words_next2(&p->words), to = trace_words_next2(&p->words);
+    uint32_t node = PREDICT_NONE;
+    for (size_t i = 0; i < p->n_begun; i++)
+        if (p->begun[i].number == number) {
+            node = p->begun[i].node;
+            p->begun[i] = p->begun[--p->n_begun];
+        }
+    if (!p->words.short_of)
+        op_end(p, from, to, node, node != PREDICT_NONE);
+}
+
 static void entry_wait(struct predict_program *p)
 {
     uint64_t from = trace_words_next2(&p->words), to = trace_words_next2(&p->words);
@@ -198,6 +225,12 @@ static void entry_read(struct predict_program *p)
     }
     case TRACE_GET:
         entry_get(p);
+        break;
+    case TRACE_GET_BEGIN:
+        entry_get_begin(p);
+        break;
+    case TRACE_GET_END:
+        entry_get_end(p);
         break;
     case TRACE_WAIT:
         entry_wait(p);
@@ -302,6 +335,7 @@ int predict_build(struct predict_graph *graph)
     predict_times_free(p.times);
     predict_graphs_free(&p);
     free(p.slot);
+    free(p.begun);
     free(p.name);
     free(p.prepared);
     free(p.objects);

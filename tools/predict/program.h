@@ -60,6 +60,11 @@ struct predict_moves {
     void *state; /* of the balancer */
 };
 
+/* A get that was begun: its number, and the node after which its value is there, or NONE. */
+struct predict_begun {
+    uint32_t number, node;
+};
+
 struct predict_program {
     struct predict_graph *graph;
     struct predict_times *times;
@@ -79,6 +84,8 @@ struct predict_program {
     struct predict_recorded *recorded;
     size_t n_recorded, recorded_capacity;
     struct predict_moves moves;
+    struct predict_begun *begun; /* gets that were begun and not ended */
+    size_t n_begun, begun_capacity;
     uint64_t forks, tasks;
     uint64_t replayed,
         max_replayed; /* tasks of replays; the most that can be, since each left an event */

@@ -76,7 +76,7 @@ told_of() { "$tree/bootstrap" --help | grep DUITE_NO_INSTALL=1 && grep DUITE_NO_
 notice() { # NOTICE has the licence of each package but those of the build
     eval "$(grep '^[a-z]*="' "$srcdir/bootstrap")"
     # shellcheck disable=SC2154 # its lists
-    for package in $mpi $other_mpi $core $cloth $charts $tests $pictures $live $rivals $plots $frames $languages; do
+    for package in $mpi $other_mpi $core $cloth $charts $tests $pictures $live $rivals $plots $frames $traces $languages; do
         grep -Eq "^    ([a-z0-9+, -]+, )?$(echo "$package" | sed 's/+/[+]/g')(, [a-z0-9+, -]+)?  +[^ ]" "$srcdir/NOTICE" ||
             { echo "$package is missing" && return 1; }
     done

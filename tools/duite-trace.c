@@ -19,12 +19,12 @@ const char *argp_program_version = "duite-trace (" PACKAGE_STRING ")";
 
 /* The forms: the rows of export.h, and two of the predictor's graph of tasks. */
 static const struct trace_export FORM_DOT = {
-    "dot", "write the tasks and what each waited for, for Graphviz", predict_write_dot};
+    "dot", "write the tasks and what each waited for, for Graphviz", predict_write_dot, NULL};
 static const struct trace_export FORM_GRAPH = {
     "graph",
     "write the tasks and what each read as a graph, which duite-graph and duite-compare "
     "schedule without the program",
-    predict_write_graph};
+    predict_write_graph, NULL};
 #define FORM_OF(name) &trace_export_##name,
 static const struct trace_export *const FORMS[] = {&FORM_DOT, &FORM_GRAPH,
                                                    TRACE_EXPORT_ROWS(FORM_OF)};
@@ -53,7 +53,9 @@ static void options_fill(void)
 {
     struct argp_option *next = options;
     for (int i = 0; i < N_FORMS; i++)
-        *next++ = (struct argp_option){FORMS[i]->option, FORM + i, "OUT", 0, FORMS[i]->help, 1};
+        *next++ = (struct argp_option){
+            FORMS[i]->option, FORM + i, FORMS[i]->write_folder ? "FOLDER" : "OUT", 0,
+            FORMS[i]->help,   1};
     for (int i = 0; i < N_CHARTS; i++)
         *next++ =
             (struct argp_option){CHARTS[i].option, FORM + N_FORMS + i, "OUT", 0, CHARTS[i].help, 1};
@@ -121,9 +123,17 @@ static int write_failed(const char *out)
     return FAILED;
 }
 
+static int form_failed(void)
+{
+    fprintf(stderr, "duite-trace: %s\n", duite_message());
+    return FAILED;
+}
+
 static int write_form(const struct trace_run *run, const struct command *command, size_t form)
 {
     const char *out = command->out[form];
+    if (form < N_FORMS && FORMS[form]->write_folder)
+        return FORMS[form]->write_folder(run, out) ? form_failed() : 0;
     bool standard = !strcmp(out, "-");
     FILE *file = standard ? stdout : fopen(out, "w");
     if (!file)
@@ -135,10 +145,8 @@ static int write_form(const struct trace_run *run, const struct command *command
     if (!standard)
         fine = !fclose(file) && fine;
     if (code)
-        fprintf(stderr, "duite-trace: %s\n", duite_message());
-    else if (!fine)
-        return write_failed(out);
-    return code ? FAILED : 0;
+        return form_failed();
+    return fine ? 0 : write_failed(out);
 }
 
 static int table_write(const struct trace_run *run)

@@ -3,7 +3,7 @@
     import duite
     report = duite.report('report.json')            # duite-cloth --report
     runs = duite.table('comparison/runs.csv')       # duite-compare, probes: a dict of columns
-    events = duite.trace('run.trace')               # the same; duite-trace reads the files of all ranks
+    tables = duite.trace('run.trace')               # a dict of such dicts; duite-trace reads the files of all ranks
     x = duite.frames('frames/cloth.pc2')            # x[frame, vertex] is a position
     fields = duite.fields('frames/hdf5/frame-000000.vtkhdf')
 
@@ -11,10 +11,10 @@ A file that is wrong is a ValueError with a sentence. Nothing here runs tasks: d
 """
 
 import csv
-import io
 import json
 import os
 import subprocess
+import tempfile
 
 import numpy
 
@@ -39,31 +39,29 @@ def _numbers(column):
         return numpy.array(column)
 
 
-def _columns(lines, path):
-    reader = csv.reader(lines)
-    head = next(reader, None)
-    rows = list(reader)
+def table(path):
+    """A file of comma-separated values with a line of names: {name: column}."""
+    with open(path, newline='', encoding='utf-8') as file:
+        reader = csv.reader(file)
+        head = next(reader, None)
+        rows = list(reader)
     if not head or any(len(row) != len(head) for row in rows):
         raise ValueError(f'{path}: not a table: its lines have not as many columns as the first')
     return {name: _numbers([row[i] for row in rows]) for i, name in enumerate(head)}
 
 
-def table(path):
-    """A file of comma-separated values with a line of names: {name: column}."""
-    with open(path, newline='', encoding='utf-8') as file:
-        return _columns(file, path)
-
-
 def trace(path, partial=False, program='duite-trace'):
-    """The events of a traced run, of all ranks: {name: column}; times are seconds. docs/tracing.md says what there is.
+    """The tables 'worker_state', 'events' and 'link' of a traced run, of all ranks: {table: {name: column}}.
 
-    partial: what there is of a run that did not come to its end. program: the duite-trace that reads.
+    Times are milliseconds. docs/tracing.md says what there is. partial: what there is of a run that did not come to its end.
+    program: the duite-trace that reads.
     """
-    command = [program, '--csv', '-'] + ['--partial'] * partial + [os.fspath(path)]
-    run = subprocess.run(command, capture_output=True, text=True, check=False)
-    if run.returncode:
-        raise ValueError(run.stderr.strip() or f'{program} ended with {run.returncode}')
-    return _columns(io.StringIO(run.stdout, newline=''), path)
+    with tempfile.TemporaryDirectory() as folder:
+        command = [program, '--csv', folder] + ['--partial'] * partial + [os.fspath(path)]
+        run = subprocess.run(command, capture_output=True, text=True, check=False)
+        if run.returncode:
+            raise ValueError(run.stderr.strip() or f'{program} ended with {run.returncode}')
+        return {name: table(f'{folder}/paje.{name}.csv') for name in ('worker_state', 'events', 'link')}
 
 
 def frames(path):

@@ -33,12 +33,14 @@ static void write_forms(const struct trace_run *run, FILE *file)
 {
     const struct chart_options options = chart_options_default();
     struct predict_bounds bounds;
+    char tables[256];
     trace_print(run, predict_bounds(run, &bounds) ? (double)NAN : bounds.path, file);
     predict_bounds_free(&bounds);
     trace_sums_agree(run, file);
     trace_export_paje.write(run, file);
     trace_export_chrome.write(run, file);
-    trace_export_csv.write(run, file);
+    snprintf(tables, sizeof tables, "%s/tables", fuzz_folder());
+    trace_export_csv.write_folder(run, tables);
     predict_write_dot(run, file);
     predict_write_graph(run, file);
     chart_write_svg(run, &options, file);

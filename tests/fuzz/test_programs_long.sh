@@ -62,7 +62,7 @@ for file in cloth.pc2 frames.csv probes.csv scene.json cloth.obj contact.pc2; do
     mutants "$file, for a restart" run/$file $cloth --restart again --end 0.012
     mutants "$file, for duite-view" run/$file "$DUITE_VIEW" again --check-intersections
 done
-mutants "a trace" trace "$bin"/duite-trace trace --partial --csv all.csv --paje all.paje --chrome all.json --dot all.dot --graph all.graph --svg all.svg
+mutants "a trace" trace "$bin"/duite-trace trace --partial --csv tables --paje all.paje --chrome all.json --dot all.dot --graph all.graph --svg all.svg
 mutants "a trace, summed up" trace "$bin"/duite-trace trace
 mutants "a trace, predicted" trace "$bin"/duite-predict trace --hosts 2
 mutants "a pattern, for duite-garment" panels.json "$bin"/duite-garment panels.json -o made.obj --edge 0.05 --body body.obj

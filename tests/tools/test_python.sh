@@ -26,13 +26,15 @@ else:
 
 ok "a traced program on 2 ranks" traced
 ok "its events" python '
-events = duite.trace("dot.trace")
-tasks = events["kind"] == "task"
-assert len({len(column) for column in events.values()}) == 1
-assert set(events["rank"]) == {0, 1} and set(events["name"][tasks]) == {"fill", "dot"}
-assert sum(events["name"] == "dot") == 13 and sum(events["name"] == "fill") == 26, events["name"]
-assert events["begin"].dtype == float and (events["seconds"] >= 0).all() and events["number"].dtype.kind == "i"
-assert numpy.isnan(events["peer"][tasks]).all()'
+tables = duite.trace("dot.trace")
+states = tables["worker_state"]
+tasks = states["Kind"] == "task"
+assert all(len({len(column) for column in table.values()}) == 1 for table in tables.values())
+assert {worker.split("_")[0] for worker in states["ResourceId"]} == {"0", "1"} and set(states["Value"][tasks]) == {"fill", "dot"}
+assert sum(states["Name"] == "dot") == 13 and sum(states["Name"] == "fill") == 26, states["Name"]
+assert states["Start"].dtype == float and (states["Duration"] >= 0).all() and states["Number"].dtype.kind == "i"
+assert numpy.isnan(states["SubmitOrder"][~tasks]).all() and (states["SubmitOrder"][tasks] > 0).all()
+assert len(tables["link"]["Size"]) == sum(tables["events"]["Type"] == "send")'
 printf 'not a trace' > "$scratch/broken.trace"
 ok "a broken trace has duite-trace's sentence" says broken.trace 'duite.trace("broken.trace")'
 printf 'name,n,x,hash\n"a, b",1,,9a5d\nc,2,0.5,12\n' > "$scratch/table.csv"

@@ -37,10 +37,11 @@ added() { # kernels that the program adds while it runs
 ok "kernels that are added have their names" added
 
 # Each share is there once; together they are the workers' time. On ranks some of it goes to messages, if only a moment.
+states=paje.worker_state.csv
 shares() { # FILE EVENTS: whether there are any of messages
     ./duite-trace "$scratch/$1" > "$scratch/table"
     cat "$scratch/table"
-    ./duite-trace "$scratch/$1" --csv "$scratch/events" > /dev/null && test "$(grep -c messages "$scratch/events")" "$2" 0 || return 1
+    ./duite-trace "$scratch/$1" --csv "$scratch/$1.csv" > /dev/null && test "$(grep -c ',messages,' "$scratch/$1.csv/$states")" "$2" 0 || return 1
     sed -n "/of the workers' time/,/kernel/p" "$scratch/table" | awk '
         /%/ { if ($1 in share) twice = 1; share[$1] = $2 + 0; sum += $2; n++ }
         END { exit !(n == 6 && !twice && sum > 99.6 && sum < 100.4 && "busy" in share && "own" in share &&
@@ -66,13 +67,36 @@ ok "clocks are aligned within a bound" bound_is_told
 
 # ---- What viewers get ----
 
-csv_is_whole() { # 12 columns, every kind of number a number, spans of a worker nested or apart
+csv_is_whole() { # FILE: as StarVZ reads it, each number a number
     ./duite-trace "$scratch/$1" --csv "$scratch/$1.csv" && awk -F, '
-        NR == 1 { if (NF != 12 || $1 != "rank") bad = 1; next }
-        NF != 12 || $5 !~ /^-?[0-9.]+$/ || $6 !~ /^[0-9.]+$/ { print; bad = 1 }
-        { n[$3]++ }
-        END { print n["task"], n["runtime"], n["step"]; exit bad || n["task"] < 100 || !n["runtime"] || !n["step"] || n["step"] % 4 }' \
-        "$scratch/$1.csv"
+        FNR == 1 { columns = NF; table++; next }
+        NF != columns { print; bad = 1 }
+        table == 1 && ($4 !~ /^-?[0-9.]+$/ || $5 < $4 + 0 || $6 !~ /^[0-9.]+$/ || $7 !~ /^[0-9]+$/ || $1 $3 != "StateWorker State") { print; bad = 1 }
+        table == 1 { n[$21]++; if (($13 != "") != ($21 == "task")) { print; bad = 1 } }
+        table == 2 { n[$3]++ }
+        table == 3 && $8 != $9 { links++ }
+        table == 4 && $3 == "Worker" { workers++ }
+        END { print n["task"], n["runtime"], n["step"], n["send"] + 0, links + 0
+              exit bad || n["task"] < 100 || !n["runtime"] || !n["step"] || n["step"] % 4 || links + 0 != n["send"] + 0 || workers != wanted }' \
+        wanted="$2" "$scratch/$1.csv/$states" "$scratch/$1.csv/paje.events.csv" "$scratch/$1.csv/paje.link.csv" "$scratch/$1.csv/entities.csv"
+}
+# By the nesting that Depth tells, the bodies of a worker do not overlap; pandas reads the tables, or else csv does.
+csv_is_nested() {
+    python3 -c '
+import csv, sys
+try:
+    import pandas
+    rows = pandas.read_csv(sys.argv[1]).to_dict("records")
+except ImportError:
+    rows = list(csv.DictReader(open(sys.argv[1])))
+last = {}
+for row in sorted(rows, key=lambda row: (float(row["Start"]), -float(row["End"]))):
+    place = row["ResourceId"], int(row["Depth"])
+    assert float(row["Start"]) >= last.get(place, -1) - 2e-6, row
+    if place[1]:
+        assert float(row["End"]) <= last[place[0], place[1] - 1] + 2e-6, row
+    last[place] = float(row["End"])
+print(len(rows), "spans,", max(int(row["Depth"]) for row in rows), "deep")' "$scratch/$1.csv/$states"
 }
 paje_is_whole() { # times in order, each pop after a push of its own worker, none left; a link of another rank for each send
     ./duite-trace "$scratch/$1" --paje "$scratch/$1.paje" && awk '
@@ -87,6 +111,32 @@ paje_is_whole() { # times in order, each pop after a push of its own worker, non
         END { for (w in depth) if (depth[w]) { print "left open: " w; bad = 1 }
               print sends + 0, "sends,", links + 0, "links,", ends + 0, "ends"
               exit bad || n < 100 || links != sends || ends != sends || (sends > 100) != wanted }' wanted="$2" "$scratch/$1.paje"
+}
+pj_dump_agrees() { # as many states, events and links as the tables have
+    pj_dump "$scratch/$1.paje" > "$scratch/dumped" && awk -F', *' '{ n[$1]++ } END { print n["State"] + 0, n["Event"] + 0, n["Link"] + 0 }' \
+        "$scratch/dumped" | tee "$scratch/counts"
+    awk -F, 'FNR == 1 { table++; next } table > 1 || $6 > 0 { n[table]++ } END { print n[1] + 0, n[2] + 0, n[3] + 0 }' \
+        "$scratch/$1.csv/$states" "$scratch/$1.csv/paje.events.csv" "$scratch/$1.csv/paje.link.csv" | tee "$scratch/wanted"
+    cmp "$scratch/counts" "$scratch/wanted"
+}
+otf2_is_whole() { # each region is left where it was entered last, as often as the tables say; a message is received for each that is sent
+    ./duite-trace "$scratch/$1" --otf2 "$scratch/$1.otf2" && otf2-print "$scratch/$1.otf2/traces.otf2" > "$scratch/printed" &&
+        otf2-print -G "$scratch/$1.otf2/traces.otf2" > "$scratch/defined" && awk '
+        $1 == "ENTER" { open[$2, ++depth[$2]] = $0; sub(/.*Region: /, "", open[$2, depth[$2]]); n++; if ($3 + 0 < at[$2]) bad = 1; at[$2] = $3 + 0 }
+        $1 == "LEAVE" { left = $0; sub(/.*Region: /, "", left); if (!depth[$2] || open[$2, depth[$2]--] != left) { print; bad = 1 } }
+        $1 == "MPI_SEND" { sent++ }
+        $1 == "MPI_RECV" { received++ }
+        END { for (w in depth) if (depth[w]) bad = 1; print n, sent + 0, received + 0; exit bad }' "$scratch/printed" > "$scratch/counts"
+    status=$?
+    cat "$scratch/counts"
+    awk -F, 'FNR == 1 { table++; next } table > 1 || $6 > 0 { n[table]++ } END { print n[1] + 0, n[2] + 0, n[2] + 0 }' \
+        "$scratch/$1.csv/$states" "$scratch/$1.csv/paje.link.csv" | tee "$scratch/wanted"
+    cmp "$scratch/counts" "$scratch/wanted" && test "$(grep -c '^LOCATION .*rank . worker' "$scratch/defined")" = "$(grep -c ,Worker, "$scratch/$1.csv/entities.csv")" &&
+        test $status = 0
+}
+otf2_is_missing() {
+    ./duite-trace "$scratch/$1" --otf2 "$scratch/none" 2> "$scratch/said"
+    test $? = 1 && grep libopen-trace-format2-dev "$scratch/said"
 }
 chrome_is_json() { # as Perfetto takes it: no process or thread 0, no time below 0, spans of a thread nested or apart, all named
     ./duite-trace "$scratch/$1" --chrome "$scratch/$1.json" && python3 -c '
@@ -132,14 +182,28 @@ print(sends, "sends,", len(flows), "arrows")
 assert len(flows) == sends and not any(flows.values()) and (sends > 100) == (ranks > 1)' "$scratch/$1.json" "$2"
 }
 for trace in two ranks; do
-    ok "CSV of $trace" csv_is_whole $trace
+    ok "CSV of $trace" csv_is_whole $trace "$(test $trace = two && echo 2 || echo 4)"
     ok "Paje of $trace" paje_is_whole $trace "$(test $trace = two && echo 0 || echo 1)"
     if command -v python3 > /dev/null; then
+        ok "... whose spans lie in one another" csv_is_nested $trace
         ok "Chrome's JSON of $trace" chrome_is_json $trace "$(test $trace = two && echo 1 || echo 2)"
     else
         skip "Chrome's JSON of $trace" "no python3"
     fi
+    if command -v pj_dump > /dev/null; then
+        ok "pj_dump reads the Paje of $trace" pj_dump_agrees $trace
+    else
+        skip "pj_dump reads the Paje of $trace" "no pj_dump (package pajeng)"
+    fi
+    if ! grep -q '^#define HAVE_OTF2 1' config.h; then
+        ok "no OTF2 of $trace, and the package is named" otf2_is_missing $trace
+    elif command -v otf2-print > /dev/null; then
+        ok "otf2-print reads the OTF2 of $trace" otf2_is_whole $trace
+    else
+        skip "otf2-print reads the OTF2 of $trace" "no otf2-print (package otf2-tools)"
+    fi
 done
+exits 1 "tables where no folder can be" ./duite-trace "$scratch/two" --csv "$scratch/two/tables"
 
 dot_is_whole() { # nodes are named before edges, which never point back
     ./duite-trace "$scratch/$1" --dot "$scratch/$1.dot" && awk '
@@ -149,8 +213,8 @@ dot_is_whole() { # nodes are named before edges, which never point back
 ok "dot of two" dot_is_whole two
 
 graph_is_whole() { # a line a task, which reads earlier ones, each once; costs are the seconds in bodies; other blocks are read, too
-    ./duite-trace "$scratch/two" --graph "$scratch/two.graph" && awk -F, '$3 == "task" || $3 == "runtime" { s += $6 - $7 } END { print s }' \
-        "$scratch/two.csv" > "$scratch/seconds" && awk -v wanted="$(cat "$scratch/seconds")" '
+    ./duite-trace "$scratch/two" --graph "$scratch/two.graph" && awk -F, '$21 == "task" || $21 == "runtime" { s += $6 - $23 } END { print s / 1000 }' \
+        "$scratch/two.csv/$states" > "$scratch/seconds" && awk -v wanted="$(cat "$scratch/seconds")" '
         NR == 1 { bad = $0 != "duite-graph 1"; next }
         { at = NR - 2; cost += $1; split("", seen); place[at] = $(NF - 1) == "@" ? $NF : -1 }
         { for (k = 4; k < 4 + $3; k++) { if ($k >= at || $k in seen) { print; bad = 1 } seen[$k] = 1; others += $2 > 0 && place[$k] != place[at] } }
@@ -162,9 +226,11 @@ ok "a graph for schedulers of two" graph_is_whole
 # ---- Steps ----
 
 ok "the steps 1 and 2 alone" cloth some --threads 2 --trace-steps 1:3
-steps_are() { test "$(./duite-trace "$scratch/some" --csv - | awk -F, '$3 == "step" { printf "%s ", $8 }')" = "1 2 "; }
+steps_are() {
+    ./duite-trace "$scratch/some" --csv "$scratch/some.csv" && test "$(awk -F, '$3 == "step" { printf "%s ", $5 }' "$scratch/some.csv/paje.events.csv")" = "1 2 "
+}
 ok "... have no other steps" steps_are
-fewer() { test "$(./duite-trace "$scratch/some" --csv - | wc -l)" -lt "$(wc -l < "$scratch/two.csv")"; }
+fewer() { test "$(wc -l < "$scratch/some.csv/$states")" -lt "$(wc -l < "$scratch/two.csv/$states")"; }
 ok "... and fewer events" fewer
 exits 1 "... which cannot be compared with counters" ./duite-trace --check "$scratch/some"
 exits 2 "steps that end before they begin" cloth none --trace-steps 3:1

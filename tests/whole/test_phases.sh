@@ -174,7 +174,7 @@ systems() {
 }
 ok "--save-system is of the last step of the last phase" systems
 tools=$(dirname "$DUITE_CLOTH")
-tasks() { "$tools/duite-trace" --csv=trace.csv trace && awk -F, '$3 == "task" { n[$4]++ } END { for (name in n) print name, n[name] }' trace.csv | sort; }
+tasks() { "$tools/duite-trace" --csv=tables trace && awk -F, '$21 == "task" { n[$22]++ } END { for (name in n) print name, n[name] }' tables/paje.worker_state.csv | sort; }
 traces() { # the tasks of a run of the second phase's length, on each of two ranks
     ranks 2 "$DUITE_CLOTH" sheet.yaml --quiet --trace trace --end 0.06 && tasks > one.tasks && cat one.tasks && test "$(wc -l < one.tasks)" -gt 3 &&
         ranks 2 "$DUITE_CLOTH" sheet.yaml --quiet --report report.json --set "$two" --trace trace && tasks > two.tasks && cmp one.tasks two.tasks &&

@@ -127,20 +127,20 @@ static enum predict_limit conclude_limit(const struct predict_result *result)
 int predict_write_paje(const struct predict_machine *m, FILE *file)
 {
     const struct predict_graph *graph = m->graph;
-    struct trace_span *span = base_alloc(graph->n_nodes * sizeof *span + 1);
-    uint32_t *host_of = base_alloc((m->n_workers + 1) * sizeof *host_of);
-    int code = span && host_of ? DUITE_OK : base_no_memory("the predicted run");
-    size_t n = 0;
+    struct trace_spans spans = {.n_workers = m->n_workers};
+    spans.span = base_alloc(graph->n_nodes * sizeof *spans.span + 1);
+    spans.host_of = base_alloc((m->n_workers + 1) * sizeof *spans.host_of);
+    int code = spans.span && spans.host_of ? DUITE_OK : base_no_memory("the predicted run");
     for (uint32_t w = 0; w < m->n_workers && !code; w++)
-        host_of[w] = w / m->cluster->cores;
+        spans.host_of[w] = w / m->cluster->cores;
     for (uint32_t i = 0; i < graph->n_nodes && !code; i++)
         if (graph->node[i].kind == PREDICT_TASK)
-            span[n++] = (struct trace_span){m->begin[i], m->end[i], predict_describe(m, i).kernel,
-                                            m->runs_on[i]};
+            spans.span[spans.n++] =
+                (struct trace_span){m->begin[i], m->end[i], predict_describe(m, i).kernel,
+                                    m->runs_on[i], NULL};
     if (!code)
-        code = trace_write_paje_spans(file, span, n, NULL, host_of, m->n_workers, m->now);
-    base_free(span);
-    base_free(host_of);
+        code = trace_write_paje_spans(file, &spans, NULL, m->now);
+    trace_spans_free(&spans);
     return code;
 }
 

@@ -10,6 +10,7 @@
 struct end {
     uint64_t pair; /* from which rank to which */
     double at;
+    uint64_t bytes;
     uint32_t worker;
 };
 
@@ -35,10 +36,12 @@ static void ends_take(void *context, const struct trace_seen *seen)
         ends->first = trace_first_worker(ends->run, seen->rank);
     ends->rank = seen->rank;
     const uint32_t worker = ends->first + seen->worker;
+    const uint64_t bytes = seen->event->number;
     if (seen->event->kind == TRACE_SEND)
-        ends->sent[ends->n_sent++] = (struct end){rank * n + peer, seen->begin, worker};
+        ends->sent[ends->n_sent++] = (struct end){rank * n + peer, seen->begin, bytes, worker};
     if (seen->event->kind == TRACE_RECEIVE)
-        ends->received[ends->n_received++] = (struct end){peer * n + rank, seen->begin, worker};
+        ends->received[ends->n_received++] =
+            (struct end){peer * n + rank, seen->begin, bytes, worker};
 }
 
 static int compare_ends(const void *a, const void *b)
@@ -65,6 +68,7 @@ static void ends_match(const struct ends *ends, struct trace_messages *messages)
         messages->message[messages->n++] =
             (struct trace_message){.sent = sent->at,
                                    .received = received->at,
+                                   .bytes = sent->bytes,
                                    .from = sent->worker,
                                    .to = received->worker,
                                    .from_rank = (uint32_t)(sent->pair / n),

@@ -76,7 +76,8 @@ void trace_each(const struct trace_run *run,
  * received before it is sent, by that. */
 struct trace_message {
     double sent, received; /* s */
-    uint32_t from, to;     /* workers, numbered through all ranks */
+    uint64_t bytes;
+    uint32_t from, to; /* workers, numbered through all ranks */
     uint32_t from_rank, to_rank;
 };
 

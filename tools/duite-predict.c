@@ -27,6 +27,7 @@ enum {
     OVERHEAD,
     PACKED,
     PAJE,
+    PLATFORM,
     SCHEDULER,
     SEED,
     STEADY,
@@ -37,6 +38,8 @@ const char *argp_program_version = "duite-predict (" PACKAGE_STRING ")";
 
 struct command {
     const char *file, *paje, *scheduler, *mapping, *balance;
+    const char *platform_file, *flat; /* flat: an option for hosts that are alike */
+    struct predict_platform platform;
     struct predict_cluster cluster;
 };
 
@@ -49,6 +52,8 @@ static const struct argp_option OPTIONS[] = {
      1},
     {"bandwidth", BANDWIDTH, "BYTES/S", 0, "of a network card (default: 1.25e9, 10 Gbit/s)", 1},
     {"switch", SWITCH, "BYTES/S", 0, "of all messages together (default: enough)", 1},
+    {"platform", PLATFORM, "FILE", 0,
+     "hosts of several kinds and the switches between them: lines of a file", 1},
     {"message", MESSAGE, "SECONDS", 0,
      "of a core, to send or to take a message (default: as in a trace of several ranks, else 5e-7)",
      1},
@@ -119,31 +124,51 @@ static error_t option_policy(struct argp_state *state, int key, const char *valu
     return 0;
 }
 
+/* Hosts that are alike. False: another option. */
+static bool option_flat(int key, char *value, struct argp_state *state)
+{
+    struct command *command = state->input;
+    struct predict_cluster *cluster = &command->cluster;
+    const char *option = NULL;
+    switch (key) {
+    case HOSTS:
+        cluster->hosts = (uint32_t)option_whole(state, option = "hosts", value, 1, 1 << 20);
+        break;
+    case CORES:
+        cluster->cores =
+            (uint32_t)option_whole(state, option = "cores", value, 1, DUITE_MAX_THREADS);
+        break;
+    case CORE_SPEED:
+        cluster->core_speed = option_number(state, option = "core-speed", value);
+        break;
+    case LATENCY:
+        cluster->latency = option_number(state, option = "latency", value);
+        break;
+    case BANDWIDTH:
+        cluster->bandwidth = option_number(state, option = "bandwidth", value);
+        break;
+    case SWITCH:
+        cluster->capacity = option_number(state, option = "switch", value);
+        break;
+    default:
+        return false;
+    }
+    command->flat = option;
+    return true;
+}
+
 static error_t option_read(int key, char *value, struct argp_state *state)
 {
     struct command *command = state->input;
     struct predict_cluster *cluster = &command->cluster;
+    if (option_flat(key, value, state))
+        return 0;
     switch (key) {
-    case HOSTS:
-        cluster->hosts = (uint32_t)option_whole(state, "hosts", value, 1, 1 << 20);
-        return 0;
-    case CORES:
-        cluster->cores = (uint32_t)option_whole(state, "cores", value, 1, DUITE_MAX_THREADS);
-        return 0;
-    case CORE_SPEED:
-        cluster->core_speed = option_number(state, "core-speed", value);
+    case PLATFORM:
+        command->platform_file = value;
         return 0;
     case BODIES:
         cluster->bodies = option_number(state, "bodies", value);
-        return 0;
-    case LATENCY:
-        cluster->latency = option_number(state, "latency", value);
-        return 0;
-    case BANDWIDTH:
-        cluster->bandwidth = option_number(state, "bandwidth", value);
-        return 0;
-    case SWITCH:
-        cluster->capacity = option_number(state, "switch", value);
         return 0;
     case MESSAGE:
         cluster->message = option_number(state, "message", value);
@@ -170,6 +195,11 @@ static error_t option_read(int key, char *value, struct argp_state *state)
     case PAJE:
         command->paje = value;
         return 0;
+    case ARGP_KEY_END:
+        if (command->platform_file && command->flat)
+            argp_error(state, "--platform says what the hosts and the network are: leave out --%s",
+                       command->flat);
+        return 0;
     default:
         return predict_trace_argument(key, value, state, &command->file);
     }
@@ -184,10 +214,18 @@ static const struct argp ARGP = {
            "Exit codes: 0 done, 1 a file could not be written, 2 the trace or the command line is "
            "wrong."};
 
-static void command_complete(struct command *command, const struct trace_run *run)
+static int command_complete(struct command *command, const struct trace_run *run)
 {
     struct predict_cluster *cluster = &command->cluster;
     const struct trace_header *header = run->rank[0].header;
+    if (command->platform_file) {
+        if (predict_platform_read(&command->platform, command->platform_file, header->workers)) {
+            fprintf(stderr, "duite-predict: %s\n", duite_message());
+            return BAD_INPUT;
+        }
+        cluster->platform = &command->platform;
+        cluster->hosts = command->platform.n_hosts;
+    }
     if (!cluster->hosts)
         cluster->hosts = run->n_ranks;
     if (!cluster->cores)
@@ -198,6 +236,7 @@ static void command_complete(struct command *command, const struct trace_run *ru
         cluster->mapping = duite_mapping_find("metis");
         command->mapping = "metis";
     }
+    return 0;
 }
 
 static double share_of(double a, double b)
@@ -225,15 +264,27 @@ static void kernels_print(const struct trace_run *run, double makespan, double *
     printf("%s\n", *comma ? "" : " none");
 }
 
-static void result_print(const struct command *command, const struct predict_result *r)
+static void cluster_print(const struct command *command, double workers)
 {
     const struct predict_cluster *c = &command->cluster;
-    const double workers = (double)c->hosts * c->cores;
-    const double path = fmax(r->critical_path, r->work / workers);
+    if (c->platform) {
+        printf("  cluster        %u hosts, %.0f cores: %s", c->hosts, workers,
+               command->platform_file);
+        return;
+    }
     printf("  cluster        %u hosts x %u cores, latency %g s, bandwidth %g bytes/s", c->hosts,
            c->cores, c->latency, c->bandwidth);
     if (isfinite(c->capacity))
         printf(", switch %g bytes/s", c->capacity);
+}
+
+static void result_print(const struct command *command, const struct predict_result *r)
+{
+    const struct predict_cluster *c = &command->cluster;
+    const double workers =
+        c->platform ? predict_platform_cores(c->platform) : (double)c->hosts * c->cores;
+    const double path = fmax(r->critical_path, r->work / workers);
+    cluster_print(command, workers);
     printf("\n  policies       scheduler %s, mapping %s, balance %s\n", command->scheduler,
            command->mapping, command->balance);
     printf("  tasks          %llu, stolen %llu\n", (unsigned long long)r->tasks,
@@ -287,9 +338,8 @@ static int command_run(struct command *command, const struct trace_run *run)
         .paje = command->paje ? fopen(command->paje, "w") : NULL,
         .chain = calloc(run->n_kernels + 1u, sizeof(double)),
     };
-    int code = 0;
-    command_complete(command, run);
-    if (command->paje && !more.paje)
+    int code = command_complete(command, run);
+    if (!code && command->paje && !more.paje)
         code = output_failed(command->paje);
     if (!code && !more.chain) {
         fprintf(stderr, "duite-predict: out of memory\n");
@@ -308,6 +358,7 @@ static int command_run(struct command *command, const struct trace_run *run)
     }
     if (!code && (fflush(stdout) || ferror(stdout)))
         code = output_failed("standard output");
+    predict_platform_free(&command->platform);
     free(more.chain);
     return code;
 }

@@ -44,7 +44,6 @@ double predict_body(struct predict_program *p, const struct predict_fork *fork, 
     if (cluster->bodies > 0 &&
         (!cluster->grows || cluster->grows(p->graph->run->kernel_name[fork->kernel])))
         seconds *= cluster->bodies;
-    seconds /= cluster->core_speed;
     if (kernel->fixed && follows)
         fork_fix_owner(p, own);
     predict_spend(p, follows ? own : PREDICT_NONE, fork_host(p->graph, fork, own), seconds);

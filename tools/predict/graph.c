@@ -79,5 +79,6 @@ void predict_graph_free(struct predict_graph *graph)
     free(graph->link);
     free(graph->reader);
     free(graph->hint);
+    predict_platform_free(&graph->flat);
     base_free(graph->memory);
 }

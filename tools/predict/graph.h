@@ -88,18 +88,23 @@ struct predict_graph {
     size_t readers_capacity;
     struct predict_hint *hint;
     size_t n_hints, hints_capacity;
-    void *memory;           /* of the arrays by host */
-    uint32_t *began;        /* by host: the node that begins a replay there, or NONE */
-    uint32_t *over;         /* ... that ends it, or a task that each host runs */
-    uint64_t *all;          /* the set of all hosts */
-    uint32_t *count;        /* by host: zeros, but for a moment */
-    double own[64];         /* by task_type: s of the runtime's own tasks, those of sums left out */
-    double merges;          /* that the sums of the trace took */
-    uint32_t round;         /* the first node of this forked round, or NONE */
-    bool decided;           /* on this forked round, where `began` has the flag's value */
-    double overhead;        /* s between two tasks, */
-    double message;         /* of a core, to send or to take one, */
-    double look;            /* and to look for one, which workers do now and then; 0: no messages */
+    void *memory;    /* of the arrays by host */
+    uint32_t *began; /* by host: the node that begins a replay there, or NONE */
+    uint32_t *over;  /* ... that ends it, or a task that each host runs */
+    uint64_t *all;   /* the set of all hosts */
+    uint32_t *count; /* by host: zeros, but for a moment */
+    double own[64];  /* by task_type: s of the runtime's own tasks, those of sums left out */
+    double merges;   /* that the sums of the trace took */
+    uint32_t round;  /* the first node of this forked round, or NONE */
+    bool decided;    /* on this forked round, where `began` has the flag's value */
+    const struct predict_platform *platform; /* the cluster's, or `flat` */
+    struct predict_platform flat;
+    double slowest; /* speed of a core */
+    struct predict_costs {
+        double overhead;    /* s between two tasks, */
+        double message;     /* of a core, to send or to take one, */
+        double look;        /* and to look for one, which workers do now and then; 0: no messages */
+    } * costs;              /* by host */
     double bodies, medians; /* s, as predict_result has them */
     uint64_t n_tasks, migrated;
     bool plain;           /* only tasks and what they read: no edges of other kinds, no gates */
@@ -109,6 +114,12 @@ struct predict_graph {
 
 /* ---- graph.c: nodes and edges ---- */
 
+/* How fast a core of the host is, against the traced one. Seconds of nodes are those of the traced
+ * one until the graph is made. */
+static inline double predict_speed(const struct predict_graph *graph, uint32_t host)
+{
+    return graph->platform->place[host].speed;
+}
 /* An array has room for one more, or not for want of memory. False: graph->failed, now or before.
  */
 static inline bool predict_grew(struct predict_graph *graph, bool grew)

@@ -1,5 +1,5 @@
-/* The parts of the machine: queues, the events to come, the network, a task as schedulers see it;
- * its start and stop. */
+/* The parts of the machine: queues, the events to come, a task as schedulers see it; its start and
+ * stop. */
 #include "tools/predict/machine.h"
 
 #include "runtime/base/heap.h"
@@ -100,27 +100,6 @@ bool predict_event_take(struct predict_events *events, struct predict_event *fir
     return true;
 }
 
-/* ---- Network ---- */
-
-double predict_message(struct predict_network *network, double now,
-                       const struct predict_node *message, double *flight)
-{
-    const struct predict_cluster *cluster = network->cluster;
-    const uint32_t from = message->host, to = message->block;
-    const uint64_t bytes = message->number;
-    double takes = (double)bytes / cluster->bandwidth;
-    double leaves = fmax(now, network->out[from]);
-    network->out[from] = leaves + takes;
-    double passes = fmax(leaves, network->fabric);
-    network->fabric = passes + (double)bytes / cluster->capacity;
-    double comes = fmax(passes + cluster->latency, network->in[to]);
-    network->in[to] = comes + takes;
-    network->messages++;
-    network->bytes += bytes;
-    *flight = cluster->latency;
-    return comes + takes;
-}
-
 /* ---- Tasks as schedulers see them ---- */
 
 duite_ready predict_describe(const struct predict_machine *m, uint32_t node)
@@ -128,7 +107,7 @@ duite_ready predict_describe(const struct predict_machine *m, uint32_t node)
     const struct predict_node *n = &m->graph->node[node];
     const struct trace_run *run = m->graph->run;
     const uint32_t ran = n->placed ? m->affinity[n->placed - 1] : PREDICT_NONE;
-    const bool has_affinity = ran != PREDICT_NONE && ran / m->cluster->cores == n->host;
+    const bool has_affinity = ran != PREDICT_NONE && m->host_of[ran] == n->host;
     return (duite_ready){.kernel = n->kernel < run->n_kernels
                                        ? run->kernel_name[n->kernel]
                                        : task_own_name(n->kernel - run->n_kernels),
@@ -137,19 +116,21 @@ duite_ready predict_describe(const struct predict_machine *m, uint32_t node)
                          .priority = n->priority,
                          .cost = (double)n->cost,
                          .path = (double)n->path,
-                         .affinity = has_affinity ? 1 + ran % m->cluster->cores : 0};
+                         .affinity = has_affinity ? 1 + ran - m->first[n->host] : 0};
 }
 
 /* ---- Start and stop ---- */
 
-/* A worker sees the others of its host in the order of their numbers, all equally near. */
+/* A worker sees the others of its host in the order of their numbers, all equally near: those from
+ * its own on in a row that has all of the host twice. */
 static void machine_near(struct predict_machine *m)
 {
-    const size_t cores = m->cluster->cores, others = cores - 1;
-    for (size_t w = 0; w < cores; w++) {
-        for (size_t i = 0; i < others; i++)
-            m->other[w * others + i] = (unsigned)((w + 1 + i) % cores);
-        m->near[w] = (duite_near){(unsigned)others, m->other + w * others, m->level};
+    for (uint32_t h = 0; h < m->cluster->hosts; h++) {
+        const uint32_t first = m->first[h], cores = m->host[h].cores;
+        for (uint32_t i = 0; i < 2 * cores; i++)
+            m->other[2 * first + i] = i % cores;
+        for (uint32_t w = 0; w < cores; w++)
+            m->near[first + w] = (duite_near){cores - 1, m->other + 2 * first + w + 1, m->level};
     }
 }
 
@@ -157,7 +138,7 @@ static bool machine_prepare(struct predict_machine *m, bool paje)
 {
     const struct predict_graph *graph = m->graph;
     const size_t n = graph->n_nodes + 1, workers = m->n_workers, hosts = m->cluster->hosts;
-    const size_t cores = m->scheduler->locate ? m->cluster->cores : 0;
+    const size_t near = m->scheduler->locate ? workers : 0;
     m->stride = (m->scheduler->state_size + 63) / 64 * 64 + 64;
     const struct base_array arrays[] = {{&m->states, workers * m->stride, true},
                                         BASE_ZEROS(m->queue, workers),
@@ -168,53 +149,58 @@ static bool machine_prepare(struct predict_machine *m, bool paje)
                                         BASE_ARRAY(m->affinity, graph->n_objects + 1),
                                         BASE_ARRAY(m->last, hosts),
                                         BASE_ARRAY(m->idle, hosts),
+                                        BASE_ZEROS(m->waiting, hosts),
                                         BASE_ZEROS(m->looked, workers),
                                         BASE_ZEROS(m->handler, hosts),
                                         BASE_ZEROS(m->handled, hosts),
-                                        BASE_ZEROS(m->network.out, hosts),
-                                        BASE_ZEROS(m->network.in, hosts),
                                         BASE_ARRAY(m->begin, n),
                                         BASE_ARRAY(m->end, n),
                                         BASE_ZEROS(m->path, n),
-                                        BASE_ZEROS(m->cause, n),
+                                        BASE_ARRAY(m->cause, n),
                                         BASE_ZEROS(m->runs_on, paje ? n : 0),
-                                        BASE_ARRAY(m->near, cores),
-                                        BASE_ARRAY(m->other, cores * cores),
-                                        BASE_ZEROS(m->level, cores),
+                                        BASE_ARRAY(m->first, hosts + 1),
+                                        BASE_ARRAY(m->host_of, workers),
+                                        BASE_ARRAY(m->near, near),
+                                        BASE_ARRAY(m->other, 2 * near),
+                                        BASE_ZEROS(m->level, near),
                                         {0}};
     m->memory = base_arrays(arrays);
     if (!paje)
         m->runs_on = NULL;
-    if (m->memory && cores)
-        machine_near(m);
-    return m->memory;
+    return m->memory && predict_network_start(&m->network, graph, &m->events);
 }
 
 static void machine_scheduler(struct predict_machine *m, uint32_t worker)
 {
-    const uint32_t cores = m->cluster->cores;
+    const uint32_t host = m->host_of[worker];
     const duite_scheduler *scheduler = m->scheduler;
     void *state = predict_worker_state(m, worker);
     if (scheduler->start)
-        scheduler->start(state, worker % cores, cores, m->cluster->seed);
+        scheduler->start(state, worker - m->first[host], m->host[host].cores, m->cluster->seed);
     if (scheduler->locate)
-        scheduler->locate(state, &m->near[worker % cores]);
+        scheduler->locate(state, &m->near[worker]);
     m->queue[worker].heap = scheduler->serve(state) == DUITE_HIGHEST;
 }
 
 static void machine_init(struct predict_machine *m)
 {
-    const uint32_t cores = m->cluster->cores;
+    uint32_t n = 0;
+    for (uint32_t h = 0; h < m->cluster->hosts; h++) {
+        m->first[h] = m->last[h] = n;
+        m->idle[h] = m->host[h].cores - 1;
+        for (uint32_t w = 0; w < m->host[h].cores; w++)
+            m->host_of[n++] = h;
+    }
+    m->first[m->cluster->hosts] = n;
+    if (m->scheduler->locate)
+        machine_near(m);
     for (uint32_t w = 0; w < m->n_workers; w++) {
         machine_scheduler(m, w);
         m->next[w] = m->ran[w] = PREDICT_NONE;
-        m->state[w] = w % cores ? IDLE : RESERVED;
+        m->state[w] = w == m->first[m->host_of[w]] ? RESERVED : IDLE;
     }
-    for (uint32_t h = 0; h < m->cluster->hosts; h++) {
-        m->shared[h].heap = m->queue[h * cores].heap;
-        m->last[h] = h * cores;
-        m->idle[h] = cores - 1;
-    }
+    for (uint32_t h = 0; h < m->cluster->hosts; h++)
+        m->shared[h].heap = m->queue[m->first[h]].heap;
     for (size_t i = 0; i < m->graph->n_nodes; i++)
         m->end[i] = -1;
     for (size_t i = 0; i < m->graph->n_objects; i++)
@@ -235,6 +221,7 @@ void predict_machine_stop(struct predict_machine *m)
         free(m->queue[w].node);
     for (uint32_t h = 0; h < m->cluster->hosts && m->shared; h++)
         free(m->shared[h].node);
+    predict_network_stop(&m->network);
     free(m->events.event);
     base_free(m->memory);
 }

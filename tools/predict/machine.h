@@ -2,6 +2,7 @@
 #define DUITE_TOOLS_PREDICT_MACHINE_H
 
 #include "tools/predict/graph.h"
+#include "tools/predict/network.h"
 
 /* The machine in virtual time: its queues and its events. The files machine.c, simulate.c and
  * predict.c share it. One thread. */
@@ -24,10 +25,13 @@ uint32_t predict_queue_take(struct predict_queue *queue, const struct predict_no
 /* In place of a worker. */
 #define PREDICT_COMES (PREDICT_NONE - 1)
 #define PREDICT_LEFT  (PREDICT_NONE - 2)
+#define PREDICT_GOES  (PREDICT_NONE - 3)
+#define PREDICT_FLOW  (PREDICT_NONE - 4)
 
-/* At a time a node is over, on a worker or (NONE) on none; or a message has LEFT its host, which
- * may overwrite the values; or it COMES to the other one. Events of one time come in the order in
- * which they were put. */
+/* At a time a node is over, on a worker or (NONE) on none; or a message GOES on its way, or has
+ * LEFT its host, which may overwrite the values; or it COMES to the other one; or the first message
+ * of a FLOW, whose number is in place of a node, is through. Events of one time come in the order
+ * in which they were put. */
 struct predict_event {
     double time;
     uint64_t order;
@@ -40,17 +44,6 @@ struct predict_events {
 };
 bool predict_event_put(struct predict_events *events, double time, uint32_t node, uint32_t worker);
 bool predict_event_take(struct predict_events *events, struct predict_event *event);
-
-/* Cards and switch, each free again at a time. */
-struct predict_network {
-    const struct predict_cluster *cluster;
-    double *out, *in; /* by host */
-    double fabric;
-    uint64_t messages, bytes;
-};
-/* When a message that is ready now has arrived; *flight: how much of that is latency. */
-double predict_message(struct predict_network *network, double now,
-                       const struct predict_node *message, double *flight);
 
 enum { IDLE, BUSY, RESERVED }; /* of a worker; the last: it is the main program's */
 
@@ -65,12 +58,15 @@ struct predict_cause {
 struct predict_machine {
     struct predict_graph *graph;
     const struct predict_cluster *cluster;
+    const struct predict_place *host;
     const duite_scheduler *scheduler;
     uint32_t n_workers;
-    void *memory; /* of all arrays but events and those of queues */
+    uint32_t *first;   /* by host: its first worker; behind the last host all */
+    uint32_t *host_of; /* by worker */
+    void *memory;      /* of all arrays but events and those of queues */
     unsigned char *states;
     size_t stride;
-    duite_near *near; /* by core: all are equally near */
+    duite_near *near; /* by worker: all of a host are equally near */
     unsigned *other, *level;
     struct predict_queue *queue, *shared; /* by worker; by host */
     unsigned char *state;                 /* by worker */
@@ -79,6 +75,7 @@ struct predict_machine {
     uint32_t *affinity; /* by object: the worker of its last replayed task, or NONE */
     uint32_t *last;     /* by host: the worker that ended last */
     uint32_t *idle;     /* by host: how many */
+    uint32_t *waiting;  /* by host: tasks in its queues */
     struct predict_events events;
     struct predict_network network;
     double *looked;              /* by worker: when it looked for messages */

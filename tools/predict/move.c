@@ -43,7 +43,9 @@ void predict_spend(struct predict_program *p, uint32_t object, int host, double 
     struct predict_moves *moves = &p->moves;
     uint32_t slot = object == PREDICT_NONE ? 0 : p->name[object].slot;
     for (uint32_t h = 0; h < p->graph->cluster->hosts && host == PREDICT_ALL; h++)
-        moves->other[h] += seconds;
+        moves->other[h] += seconds / predict_speed(p->graph, h);
+    if (host != PREDICT_ALL)
+        seconds /= predict_speed(p->graph, (uint32_t)host);
     if (!slot && host != PREDICT_ALL)
         moves->other[host] += seconds;
     if (!slot)
@@ -61,12 +63,13 @@ void predict_spend(struct predict_program *p, uint32_t object, int host, double 
 static bool move_begin(struct move *m)
 {
     const struct predict_cluster *cluster = m->p->graph->cluster;
+    const struct predict_platform *platform = m->p->graph->platform;
     if (map_moves_new(&m->p->table, &m->moves))
         return false;
     for (size_t h = 0; h < cluster->hosts; h++)
-        m->moves.workers[h] = cluster->cores;
-    m->moves.byte_seconds = 1 / cluster->bandwidth;
-    m->moves.message_seconds = cluster->latency;
+        m->moves.workers[h] = platform->place[h].cores;
+    m->moves.byte_seconds = 1 / predict_platform_bandwidth(platform);
+    m->moves.message_seconds = predict_platform_latency(platform);
     m->moves.seed = cluster->seed;
     m->mapping.own = cluster->mapping;
     m->moves.mapping = &m->mapping;

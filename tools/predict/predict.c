@@ -40,10 +40,14 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
                           "the trace is not whole (%llu events or words are missing): nothing can "
                           "be predicted from it",
                           (unsigned long long)run->lost);
-    if (!c->hosts || !c->cores || c->hosts > MAX_WORKERS / c->cores)
+    if (c->platform && c->platform->n_hosts != c->hosts)
+        return base_error(DUITE_E_ARGUMENT, "the platform has %u hosts, not %u",
+                          c->platform->n_hosts, c->hosts);
+    if (!c->platform && (!c->hosts || !c->cores || c->hosts > MAX_WORKERS / c->cores))
         return base_error(DUITE_E_ARGUMENT, "%u hosts with %u cores are invalid", c->hosts,
                           c->cores);
-    if (!(c->latency >= 0) || !(c->bandwidth > 0) || !(c->capacity > 0) || !(c->core_speed > 0))
+    if (!c->platform &&
+        (!(c->latency >= 0) || !(c->bandwidth > 0) || !(c->capacity > 0) || !(c->core_speed > 0)))
         return base_error(DUITE_E_ARGUMENT,
                           "a latency >= 0, and bandwidth, switch and speed > 0, are expected");
     if (!c->mapping && c->hosts != run->n_ranks)
@@ -132,12 +136,11 @@ int predict_write_paje(const struct predict_machine *m, FILE *file)
     spans.host_of = base_alloc((m->n_workers + 1) * sizeof *spans.host_of);
     int code = spans.span && spans.host_of ? DUITE_OK : base_no_memory("the predicted run");
     for (uint32_t w = 0; w < m->n_workers && !code; w++)
-        spans.host_of[w] = w / m->cluster->cores;
+        spans.host_of[w] = m->host_of[w];
     for (uint32_t i = 0; i < graph->n_nodes && !code; i++)
         if (graph->node[i].kind == PREDICT_TASK)
-            spans.span[spans.n++] =
-                (struct trace_span){m->begin[i], m->end[i], predict_describe(m, i).kernel,
-                                    m->runs_on[i], NULL};
+            spans.span[spans.n++] = (struct trace_span){
+                m->begin[i], m->end[i], predict_describe(m, i).kernel, m->runs_on[i], NULL};
     if (!code)
         code = trace_write_paje_spans(file, &spans, NULL, m->now);
     trace_spans_free(&spans);
@@ -158,9 +161,9 @@ void predict_conclude(struct predict_machine *m, struct predict_result *result, 
                                       .migrated = graph->migrated,
                                       .makespan = fmax(makespan, m->main_time),
                                       .critical_path = m->longest,
-                                      .overhead = graph->overhead,
-                                      .message = graph->message,
-                                      .look = graph->look,
+                                      .overhead = graph->costs[0].overhead,
+                                      .message = graph->costs[0].message,
+                                      .look = graph->costs[0].look,
                                       .bodies = graph->bodies,
                                       .medians = graph->medians,
                                       .idle = all > 0 ? 1 - m->busy / all : 0};

@@ -1,6 +1,7 @@
 #ifndef DUITE_TOOLS_PREDICT_PREDICT_H
 #define DUITE_TOOLS_PREDICT_PREDICT_H
 
+#include "tools/predict/platform.h"
 #include "tools/trace/read.h"
 
 #include <duite_policy.h>
@@ -11,12 +12,14 @@
  * long as in the trace. */
 
 struct predict_cluster {
-    uint32_t hosts, cores; /* cores of each host: a rank with so many workers */
-    double latency;        /* s, of a message */
-    double bandwidth;      /* bytes/s of a network card: one message out and one in at a time */
-    double capacity;       /* bytes/s of the switch, all messages together; infinite: enough */
-    double core_speed;     /* times that of the traced run */
-    double bodies;         /* they take this many times as long as in the trace; 0: as long */
+    uint32_t hosts;    /* each is a rank */
+    uint32_t cores;    /* of each host: so many workers */
+    double core_speed; /* times that of the traced run */
+    double latency;    /* s, of a message */
+    double bandwidth;  /* bytes/s of a network card, in each direction */
+    double capacity;   /* bytes/s of the switch, all messages together; infinite: enough */
+    const struct predict_platform *platform; /* in place of the five above; NULL: none */
+    double bodies; /* they take this many times as long as in the trace; 0: as long */
     bool (*grows)(const char *kernel); /* which do; NULL: all */
     double overhead; /* s, of the runtime between two tasks; < 0: as it was seen */
     double message;  /* s of a core, to send or to take one; < 0: as it was seen, else 5e-7 */

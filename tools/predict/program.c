@@ -8,7 +8,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* s: of a message, and of a look at most, if not measured: in a host's memory. */
 #define SOME_MESSAGE 5e-7
@@ -67,27 +66,28 @@ static double op_share(double own, double n)
 }
 
 /* Each host forks its own tasks and passes over others'. Returns the busiest one's time for each
- * node of an op, over that of a fork of its own. */
+ * node of an op, over that of a fork of its own on a core of the traced speed. */
 static double op_busiest(struct predict_graph *graph, size_t op)
 {
     const uint32_t begin = op ? graph->op[op - 1].end : 0, end = graph->op[op].end;
-    uint32_t all = 0, most = 0;
+    const double forks = graph->op[op].each;
+    uint32_t all = 0;
     for (uint32_t i = begin; i < end; i++) {
         const struct predict_node *node = &graph->node[i];
-        if (!op_forks(graph, node))
-            continue;
         const bool everywhere = op_is_everywhere(graph, node);
-        const uint32_t n = everywhere ? 0 : ++graph->count[node->host];
-        all += everywhere;
-        most = n > most ? n : most;
+        all += everywhere && op_forks(graph, node);
+        graph->count[node->host] += !everywhere && op_forks(graph, node);
     }
-    if (end - begin < graph->cluster->hosts)
-        for (uint32_t i = begin; i < end; i++)
-            graph->count[graph->node[i].host] = 0;
-    else
-        memset(graph->count, 0, graph->cluster->hosts * sizeof *graph->count);
-    const double forks = graph->op[op].each;
-    return op_share(all + most, forks) * forks / (end - begin);
+    double most = op_share(all, forks) / graph->slowest;
+    const bool few = end - begin < graph->cluster->hosts;
+    const uint32_t n = few ? end - begin : graph->cluster->hosts;
+    for (uint32_t i = 0; i < n; i++) {
+        const uint32_t host = few ? graph->node[begin + i].host : i;
+        most = fmax(most, op_share(all + graph->count[host], forks) / predict_speed(graph, host));
+    }
+    for (uint32_t i = 0; i < n; i++)
+        graph->count[few ? graph->node[begin + i].host : i] = 0;
+    return most * forks / (end - begin);
 }
 
 /* The main program forked until `from`, and waits until `to`: each fork takes its share of the
@@ -100,7 +100,7 @@ static void op_end(struct predict_program *p, uint64_t from, uint64_t to, uint32
         return;
     last->node = node;
     last->waits = waits;
-    double tick = graph->run->rank[0].header->tick / graph->cluster->core_speed;
+    double tick = graph->run->rank[0].header->tick;
     double seconds = from > p->since ? tick * (double)(from - p->since) : 0;
     const double own = p->forked ? seconds / (double)p->forked : 0;
     for (size_t i = p->first_op; i < graph->n_ops; i++)
@@ -164,6 +164,7 @@ static void lasting_find(struct predict_program *p)
     struct predict_graph *graph = p->graph;
     struct predict_cluster one = *graph->cluster;
     one.hosts = 1;
+    one.platform = NULL;
     struct predict_graph whole = {.run = graph->run, .cluster = &one, .plain = true};
     p->code = predict_build(&whole);
     for (size_t i = 0; i < graph->n_objects && !p->code; i++)
@@ -276,20 +277,54 @@ static uint64_t program_max_replayed(const struct trace_run *run)
     return 16 * n + 1000;
 }
 
-/* The cores' time for messages: as the cluster says, else as in the trace. */
-static void program_messages(struct predict_graph *graph, const struct predict_times *times)
+/* The cores' time between tasks and for messages: as the cluster says, else as in the trace. */
+static void program_costs(struct predict_graph *graph, const struct predict_times *times)
 {
     const struct predict_cluster *cluster = graph->cluster;
+    const double gap = predict_times_gap(times);
     double message, look;
     const bool seen = predict_times_messages(times, &message, &look);
-    graph->message = seen ? message / cluster->core_speed : SOME_MESSAGE;
-    if (cluster->message >= 0)
-        graph->message = cluster->message;
-    graph->look = seen ? look / cluster->core_speed : fmin(graph->message, SOME_MESSAGE);
-    if (cluster->look >= 0)
-        graph->look = cluster->look;
-    if (cluster->hosts == 1)
-        graph->look = 0;
+    for (uint32_t host = 0; host < cluster->hosts; host++) {
+        struct predict_costs *costs = &graph->costs[host];
+        const double speed = predict_speed(graph, host);
+        costs->overhead = cluster->overhead < 0 ? gap / speed : cluster->overhead;
+        costs->message = seen ? message / speed : SOME_MESSAGE;
+        if (cluster->message >= 0)
+            costs->message = cluster->message;
+        costs->look = seen ? look / speed : fmin(costs->message, SOME_MESSAGE);
+        if (cluster->look >= 0)
+            costs->look = cluster->look;
+        if (cluster->hosts == 1)
+            costs->look = 0;
+    }
+}
+
+/* The platform of the cluster, or the one that its numbers describe. */
+static bool program_platform(struct predict_graph *graph)
+{
+    const struct predict_cluster *cluster = graph->cluster;
+    const struct predict_place host = {.cores = cluster->cores,
+                                       .speed = cluster->core_speed,
+                                       .latency = cluster->latency,
+                                       .bandwidth = cluster->bandwidth,
+                                       .capacity = INFINITY};
+    graph->platform = cluster->platform ? cluster->platform : &graph->flat;
+    if (!cluster->platform &&
+        !predict_platform_flat(&graph->flat, cluster->hosts, &host, cluster->capacity))
+        return false;
+    graph->slowest = INFINITY;
+    for (uint32_t h = 0; h < cluster->hosts; h++)
+        graph->slowest = fmin(graph->slowest, predict_speed(graph, h));
+    return true;
+}
+
+/* All nodes are there: their seconds become those of the cores of their hosts. */
+static void program_pace(struct predict_graph *graph)
+{
+    for (size_t i = 0; i < graph->n_nodes; i++) {
+        struct predict_node *node = &graph->node[i];
+        node->seconds = (float)((double)node->seconds / predict_speed(graph, node->host));
+    }
 }
 
 static bool program_prepare(struct predict_program *p)
@@ -297,24 +332,24 @@ static bool program_prepare(struct predict_program *p)
     struct predict_graph *graph = p->graph;
     const uint32_t hosts = graph->cluster->hosts;
     p->times = predict_times_new(graph->run, graph->cluster->steady);
-    const struct base_array arrays[] = {
-        BASE_ARRAY(graph->began, hosts), BASE_ZEROS(graph->count, hosts),
-        BASE_ARRAY(graph->over, hosts),  BASE_ZEROS(graph->all, base_ranks_words((int)hosts)),
-        BASE_ZEROS(p->blocks_on, hosts), {0}};
+    const struct base_array arrays[] = {BASE_ARRAY(graph->began, hosts),
+                                        BASE_ZEROS(graph->count, hosts),
+                                        BASE_ARRAY(graph->over, hosts),
+                                        BASE_ZEROS(graph->all, base_ranks_words((int)hosts)),
+                                        BASE_ZEROS(p->blocks_on, hosts),
+                                        BASE_ARRAY(graph->costs, hosts),
+                                        {0}};
     graph->memory = base_arrays(arrays);
     graph->round = PREDICT_NONE;
-    if (!p->times || !graph->memory ||
+    if (!p->times || !graph->memory || !program_platform(graph) ||
         data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1) ||
         !predict_moves_start(p))
         return false;
     for (uint32_t host = 0; host < hosts; host++)
         base_ranks_add(graph->all, (int)host);
     for (uint32_t kind = 0; kind < sizeof graph->own / sizeof graph->own[0]; kind++)
-        graph->own[kind] = predict_times_own(p->times, kind) / graph->cluster->core_speed;
-    graph->overhead = graph->cluster->overhead < 0
-                          ? predict_times_gap(p->times) / graph->cluster->core_speed
-                          : graph->cluster->overhead;
-    program_messages(graph, p->times);
+        graph->own[kind] = predict_times_own(p->times, kind);
+    program_costs(graph, p->times);
     predict_times_spread(p->times, &graph->bodies, &graph->medians);
     return true;
 }
@@ -327,8 +362,9 @@ int predict_build(struct predict_graph *graph)
     int code = program_prepare(&p) ? program_walk(&p) : base_no_memory("the graph of a trace");
     graph->n_tasks = p.tasks;
     if (!code && graph->merges > 0)
-        predict_sums_take(graph,
-                          predict_times_sums(p.times) / graph->merges / graph->cluster->core_speed);
+        predict_sums_take(graph, predict_times_sums(p.times) / graph->merges);
+    if (!code)
+        program_pace(graph);
     predict_moves_stop(&p);
     data_table_stop(&p.table);
     free(p.block);

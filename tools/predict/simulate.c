@@ -18,9 +18,9 @@
  * the present one. */
 static double message_handle(struct predict_machine *m, uint32_t host)
 {
-    const double begins = fmax(m->now, m->handler[host]);
-    m->handler[host] = begins + m->graph->message;
-    m->handled[host] += m->graph->message;
+    const double begins = fmax(m->now, m->handler[host]), message = m->graph->costs[host].message;
+    m->handler[host] = begins + message;
+    m->handled[host] += message;
     return begins;
 }
 
@@ -31,9 +31,10 @@ static double worker_pay(struct predict_machine *m, uint32_t worker, uint32_t ho
     const bool none_idle = m->state[worker] != IDLE && !m->idle[host];
     double seconds = none_idle ? m->handled[host] : 0;
     m->handled[host] = 0;
-    if (m->graph->look > 0 && m->now - m->looked[worker] >= PREDICT_LOOKS) {
+    const double look = m->graph->costs[host].look;
+    if (look > 0 && m->now - m->looked[worker] >= PREDICT_LOOKS) {
         m->looked[worker] = m->now;
-        seconds += m->graph->look;
+        seconds += look;
     }
     return seconds;
 }
@@ -44,7 +45,7 @@ static void worker_begin(struct predict_machine *m, uint32_t node, uint32_t work
 {
     const struct predict_node *n = &m->graph->node[node];
     uint32_t before = m->ran[worker];
-    double begin = m->now + (before == PREDICT_NONE ? 0 : m->graph->overhead);
+    double begin = m->now + (before == PREDICT_NONE ? 0 : m->graph->costs[n->host].overhead);
     begin += worker_pay(m, worker, n->host);
     /* The worker held the task up, if the task was ready before the worker was free. */
     if (before != PREDICT_NONE && m->end[before] >= m->now && m->begin[node] < m->now)
@@ -66,8 +67,10 @@ static void worker_begin(struct predict_machine *m, uint32_t node, uint32_t work
 static uint32_t worker_search(struct predict_machine *m, uint32_t worker)
 {
     const struct predict_node *nodes = m->graph->node;
-    const uint32_t cores = m->cluster->cores, host = worker / cores, first = host * cores;
+    const uint32_t host = m->host_of[worker], first = m->first[host], cores = m->host[host].cores;
     void *state = predict_worker_state(m, worker);
+    if (!m->waiting[host])
+        return PREDICT_NONE;
     duite_end end = m->scheduler->serve(state);
     uint32_t node = predict_queue_take(&m->queue[worker], nodes, end);
     if (node == PREDICT_NONE)
@@ -80,6 +83,7 @@ static uint32_t worker_search(struct predict_machine *m, uint32_t worker)
             node = predict_queue_take(&m->queue[first + victim], nodes, DUITE_OLDEST);
         m->stolen += node != PREDICT_NONE;
     }
+    m->waiting[host] -= node != PREDICT_NONE;
     return node;
 }
 
@@ -91,14 +95,14 @@ static void worker_look(struct predict_machine *m, uint32_t worker)
         worker_begin(m, node, worker);
     } else if (m->state[worker] != IDLE) {
         m->state[worker] = IDLE;
-        m->idle[worker / m->cluster->cores]++;
+        m->idle[m->host_of[worker]]++;
     }
 }
 
 /* Wakes a worker for the tasks in `queue`: its owner, or one that may take them. */
 static void host_wake(struct predict_machine *m, uint32_t host, unsigned queue)
 {
-    const uint32_t cores = m->cluster->cores, first = host * cores;
+    const uint32_t cores = m->host[host].cores, first = m->first[host];
     unsigned begin = queue < cores ? queue : 0;
     for (unsigned i = 0; i < cores && m->idle[host]; i++) {
         uint32_t worker = first + (begin + i) % cores;
@@ -110,11 +114,17 @@ static void host_wake(struct predict_machine *m, uint32_t host, unsigned queue)
     }
 }
 
+static void node_wait(struct predict_machine *m, struct predict_queue *queue, uint32_t node)
+{
+    m->failed |= !predict_queue_put(queue, m->graph->node, node);
+    m->waiting[m->graph->node[node].host]++;
+}
+
 /* A task is ready. worker: the one that made it ready, or NONE. */
 static void node_task_ready(struct predict_machine *m, uint32_t node, uint32_t worker)
 {
-    const uint32_t cores = m->cluster->cores, host = m->graph->node[node].host;
-    bool here = worker != PREDICT_NONE && worker / cores == host;
+    const uint32_t host = m->graph->node[node].host;
+    bool here = worker != PREDICT_NONE && m->host_of[worker] == host;
     void *state = predict_worker_state(m, here ? worker : m->last[host]);
     duite_ready ready = predict_describe(m, node);
     m->begin[node] = m->now; /* until it starts: since when it is ready */
@@ -125,40 +135,55 @@ static void node_task_ready(struct predict_machine *m, uint32_t node, uint32_t w
         }
     }
     unsigned queue = m->scheduler->place(state, &ready);
-    bool own = queue < cores;
-    m->failed |= !predict_queue_put(own ? &m->queue[host * cores + queue] : &m->shared[host],
-                                    m->graph->node, node);
+    bool own = queue < m->host[host].cores;
+    node_wait(m, own ? &m->queue[m->first[host] + queue] : &m->shared[host], node);
     host_wake(m, host, queue);
 }
 
 /* ---- Nodes ---- */
 
-static double message_send(struct predict_machine *m, uint32_t node, double *flight)
+static void message_goes(struct predict_machine *m, uint32_t node)
 {
-    const struct predict_node *n = &m->graph->node[node];
-    const double begins = message_handle(m, n->host);
-    m->failed |= !predict_event_put(&m->events, begins + m->graph->message, node, PREDICT_LEFT);
-    return predict_message(&m->network, begins, n, flight);
+    m->failed |= !predict_network_send(&m->network, m->now, node);
+}
+
+/* The message goes as soon as its host comes to it. */
+static void message_send(struct predict_machine *m, uint32_t node)
+{
+    const uint32_t host = m->graph->node[node].host;
+    const double begins = message_handle(m, host);
+    const double left = begins + m->graph->costs[host].message;
+    m->failed |= !predict_event_put(&m->events, left, node, PREDICT_LEFT);
+    if (begins > m->now)
+        m->failed |= !predict_event_put(&m->events, begins, node, PREDICT_GOES);
+    else
+        message_goes(m, node);
+}
+
+static void flow_is_due(struct predict_machine *m, const struct predict_event *event)
+{
+    double latency;
+    const uint32_t node =
+        predict_network_take(&m->network, m->now, event->node, event->order, &latency, &m->failed);
+    if (node == PREDICT_NONE)
+        return;
+    m->cause[node].flight = (float)latency;
+    m->failed |= !predict_event_put(&m->events, m->now + latency, node, PREDICT_COMES);
 }
 
 static void machine_ready(struct predict_machine *m, uint32_t node, uint32_t worker)
 {
-    const struct predict_node *n = &m->graph->node[node];
-    double flight = 0, end = m->now;
-    const uint32_t on = n->kind == PREDICT_MESSAGE ? PREDICT_COMES : PREDICT_NONE;
     m->begin[node] = m->now;
-    switch (n->kind) {
+    switch (m->graph->node[node].kind) {
     case PREDICT_TASK:
         node_task_ready(m, node, worker);
-        return;
+        break;
     case PREDICT_MESSAGE:
-        end = message_send(m, node, &flight);
+        message_send(m, node);
         break;
     default:
-        break;
+        m->failed |= !predict_event_put(&m->events, m->now, node, PREDICT_NONE);
     }
-    m->cause[node].flight = (float)flight;
-    m->failed |= !predict_event_put(&m->events, end, node, on);
 }
 
 /* A message is in its host's card: there it waits until the host comes to it. */
@@ -174,7 +199,9 @@ static bool message_waits(struct predict_machine *m, uint32_t node)
 /* A node is over for the one that waits for it. */
 static void path_extend(struct predict_machine *m, uint32_t node, uint32_t to)
 {
-    m->path[to] = fmax(m->path[to], m->path[node] + (double)m->graph->node[node].seconds);
+    const double path = m->path[node] + (double)m->graph->node[node].seconds;
+    if (path > m->path[to])
+        m->path[to] = path;
 }
 
 static void node_count_down(struct predict_machine *m, uint32_t node, uint32_t by, uint32_t worker)
@@ -208,7 +235,7 @@ static void main_go_on(struct predict_machine *m)
     if (m->op == m->graph->n_ops)
         return;
     for (uint32_t host = 0; host < m->cluster->hosts; host++) {
-        uint32_t worker = host * m->cluster->cores;
+        uint32_t worker = m->first[host];
         if (m->state[worker] == IDLE) {
             m->idle[host]--;
             m->state[worker] = RESERVED;
@@ -233,8 +260,8 @@ static void main_block(struct predict_machine *m)
     m->blocked = true;
     m->now = fmax(m->now, m->main_time);
     for (uint32_t host = 0; host < m->cluster->hosts; host++)
-        if (m->state[host * m->cluster->cores] == RESERVED)
-            worker_look(m, host * m->cluster->cores);
+        if (m->state[m->first[host]] == RESERVED)
+            worker_look(m, m->first[host]);
     if (main_may_go_on(m))
         main_go_on(m); /* it does not wait */
 }
@@ -268,19 +295,20 @@ static void worker_free(struct predict_machine *m, uint32_t worker)
 {
     uint32_t node = m->next[worker];
     m->next[worker] = PREDICT_NONE;
-    bool taken = !m->blocked && m->op < m->graph->n_ops && worker % m->cluster->cores == 0;
+    const uint32_t host = m->host_of[worker];
+    bool taken = !m->blocked && m->op < m->graph->n_ops && worker == m->first[host];
     if (worker == 0 && m->wanted) {
         if (node != PREDICT_NONE) /* others take the node that it would have run */
-            m->failed |= !predict_queue_put(&m->queue[0], m->graph->node, node);
+            node_wait(m, &m->queue[0], node);
         m->state[0] = RESERVED;
         m->went_on = m->latest;
         main_go_on(m);
         host_wake(m, 0, 1);
     } else if (taken) {
         if (node != PREDICT_NONE)
-            m->failed |= !predict_queue_put(&m->queue[worker], m->graph->node, node);
+            node_wait(m, &m->queue[worker], node);
         m->state[worker] = RESERVED;
-        host_wake(m, worker / m->cluster->cores, 1);
+        host_wake(m, host, 1);
     } else if (node != PREDICT_NONE) {
         worker_begin(m, node, worker);
     } else {
@@ -310,7 +338,7 @@ static void node_over(struct predict_machine *m, uint32_t node, uint32_t worker)
     m->over++;
     m->latest = node;
     if (worker != PREDICT_NONE)
-        m->last[worker / m->cluster->cores] = worker;
+        m->last[m->host_of[worker]] = worker;
     m->longest = fmax(m->longest, m->path[node] + (double)graph->node[node].seconds);
     if (graph->node[node].kind == PREDICT_MESSAGE)
         message_release(m, node, false);
@@ -324,6 +352,28 @@ static void node_over(struct predict_machine *m, uint32_t node, uint32_t worker)
     main_try(m);
 }
 
+static void event_handle(struct predict_machine *m, const struct predict_event *event)
+{
+    switch (event->worker) {
+    case PREDICT_FLOW:
+        flow_is_due(m, event);
+        break;
+    case PREDICT_GOES:
+        message_goes(m, event->node);
+        break;
+    case PREDICT_LEFT:
+        message_release(m, event->node, true);
+        break;
+    case PREDICT_COMES:
+        if (message_waits(m, event->node))
+            break;
+        node_over(m, event->node, PREDICT_NONE);
+        break;
+    default:
+        node_over(m, event->node, event->worker);
+    }
+}
+
 static int machine_run(struct predict_machine *m)
 {
     struct predict_event event;
@@ -332,12 +382,7 @@ static int machine_run(struct predict_machine *m)
         if (m->events.n && m->events.event[0].time < next) {
             predict_event_take(&m->events, &event);
             m->now = event.time;
-            if (event.worker == PREDICT_LEFT)
-                message_release(m, event.node, true);
-            else if (event.worker != PREDICT_COMES)
-                node_over(m, event.node, event.worker);
-            else if (!message_waits(m, event.node))
-                node_over(m, event.node, PREDICT_NONE);
+            event_handle(m, &event);
         } else if (next < INFINITY) {
             main_step(m);
         } else {
@@ -360,8 +405,8 @@ int predict_simulate(struct predict_graph *graph, struct predict_result *result,
     struct predict_machine m = {.graph = graph,
                                 .cluster = graph->cluster,
                                 .scheduler = graph->cluster->scheduler,
-                                .n_workers = graph->cluster->hosts * graph->cluster->cores,
-                                .network = {.cluster = graph->cluster},
+                                .host = graph->platform->place,
+                                .n_workers = predict_platform_cores(graph->platform),
                                 .latest = PREDICT_NONE,
                                 .went_on = PREDICT_NONE};
     int code =

@@ -158,7 +158,7 @@ static void csv_put_links(const struct csv_tables *t, FILE *file)
     }
 }
 
-/* Who is in whom. */
+/* Ranks in the run, workers in ranks. */
 static void csv_put_entities(const struct csv_tables *t, FILE *file)
 {
     fputs("Parent,Name,Type,Nature\n0,0,0,Container\n0,root,MPI Program,Container\n", file);

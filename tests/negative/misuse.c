@@ -7,26 +7,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int set_body(const duite_call *call)
+KERNEL_SHARED(SET, "set", .access = {DUITE_W}, .args_size = sizeof(int32_t))
 {
     for (size_t i = 0; i < duite_count(call, 0); i++)
         duite_out(call, 0, int32_t)[i] = *(const int32_t *)call->args;
     return 0;
 }
 
-static int copy_body(const duite_call *call)
+KERNEL_SHARED(COPY, "copy", .access = {DUITE_R, DUITE_W})
 {
     duite_out(call, 1, int32_t)[0] = duite_in(call, 0, int32_t)[0] + 1;
     return 0;
 }
 
-static int add_body(const duite_call *call)
+KERNEL_SHARED(ADD, "add", .access = {DUITE_CW})
 {
     duite_out(call, 0, int32_t)[0] += 1;
     return 0;
 }
 
-static int fail_body(const duite_call *call)
+KERNEL_SHARED(FAIL, "fail", .access = {DUITE_RW}, .args_size = sizeof(int32_t))
 {
     const int32_t code = *(const int32_t *)call->args;
 
@@ -34,11 +34,17 @@ static int fail_body(const duite_call *call)
     return duite_fail(call, code, "sentence %d of a body", code);
 }
 
-static int empty_body(const duite_call *call)
+KERNEL_SHARED(EMPTY, "empty")
 {
     (void)call;
     return 0;
 }
+
+const duite_kernel MANY = {
+    .name = "many", .body = EMPTY_body, .access = {DUITE_R}, .variadic = DUITE_R};
+const duite_kernel EVERYWHERE = {
+    .name = "everywhere", .body = COPY_body, .access = {DUITE_R, DUITE_W}, .replicated = 1};
+const duite_kernel UNLISTED = {.name = "unlisted", .body = EMPTY_body, .access = {DUITE_RW}};
 
 double misuse_megabytes(void)
 {
@@ -46,19 +52,6 @@ double misuse_megabytes(void)
 
     return 1e-6 * (double)(info.uordblks + info.hblkhd);
 }
-
-const duite_kernel SET = {
-    .name = "set", .body = set_body, .access = {DUITE_W}, .args_size = sizeof(int32_t)};
-const duite_kernel COPY = {.name = "copy", .body = copy_body, .access = {DUITE_R, DUITE_W}};
-const duite_kernel ADD = {.name = "add", .body = add_body, .access = {DUITE_CW}};
-const duite_kernel FAIL = {
-    .name = "fail", .body = fail_body, .access = {DUITE_RW}, .args_size = sizeof(int32_t)};
-const duite_kernel MANY = {
-    .name = "many", .body = empty_body, .access = {DUITE_R}, .variadic = DUITE_R};
-const duite_kernel EMPTY = {.name = "empty", .body = empty_body};
-const duite_kernel EVERYWHERE = {
-    .name = "everywhere", .body = copy_body, .access = {DUITE_R, DUITE_W}, .replicated = 1};
-const duite_kernel UNLISTED = {.name = "unlisted", .body = empty_body, .access = {DUITE_RW}};
 
 int rank, ranks;
 

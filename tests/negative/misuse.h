@@ -4,6 +4,8 @@
 /* What the tests of misuse share: a few kernels, a runtime started with them, and TAP over ranks.
  */
 
+#include "tests/support/kernel.h"
+
 #include <duite.h>
 
 /* Kernels: SET writes its argument; COPY adds 1 to what it reads; ADD contributes 1; FAIL writes

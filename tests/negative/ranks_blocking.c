@@ -22,14 +22,13 @@ int MPI_Isend(const void *buffer, int count, MPI_Datatype type, int to, int tag,
 }
 
 /* Adds 1, slowly. */
-static int slow_body(const duite_call *call)
+KERNEL(SLOW, "slow", .access = {DUITE_RW})
 {
     usleep(700000);
     duite_out(call, 0, int32_t)[0] += 1;
     return 0;
 }
 
-static const duite_kernel SLOW = {.name = "slow", .body = slow_body, .access = {DUITE_RW}};
 static const duite_kernel *const KERNELS[] = {&SET, &COPY, &ADD, &SLOW, NULL};
 
 static duite *begin(void)

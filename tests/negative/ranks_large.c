@@ -51,7 +51,7 @@ static double value(size_t i)
     return (double)(i % PERIOD) + 1;
 }
 
-static int fill_body(const duite_call *call)
+KERNEL(FILL, "fill", .access = {DUITE_W})
 {
     double *values = duite_out(call, 0, double);
     for (size_t i = 0; i < duite_count(call, 0); i++)
@@ -60,7 +60,7 @@ static int fill_body(const duite_call *call)
 }
 
 /* How many values are wrong. */
-static int check_body(const duite_call *call)
+KERNEL(CHECK, "check", .access = {DUITE_R, DUITE_W})
 {
     const double *values = duite_in(call, 0, double);
     int64_t wrong = 0;
@@ -69,10 +69,6 @@ static int check_body(const duite_call *call)
     duite_out(call, 1, int64_t)[0] = wrong;
     return 0;
 }
-
-static const duite_kernel FILL = {.name = "fill", .body = fill_body, .access = {DUITE_W}};
-static const duite_kernel CHECK = {
-    .name = "check", .body = check_body, .access = {DUITE_R, DUITE_W}};
 
 static int build(duite *rt, void *context)
 {

@@ -21,7 +21,7 @@ static void nap(double seconds)
         ;
 }
 
-static int nap_body(const duite_call *call)
+KERNEL(NAP, "nap", .access = {DUITE_RW}, .args_size = sizeof(double))
 {
     nap(*(const double *)call->args);
     duite_out(call, 0, int32_t)[0]++;
@@ -29,7 +29,7 @@ static int nap_body(const duite_call *call)
 }
 
 /* Waits in vain for what its child reads. */
-static int ask_body(const duite_call *call)
+KERNEL(ASK, "ask", .access = {DUITE_RP, DUITE_WP})
 {
     int32_t value;
     duite_fork(call->rt, &COPY, NULL, 2,
@@ -37,17 +37,11 @@ static int ask_body(const duite_call *call)
     return duite_get(call->rt, call->param[1].object, &value) ? 5 : 6;
 }
 
-static const duite_kernel NAP = {
-    .name = "nap", .body = nap_body, .access = {DUITE_RW}, .args_size = sizeof(double)};
-static const duite_kernel ASK = {.name = "ask", .body = ask_body, .access = {DUITE_RP, DUITE_WP}};
-
 /* With all that it forks it runs anywhere. */
-static int tree_body(const duite_call *call)
+KERNEL(TREE, "tree", .access = {DUITE_WP})
 {
     return duite_fork(call->rt, &SET, &(int32_t){1}, 1, &call->param[0].object);
 }
-
-static const duite_kernel TREE = {.name = "tree", .body = tree_body, .access = {DUITE_WP}};
 
 static duite *start(const char *how)
 {

@@ -11,43 +11,6 @@ enum { COUNT = 20, ROUNDS = 4, SUM = 0 + 3 * ((1 + 3 * 1) + 3 * 1) };
 
 static const char *balance = "none";
 
-/* value[i] = 10 value[i] + the argument. */
-static int digit(const duite_call *call)
-{
-    for (size_t i = 0; i < duite_count(call, 0); i++)
-        duite_out(call, 0, int32_t)[i] =
-            10 * duite_out(call, 0, int32_t)[i] + *(const int32_t *)call->args;
-    return 0;
-}
-
-static int one(const duite_call *call)
-{
-    for (size_t i = 0; i < duite_count(call, 0); i++)
-        duite_out(call, 0, int32_t)[i] = 1;
-    return 0;
-}
-
-/* Leaves one element less, until there is none. */
-static int shrink(const duite_call *call)
-{
-    const size_t count = duite_count(call, 0);
-
-    return duite_resize(call, 0, count ? count - 1 : 0);
-}
-
-static int count_down(const duite_call *call)
-{
-    duite_out(call, 0, int32_t)[0] -= 1;
-    return 0;
-}
-
-static int copy(const duite_call *call)
-{
-    for (size_t i = 0; i < duite_count(call, 0); i++)
-        duite_out(call, 1, int32_t)[i] = duite_in(call, 0, int32_t)[i];
-    return 0;
-}
-
 static void add_thrice(void *left, const void *right, size_t count, duite_type type)
 {
     (void)type;
@@ -56,13 +19,43 @@ static void add_thrice(void *left, const void *right, size_t count, duite_type t
 }
 
 static const duite_law LAW = {.name = "thrice", .type = DUITE_I32, .combine = add_thrice};
-static const duite_kernel DIGIT = {
-    .name = "digit", .body = digit, .access = {DUITE_RW}, .args_size = sizeof(int32_t)};
-static const duite_kernel ONE = {
-    .name = "one", .body = one, .access = {DUITE_CW, DUITE_R}, .law = DUITE_LAWS(&LAW)};
-static const duite_kernel SHRINK = {.name = "shrink", .body = shrink, .access = {DUITE_RW}};
-static const duite_kernel LOOK = {.name = "look", .body = copy, .access = {DUITE_R, DUITE_W}};
-static const duite_kernel DOWN = {.name = "down", .body = count_down, .access = {DUITE_RW}};
+
+/* value[i] = 10 value[i] + the argument. */
+KERNEL(DIGIT, "digit", .access = {DUITE_RW}, .args_size = sizeof(int32_t))
+{
+    for (size_t i = 0; i < duite_count(call, 0); i++)
+        duite_out(call, 0, int32_t)[i] =
+            10 * duite_out(call, 0, int32_t)[i] + *(const int32_t *)call->args;
+    return 0;
+}
+
+KERNEL(ONE, "one", .access = {DUITE_CW, DUITE_R}, .law = DUITE_LAWS(&LAW))
+{
+    for (size_t i = 0; i < duite_count(call, 0); i++)
+        duite_out(call, 0, int32_t)[i] = 1;
+    return 0;
+}
+
+/* Leaves one element less, until there is none. */
+KERNEL(SHRINK, "shrink", .access = {DUITE_RW})
+{
+    const size_t count = duite_count(call, 0);
+
+    return duite_resize(call, 0, count ? count - 1 : 0);
+}
+
+KERNEL(DOWN, "down", .access = {DUITE_RW})
+{
+    duite_out(call, 0, int32_t)[0] -= 1;
+    return 0;
+}
+
+KERNEL(LOOK, "look", .access = {DUITE_R, DUITE_W})
+{
+    for (size_t i = 0; i < duite_count(call, 0); i++)
+        duite_out(call, 1, int32_t)[i] = duite_in(call, 0, int32_t)[i];
+    return 0;
+}
 
 struct objects {
     duite_object a, b, sum, seen, list, flag;

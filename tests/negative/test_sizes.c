@@ -1,6 +1,7 @@
 /* Objects that change size beyond what they may, and calls that ask for what they have not. */
 
 #include "tests/negative/refused.h"
+#include "tests/support/kernel.h"
 
 #include <stdint.h>
 
@@ -15,18 +16,13 @@ struct wish {
 
 static int asked; /* what duite_resize returned last */
 
-static int ask(const duite_call *call)
+KERNEL(ASK, "ask", .access = {DUITE_RW, DUITE_RW, DUITE_R}, .args_size = sizeof(struct wish))
 {
     const struct wish *wish = call->args;
 
     asked = duite_resize(call, wish->parameter, wish->count);
     return wish->speaks ? duite_fail_text(call, wish->code, "the body's own %s") : wish->code;
 }
-
-static const duite_kernel ASK = {.name = "ask",
-                                 .body = ask,
-                                 .access = {DUITE_RW, DUITE_RW, DUITE_R},
-                                 .args_size = sizeof(struct wish)};
 
 static duite_object sized, fixed, read_only;
 

@@ -40,14 +40,12 @@ static void try_all(struct attempt *attempt)
     *code++ = duite_count_all(rt, &counters);
 }
 
-static int trying_body(const duite_call *call)
+KERNEL(TRYING, "trying", .access = {DUITE_RW})
 {
     try_all(call->context);
     duite_out(call, 0, int32_t)[0] += 1;
     return 0;
 }
-
-static const duite_kernel TRYING = {.name = "trying", .body = trying_body, .access = {DUITE_RW}};
 
 static void *trying_thread(void *context)
 {

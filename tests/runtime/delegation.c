@@ -8,7 +8,8 @@
 
 static atomic_int mixed; /* on this rank */
 
-static int mix_body(const duite_call *call)
+KERNEL_SHARED(MIX, "mix", .access = {DUITE_R, DUITE_RW, DUITE_W, DUITE_CW},
+              .args_size = sizeof(int32_t))
 {
     const int32_t add = *(const int32_t *)call->args;
     atomic_fetch_add(&mixed, 1);
@@ -19,12 +20,8 @@ static int mix_body(const duite_call *call)
     }
     return 0;
 }
-const duite_kernel MIX = {.name = "mix",
-                          .body = mix_body,
-                          .access = {DUITE_R, DUITE_RW, DUITE_W, DUITE_CW},
-                          .args_size = sizeof(int32_t)};
 
-static int grow_body(const duite_call *call)
+KERNEL_SHARED(GROW, "grow", .access = {DUITE_RW})
 {
     const size_t n = duite_count(call, 0) + 1;
     const int code = duite_resize(call, 0, n);
@@ -32,7 +29,6 @@ static int grow_body(const duite_call *call)
         duite_out(call, 0, int32_t)[i] = (int32_t)n;
     return code;
 }
-const duite_kernel GROW = {.name = "grow", .body = grow_body, .access = {DUITE_RW}};
 
 duite *delegation_start(const duite_kernel *const *kernels, const char *balance)
 {

@@ -1,7 +1,8 @@
 /* What the tests of graphs that change, fail or are refused share. */
 #include "tests/runtime/graphs_fixture.h"
+#include "tests/support/kernel.h"
 
-static int digit(const duite_call *call)
+KERNEL_SHARED(DIGIT, "digit", .access = {DUITE_RW}, .args_size = sizeof(int32_t))
 {
     uint64_t *x = duite_out(call, 0, uint64_t); /* wraps around */
 
@@ -10,7 +11,7 @@ static int digit(const duite_call *call)
 }
 
 /* Fails, with its argument, when the number it reads has come to 100 or more. */
-static int limit(const duite_call *call)
+KERNEL_SHARED(LIMIT, "limit", .access = {DUITE_R, DUITE_W}, .args_size = sizeof(int32_t))
 {
     const int64_t x = duite_in(call, 0, int64_t)[0];
 
@@ -18,30 +19,22 @@ static int limit(const duite_call *call)
     return x < 100 ? 0 : duite_fail(call, *(const int32_t *)call->args, "x is %d", (int)x);
 }
 
-static int round_digit(const duite_call *call)
+KERNEL_SHARED(ROUND_DIGIT, "round digit", .access = {DUITE_RW})
 {
     duite_out(call, 0, int64_t)[0] = 10 * duite_in(call, 0, int64_t)[0] + (int64_t)call->round;
     return 0;
 }
 
-static int lend(const duite_call *call)
+KERNEL_SHARED(LEND, "lend", .access = {DUITE_RWP})
 {
     return DUITE_FORK(call->rt, &ROUND_DIGIT, NULL, call->param[0].object);
 }
 
-static int copy(const duite_call *call)
+KERNEL_SHARED(COPY, "copy", .access = {DUITE_R, DUITE_W})
 {
     duite_out(call, 1, int64_t)[0] = duite_in(call, 0, int64_t)[0];
     return 0;
 }
-
-const duite_kernel DIGIT = {
-    .name = "digit", .body = digit, .access = {DUITE_RW}, .args_size = sizeof(int32_t)};
-const duite_kernel LIMIT = {
-    .name = "limit", .body = limit, .access = {DUITE_R, DUITE_W}, .args_size = sizeof(int32_t)};
-const duite_kernel ROUND_DIGIT = {.name = "round digit", .body = round_digit, .access = {DUITE_RW}};
-const duite_kernel LEND = {.name = "lend", .body = lend, .access = {DUITE_RWP}};
-const duite_kernel COPY = {.name = "copy", .body = copy, .access = {DUITE_R, DUITE_W}};
 
 int graphs_build(duite *rt, void *context)
 {

@@ -46,49 +46,40 @@ const duite_balancer TOLD = {.size = sizeof(duite_balancer),
                              .summary = "what the test wants",
                              .migrate = migrate};
 
-static int step_body(const duite_call *call)
+KERNEL_SHARED(STEP, "step", .access = {DUITE_RW, DUITE_R})
 {
     atomic_fetch_add(&ran, 1);
     duite_out(call, 0, int32_t)[0] += duite_in(call, 1, int32_t)[0] + 1;
     return 0;
 }
-const duite_kernel STEP = {.name = "step", .body = step_body, .access = {DUITE_RW, DUITE_R}};
 const duite_kernel STAYS = {
-    .name = "stays", .body = step_body, .access = {DUITE_RW, DUITE_R}, .fixed = 1};
+    .name = "stays", .body = STEP_body, .access = {DUITE_RW, DUITE_R}, .fixed = 1};
 
-static int doze_body(const duite_call *call)
+KERNEL_SHARED(DOZE, "doze", .access = {DUITE_RW}, .variadic = DUITE_R)
 {
     nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
     duite_out(call, 0, int32_t)[0] += 1;
     return 0;
 }
-const duite_kernel DOZE = {
-    .name = "doze", .body = doze_body, .access = {DUITE_RW}, .variadic = DUITE_R};
 
 /* The child runs for whom its parent runs, whatever it writes. */
-static int parent_body(const duite_call *call)
+KERNEL_SHARED(PARENT, "parent", .access = {DUITE_RW, DUITE_RWP})
 {
     DUITE_FORK(call->rt, &DOZE, NULL, call->param[1].object);
     return 0;
 }
-const duite_kernel PARENT = {
-    .name = "parent", .body = parent_body, .access = {DUITE_RW, DUITE_RWP}};
 
-static int third_body(const duite_call *call)
+KERNEL_SHARED(THIRD, "third", .access = {DUITE_CW}, .args_size = sizeof(int32_t))
 {
     duite_out(call, 0, float)[0] = 1.0f / (float)*(const int32_t *)call->args;
     return 0;
 }
-const duite_kernel THIRD = {
-    .name = "third", .body = third_body, .access = {DUITE_CW}, .args_size = sizeof(int32_t)};
 
-static int countdown_body(const duite_call *call)
+KERNEL_SHARED(COUNTDOWN, "countdown", .access = {DUITE_RW}, .replicated = 1)
 {
     duite_out(call, 0, int32_t)[0]--;
     return 0;
 }
-const duite_kernel COUNTDOWN = {
-    .name = "countdown", .body = countdown_body, .access = {DUITE_RW}, .replicated = 1};
 
 static const duite_kernel *const LIST[] = {&STEP, &STAYS, &DOZE, &PARENT,    &THIRD,
                                            &GROW, &SET,   &FAIL, &COUNTDOWN, NULL};

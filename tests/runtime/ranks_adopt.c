@@ -23,16 +23,15 @@ static void given_back(void *memory, void *user)
 }
 
 /* Each value is one more, in one turn. */
-static int mark(const duite_call *call)
+KERNEL(MARK, "mark", .access = {DUITE_RW})
 {
     for (size_t i = 0; i < duite_count(call, 0); i++)
         duite_out(call, 0, int32_t)[i] += 1;
     atomic_store(&seen, call->param[0].data);
     return 0;
 }
-static const duite_kernel MARK = {.name = "mark", .body = mark, .access = {DUITE_RW}};
 
-static int hand_on(const duite_call *call)
+KERNEL(HAND_ON, "hand on", .access = {DUITE_RWP})
 {
     const duite_object object = call->param[0].object;
 
@@ -40,16 +39,14 @@ static int hand_on(const duite_call *call)
         duite_fork(call->rt, &MARK, NULL, 1, &object);
     return 0;
 }
-static const duite_kernel HAND_ON = {.name = "hand on", .body = hand_on, .access = {DUITE_RWP}};
 
-static int leave(const duite_call *call)
+KERNEL(LEAVE, "leave", .access = {DUITE_WP})
 {
     (void)call;
     return 0;
 }
-static const duite_kernel LEAVE = {.name = "leave", .body = leave, .access = {DUITE_WP}};
 
-static int adopt_inside(const duite_call *call)
+KERNEL(INSIDE, "inside", .access = {DUITE_RW}, .side_effects = 1)
 {
     duite_object object;
 
@@ -58,8 +55,6 @@ static int adopt_inside(const duite_call *call)
                ? 0
                : 1;
 }
-static const duite_kernel INSIDE = {
-    .name = "inside", .body = adopt_inside, .access = {DUITE_RW}, .side_effects = 1};
 
 static const duite_kernel *const KERNELS[] = {&SET,     &COPY,  &ADD,    &FAIL, &MARK,
                                               &HAND_ON, &LEAVE, &INSIDE, NULL};

@@ -14,7 +14,7 @@ enum { TIMES = 60, MOST_RANKS = 16, WIDTH = 3000 };
 static MPI_Comm own; /* the program's, whose failures are returned */
 
 /* Sends parameter 0 to the next rank; parameter 1 comes from the one before. */
-static int pass(const duite_call *call)
+KERNEL(PASS, "pass", .access = {DUITE_R, DUITE_W}, .args_size = sizeof(int32_t), .events = 1)
 {
     const int tag = *(const int32_t *)call->args;
     MPI_Request request[2];
@@ -28,7 +28,7 @@ static int pass(const duite_call *call)
     return code || request[0] != MPI_REQUEST_NULL || request[1] != MPI_REQUEST_NULL;
 }
 
-static int step(const duite_call *call)
+KERNEL(STEP, "step", .access = {DUITE_R, DUITE_W})
 {
     for (size_t i = 0; i < WIDTH; i++)
         duite_out(call, 1, int32_t)[i] = duite_in(call, 0, int32_t)[i] + (int32_t)(i % 7);
@@ -36,7 +36,7 @@ static int step(const duite_call *call)
 }
 
 /* Receives less than was sent. */
-static int cut(const duite_call *call)
+KERNEL(CUT, "cut", .access = {DUITE_W}, .events = 1)
 {
     static int32_t two[2] = {1, 2};
     MPI_Request request[2];
@@ -46,14 +46,6 @@ static int cut(const duite_call *call)
     code |= MPI_Irecv(call->param[0].data, 1, MPI_INT32_T, rank, 1, own, &request[1]);
     return code | duite_mpi_end(call->rt) | duite_await_mpi(call, 2, request);
 }
-
-static const duite_kernel PASS = {.name = "pass",
-                                  .body = pass,
-                                  .access = {DUITE_R, DUITE_W},
-                                  .args_size = sizeof(int32_t),
-                                  .events = 1};
-static const duite_kernel STEP = {.name = "step", .body = step, .access = {DUITE_R, DUITE_W}};
-static const duite_kernel CUT = {.name = "cut", .body = cut, .access = {DUITE_W}, .events = 1};
 
 static duite *start(unsigned threads, int check)
 {

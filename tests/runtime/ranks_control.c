@@ -48,14 +48,12 @@ int MPI_Iallreduce(const void *send, void *receive, int n, MPI_Datatype type, MP
     return PMPI_Iallreduce(send, receive, n, type, op, comm, request);
 }
 
-static int slow_body(const duite_call *call)
+KERNEL(SLOW, "slow", .access = {DUITE_RW})
 {
     usleep(800000);
     duite_out(call, 0, int32_t)[0] += 1;
     return 0;
 }
-
-static const duite_kernel SLOW = {.name = "slow", .body = slow_body, .access = {DUITE_RW}};
 
 /* The largest of all ranks. */
 static int max(duite *rt, int own)

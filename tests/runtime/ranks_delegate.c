@@ -13,33 +13,30 @@ enum { MOST = 50 };
 
 static atomic_int ran[4]; /* on this rank: plain, pinned, stays, files */
 
-static int count_body(const duite_call *call)
+KERNEL(PLAIN, "plain", .access = {DUITE_RW}, .args_size = sizeof(int32_t))
 {
     atomic_fetch_add(&ran[*(const int32_t *)call->args], 1);
     duite_out(call, 0, int32_t)[0] += 1;
     return 0;
 }
-static const duite_kernel PLAIN = {
-    .name = "plain", .body = count_body, .access = {DUITE_RW}, .args_size = sizeof(int32_t)};
 static const duite_kernel STAYS = {.name = "stays",
-                                   .body = count_body,
+                                   .body = PLAIN_body,
                                    .access = {DUITE_RW},
                                    .args_size = sizeof(int32_t),
                                    .fixed = 1};
 static const duite_kernel FILES = {.name = "files",
-                                   .body = count_body,
+                                   .body = PLAIN_body,
                                    .access = {DUITE_RW},
                                    .args_size = sizeof(int32_t),
                                    .side_effects = 1};
 
-static int shrink_body(const duite_call *call)
+KERNEL(SHRINK, "shrink", .access = {DUITE_W})
 {
     return duite_resize(call, 0, duite_count(call, 0) == MOST ? 0 : 1);
 }
-static const duite_kernel SHRINK = {.name = "shrink", .body = shrink_body, .access = {DUITE_W}};
 
 /* Forks children of its own, waits for them, and tells what they left. */
-static int parent_body(const duite_call *call)
+KERNEL(PARENT, "parent", .access = {DUITE_RW})
 {
     duite_object own;
     int32_t value = 0;
@@ -52,10 +49,9 @@ static int parent_body(const duite_call *call)
     duite_out(call, 0, int32_t)[0] += value;
     return code;
 }
-static const duite_kernel PARENT = {.name = "parent", .body = parent_body, .access = {DUITE_RW}};
 
 /* Its child fails, which it does not care about. */
-static int careless_body(const duite_call *call)
+KERNEL(CARELESS, "careless", .access = {DUITE_RW})
 {
     duite_object own;
 
@@ -64,11 +60,9 @@ static int careless_body(const duite_call *call)
     duite_out(call, 0, int32_t)[0] = 5;
     return 0;
 }
-static const duite_kernel CARELESS = {
-    .name = "careless", .body = careless_body, .access = {DUITE_RW}};
 
 /* A tree: the first leaf forked fails with 31, a later one with 32. */
-static int tree_body(const duite_call *call)
+KERNEL(TREE, "tree", .access = {DUITE_RWP})
 {
     const duite_object lent = call->param[0].object;
 
@@ -79,15 +73,13 @@ static int tree_body(const duite_call *call)
     DUITE_FORK(call->rt, &FAIL, DUITE_ARGS(int32_t, 32), lent);
     return 0;
 }
-static const duite_kernel TREE = {.name = "tree", .body = tree_body, .access = {DUITE_RWP}};
 
-static int doze_body(const duite_call *call)
+KERNEL(DOZE, "doze", .access = {DUITE_CW})
 {
     nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
     duite_out(call, 0, int32_t)[0] += 1;
     return 0;
 }
-static const duite_kernel DOZE = {.name = "doze", .body = doze_body, .access = {DUITE_CW}};
 
 static const duite_kernel *const LIST[] = {&MIX,    &PLAIN, &STAYS,  &FILES,    &GROW,
                                            &SHRINK, &FAIL,  &PARENT, &CARELESS, &TREE,

@@ -2,6 +2,7 @@
  * ranks with --all; or in a function of a policy, --map or --place; or a body ends its thread,
  * --thread. Messages are on their
  * way meanwhile, and workers poll. */
+#include "tests/support/kernel.h"
 #include "tests/support/ranks.h"
 
 #include <duite.h>
@@ -15,14 +16,13 @@ enum { TASKS = 20000, CHAINS = 4 };
 
 static int ends_thread;
 
-static int step(const duite_call *call)
+KERNEL(STEP, "step", .access = {DUITE_RW})
 {
     if (++duite_out(call, 0, int64_t)[0] == TASKS / CHAINS / 2 && ends_thread)
         pthread_exit(NULL);
     return 0;
 }
 
-static const duite_kernel STEP = {.name = "step", .body = step, .access = {DUITE_RW}};
 static const duite_kernel *const KERNELS[] = {&STEP, NULL};
 
 /* ---- Policies that exit ---- */

@@ -23,16 +23,12 @@ static void append(void *left, const void *right, size_t count, duite_type type)
 static const duite_law APPEND = {.name = "append", .type = DUITE_I32, .combine = append};
 static const duite_law SAME_NAME = {.name = "append", .type = DUITE_I32, .combine = append};
 
-static int digit(const duite_call *call)
+KERNEL(DIGIT, "digit", .access = {DUITE_CW}, .law = DUITE_LAWS(&APPEND),
+       .args_size = sizeof(int32_t))
 {
     *duite_out(call, 0, int32_t) = *(const int32_t *)call->args;
     return 0;
 }
-static const duite_kernel DIGIT = {.name = "digit",
-                                   .body = digit,
-                                   .access = {DUITE_CW},
-                                   .law = DUITE_LAWS(&APPEND),
-                                   .args_size = sizeof(int32_t)};
 
 static int increase(const duite_call *call)
 {
@@ -112,7 +108,7 @@ static void refused(void)
     wrong.name = "wrong";
     wrong.body = NULL;
     tap_case(is_told(duite_kernel_add(rt, &wrong), DUITE_E_KERNEL, "no body"), "no body");
-    wrong.body = digit;
+    wrong.body = DIGIT_body;
     wrong.law = DUITE_LAWS(&SAME_NAME);
     tap_case(is_told(duite_kernel_add(rt, &wrong), DUITE_E_LAW, "the name append"),
              "a law whose name is taken");

@@ -2,6 +2,7 @@
  * a rank that waits must not give its core away again and again. The time in which sched_yield did
  * is at most a part of the whole: the runtime means to lose a hundredth so, and lost most of it
  * when it always yielded. Run under mpirun. */
+#include "tests/support/kernel.h"
 #include "tests/support/rank.h"
 #include "tests/support/ranks.h"
 
@@ -100,15 +101,13 @@ static void end_loops(void)
 }
 
 /* Takes some 100 us, so that the rounds take many slices of the loops. */
-static int next(const duite_call *call)
+KERNEL(NEXT, "next", .access = {DUITE_W, DUITE_R})
 {
     for (volatile int i = 0; i < WORK; i++)
         ;
     duite_out(call, 0, int32_t)[0] = 1 + duite_in(call, 1, int32_t)[0];
     return 0;
 }
-
-static const duite_kernel NEXT = {.name = "next", .body = next, .access = {DUITE_W, DUITE_R}};
 
 /* There and back. */
 static int answer(duite *rt, void *context)

@@ -13,7 +13,7 @@ static duite *rt;
 static _Atomic(void *) seen[2]; /* where the last body of MARK found its object: of fewer, of all */
 
 /* Each value is one more. */
-static int mark(const duite_call *call)
+KERNEL(MARK, "mark", .access = {DUITE_RW})
 {
     const size_t n = duite_count(call, 0);
 
@@ -22,20 +22,16 @@ static int mark(const duite_call *call)
     atomic_store(&seen[n == WIDTH], call->param[0].data);
     return 0;
 }
-static const duite_kernel MARK = {.name = "mark", .body = mark, .access = {DUITE_RW}};
 
-static int number(const duite_call *call)
+KERNEL(NUMBER, "number", .access = {DUITE_W})
 {
     for (size_t i = 0; i < duite_count(call, 0); i++)
         duite_out(call, 0, int32_t)[i] = (int32_t)i;
     return 0;
 }
-static const duite_kernel NUMBER = {.name = "number", .body = number, .access = {DUITE_W}};
 
 /* Halves the object until it is small; every second one is joined by the runtime. */
-static int halve(const duite_call *call);
-static const duite_kernel HALVE = {.name = "halve", .body = halve, .access = {DUITE_RWP}};
-static int halve(const duite_call *call)
+KERNEL(HALVE, "halve", .access = {DUITE_RWP})
 {
     const size_t n = duite_count(call, 0), counts[] = {n / 2, n - n / 2};
     const duite_object object = call->param[0].object;
@@ -52,7 +48,7 @@ static int halve(const duite_call *call)
 /* A body splits what it made, and may not split what it holds by w; the result is 0 if all is
  * right.
  */
-static int inside(const duite_call *call)
+KERNEL(INSIDE, "inside", .access = {DUITE_W}, .side_effects = 1)
 {
     const size_t counts[] = {1, 2};
     duite_object own, part[2], again[2];
@@ -69,8 +65,6 @@ static int inside(const duite_call *call)
     duite_out(call, 0, int32_t)[0] = wrong;
     return 0;
 }
-static const duite_kernel INSIDE = {
-    .name = "inside", .body = inside, .access = {DUITE_W}, .side_effects = 1};
 
 static const duite_kernel *const KERNELS[] = {&SET,    &COPY,  &ADD,    &FAIL, &MARK,
                                               &NUMBER, &HALVE, &INSIDE, NULL};

@@ -8,7 +8,7 @@
 
 enum { BLOCKS = 16, LENGTH = 16, MOST = 40, DIRECT_RANKS = 4 };
 
-static int start(const duite_call *call)
+KERNEL(START, "start", .access = {DUITE_W}, .args_size = sizeof(int))
 {
     for (size_t i = 0; i < LENGTH; i++)
         duite_out(call, 0, double)[i] =
@@ -17,7 +17,7 @@ static int start(const duite_call *call)
 }
 
 /* to = mean of the neighbours; its square is added to a sum. The ends stay. */
-static int mean(const duite_call *call)
+KERNEL(MEAN, "mean", .access = {DUITE_W, DUITE_CW, DUITE_R, DUITE_R, DUITE_R})
 {
     const double *here = duite_in(call, 2, double), *left = duite_in(call, 3, double);
     const double *right = duite_in(call, 4, double);
@@ -34,7 +34,7 @@ static int mean(const duite_call *call)
 }
 
 /* scale = scale / 2 + sum; the sum begins again, and the flag counts down. */
-static int judge(const duite_call *call)
+KERNEL(JUDGE, "judge", .access = {DUITE_R, DUITE_RW, DUITE_RW}, .replicated = 1)
 {
     duite_out(call, 1, double)[0] =
         0.5 * duite_in(call, 1, double)[0] + duite_in(call, 0, double)[0];
@@ -42,35 +42,24 @@ static int judge(const duite_call *call)
     return 0;
 }
 
-static int scale(const duite_call *call)
+KERNEL(SCALE, "scale", .access = {DUITE_R, DUITE_RW})
 {
     for (size_t i = 0; i < LENGTH; i++)
         duite_out(call, 1, double)[i] *= 1 + 1e-3 * duite_in(call, 0, double)[0];
     return 0;
 }
 
-static int give(const duite_call *call)
+KERNEL(GIVE, "give", .access = {DUITE_CW}, .args_size = sizeof(double))
 {
     duite_out(call, 0, double)[0] += *(const double *)call->args;
     return 0;
 }
 
-static int keep(const duite_call *call)
+KERNEL(KEEP, "keep", .access = {DUITE_R, DUITE_W})
 {
     duite_out(call, 1, double)[0] = duite_in(call, 0, double)[0];
     return 0;
 }
-
-static const duite_kernel START = {
-    .name = "start", .body = start, .access = {DUITE_W}, .args_size = sizeof(int)};
-static const duite_kernel MEAN = {
-    .name = "mean", .body = mean, .access = {DUITE_W, DUITE_CW, DUITE_R, DUITE_R, DUITE_R}};
-static const duite_kernel JUDGE = {
-    .name = "judge", .body = judge, .access = {DUITE_R, DUITE_RW, DUITE_RW}, .replicated = 1};
-static const duite_kernel SCALE = {.name = "scale", .body = scale, .access = {DUITE_R, DUITE_RW}};
-static const duite_kernel GIVE = {
-    .name = "give", .body = give, .access = {DUITE_CW}, .args_size = sizeof(double)};
-static const duite_kernel KEEP = {.name = "keep", .body = keep, .access = {DUITE_R, DUITE_W}};
 
 struct rod {
     duite_object x[2][BLOCKS], sum, scale, flag;

@@ -6,35 +6,25 @@
 
 enum { OBJECTS = 20, LARGE = 1 << 18, FORKS = 100000 };
 
-static int touch_body(const duite_call *call)
+KERNEL(TOUCH, "touch", .access = {DUITE_R, DUITE_RW}, .args_size = sizeof(int32_t))
 {
     duite_out(call, 1, int32_t)[0] += duite_in(call, 0, int32_t)[0] + *(const int32_t *)call->args;
     return 0;
 }
+
 /* The second parameter gets the first of the further ones, which is 3. */
-static int contribute_body(const duite_call *call)
+KERNEL(CONTRIBUTE, "contribute", .access = {DUITE_RW, DUITE_CW}, .variadic = DUITE_R)
 {
     duite_out(call, 0, int32_t)[0] += 1;
     duite_out(call, 1, int32_t)[0] += duite_in(call, 2, int32_t)[0];
     return 0;
 }
-static const duite_kernel CONTRIBUTE = {.name = "contribute",
-                                        .body = contribute_body,
-                                        .access = {DUITE_RW, DUITE_CW},
-                                        .variadic = DUITE_R};
 
-static int same_body(const duite_call *call)
+KERNEL(SAME, "same", .access = {DUITE_W}, .replicated = 1)
 {
     duite_out(call, 0, int32_t)[0] = 3;
     return 0;
 }
-static const duite_kernel SAME = {
-    .name = "same", .body = same_body, .access = {DUITE_W}, .replicated = 1};
-
-static const duite_kernel TOUCH = {.name = "touch",
-                                   .body = touch_body,
-                                   .access = {DUITE_R, DUITE_RW},
-                                   .args_size = sizeof(int32_t)};
 
 /* The same after a wait, before any rank goes on: one that forks sends the others what they will
  * read. */

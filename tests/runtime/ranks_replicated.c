@@ -8,22 +8,17 @@
 
 static atomic_int ran;
 
-static int next_body(const duite_call *call)
+KERNEL(NEXT, "next", .access = {DUITE_R, DUITE_W}, .replicated = 1)
 {
     atomic_fetch_add(&ran, 1);
     duite_out(call, 1, int32_t)[0] = duite_in(call, 0, int32_t)[0] + 1;
     return duite_in(call, 0, int32_t)[0] == 100 ? duite_fail(call, 7, "a hundred") : 0;
 }
 
-static int read_body(const duite_call *call)
+KERNEL(READ, "read", .access = {DUITE_R}, .args_size = sizeof(int32_t))
 {
     return duite_in(call, 0, int32_t)[0] == *(const int32_t *)call->args ? 0 : 1;
 }
-
-static const duite_kernel NEXT = {
-    .name = "next", .body = next_body, .access = {DUITE_R, DUITE_W}, .replicated = 1};
-static const duite_kernel READ = {
-    .name = "read", .body = read_body, .access = {DUITE_R}, .args_size = sizeof(int32_t)};
 
 static uint64_t messages(duite *rt)
 {

@@ -14,7 +14,7 @@ struct change {
 
 /* Checks what is there, then leaves `count` elements, element i being i + count of the new size;
  * what is added must be zero first. */
-static int change(const duite_call *call)
+KERNEL(CHANGE, "change", .access = {DUITE_RW}, .args_size = sizeof(struct change))
 {
     const struct change *args = call->args;
     int64_t *values = duite_out(call, 0, int64_t);
@@ -37,7 +37,7 @@ static int change(const duite_call *call)
 }
 
 /* Copies the size and the last element to numbers. */
-static int look(const duite_call *call)
+KERNEL(LOOK, "look", .access = {DUITE_R, DUITE_W})
 {
     const size_t count = duite_count(call, 0);
 
@@ -45,10 +45,6 @@ static int look(const duite_call *call)
     duite_out(call, 1, int64_t)[1] = count ? duite_in(call, 0, int64_t)[count - 1] : -1;
     return 0;
 }
-
-static const duite_kernel CHANGE = {
-    .name = "change", .body = change, .access = {DUITE_RW}, .args_size = sizeof(struct change)};
-static const duite_kernel LOOK = {.name = "look", .body = look, .access = {DUITE_R, DUITE_W}};
 
 /* Sizes go up and down, over 0. */
 static size_t size_of(int round)

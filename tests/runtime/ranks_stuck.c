@@ -1,6 +1,7 @@
 /* Programs that stand still for a while, on any number of ranks: the task that all wait for sleeps,
  * or what comes from other ranks is held up on the last one. What is told goes to standard error.
  */
+#include "tests/support/kernel.h"
 #include "tests/support/ranks.h"
 
 #include <duite.h>
@@ -29,7 +30,7 @@ int MPI_Improbe(int source, int tag, MPI_Comm comm, int *flag, MPI_Message *mess
                                   : PMPI_Improbe(source, tag, comm, flag, message, status);
 }
 
-static int nap(const duite_call *call)
+KERNEL(NAP, "nap", .access = {DUITE_W, DUITE_R}, .args_size = sizeof(double))
 {
     const double length = *(const double *)call->args;
     struct timespec left = {(time_t)length, (long)(1e9 * (length - (double)(time_t)length))};
@@ -40,22 +41,17 @@ static int nap(const duite_call *call)
     return 0;
 }
 
-static int take(const duite_call *call)
+KERNEL(TAKE, "take", .access = {DUITE_W, DUITE_R})
 {
     duite_out(call, 0, int32_t)[0] = 10 * duite_in(call, 1, int32_t)[0];
     return 0;
 }
 
-static int over(const duite_call *call)
+KERNEL(OVER, "over", .access = {DUITE_W})
 {
     duite_out(call, 0, int32_t)[0] = 7;
     return 0;
 }
-
-static const duite_kernel NAP = {
-    .name = "nap", .body = nap, .access = {DUITE_W, DUITE_R}, .args_size = sizeof(double)};
-static const duite_kernel TAKE = {.name = "take", .body = take, .access = {DUITE_W, DUITE_R}};
-static const duite_kernel OVER = {.name = "over", .body = over, .access = {DUITE_W}};
 
 struct program {
     duite_object object[4];

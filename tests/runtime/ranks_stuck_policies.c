@@ -200,14 +200,12 @@ static const duite_scheduler SCHEDULER = {.size = sizeof(duite_scheduler),
 /* ---- Programs ---- */
 
 /* Long enough for a balancer to move blocks. */
-static int slow_body(const duite_call *call)
+KERNEL(SLOW, "slow", .access = {DUITE_RW})
 {
     (void)call;
     nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
     return 0;
 }
-
-static const duite_kernel SLOW = {.name = "slow", .body = slow_body, .access = {DUITE_RW}};
 
 static int build(duite *rt, void *context)
 {
@@ -220,13 +218,11 @@ static int build(duite *rt, void *context)
     return 0;
 }
 
-static int entered_body(const duite_call *call)
+KERNEL(ENTERED, "entered", .access = {DUITE_W})
 {
     *duite_out(call, 0, int32_t) = atomic_load(&entered);
     return 0;
 }
-
-static const duite_kernel ENTERED = {.name = "entered", .body = entered_body, .access = {DUITE_W}};
 
 /* Leaves on rank 0, where all objects are, and a recorded graph; until rank `where` was hung. The
  * values are right. */

@@ -12,7 +12,8 @@ enum { ROUNDS = 16 };
 static atomic_int wholes; /* on this rank */
 
 /* All that it may touch its children do. */
-static int whole_body(const duite_call *call)
+KERNEL(WHOLE, "whole", .access = {DUITE_RP, DUITE_RWP, DUITE_WP, DUITE_CWP},
+       .args_size = sizeof(int32_t))
 {
     const int32_t i = *(const int32_t *)call->args;
     duite_object lent[4];
@@ -23,92 +24,71 @@ static int whole_body(const duite_call *call)
         duite_fork(call->rt, &MIX, &(int32_t){times * i}, 4, lent);
     return 0;
 }
-static const duite_kernel WHOLE = {.name = "whole",
-                                   .body = whole_body,
-                                   .access = {DUITE_RP, DUITE_RWP, DUITE_WP, DUITE_CWP},
-                                   .args_size = sizeof(int32_t)};
 
-static int one_more_body(const duite_call *call)
+KERNEL(ONE_MORE, "one_more", .access = {DUITE_RW})
 {
     duite_out(call, 0, int32_t)[0] += 1;
     return 0;
 }
-static const duite_kernel ONE_MORE = {
-    .name = "one_more", .body = one_more_body, .access = {DUITE_RW}};
 
 /* Its first child fails, its second one does not. */
-static int torn_body(const duite_call *call)
+KERNEL(TORN, "torn", .access = {DUITE_RWP, DUITE_RWP})
 {
     DUITE_FORK(call->rt, &FAIL, DUITE_ARGS(int32_t, 41), call->param[0].object);
     DUITE_FORK(call->rt, &ONE_MORE, NULL, call->param[1].object);
     return 0;
 }
-static const duite_kernel TORN = {
-    .name = "torn", .body = torn_body, .access = {DUITE_RWP, DUITE_RWP}};
 
 /* A contribution of 1, or one that fails. */
-static int drop_body(const duite_call *call)
+KERNEL(DROP, "drop", .access = {DUITE_CW}, .args_size = sizeof(int32_t))
 {
     duite_out(call, 0, int32_t)[0] = 1;
     return *(const int32_t *)call->args;
 }
-static const duite_kernel DROP = {
-    .name = "drop", .body = drop_body, .access = {DUITE_CW}, .args_size = sizeof(int32_t)};
 
-static int spill_body(const duite_call *call)
+KERNEL(SPILL, "spill", .access = {DUITE_CWP})
 {
     DUITE_FORK(call->rt, &DROP, DUITE_ARGS(int32_t, 0), call->param[0].object);
     DUITE_FORK(call->rt, &DROP, DUITE_ARGS(int32_t, 43), call->param[0].object);
     return 0;
 }
-static const duite_kernel SPILL = {.name = "spill", .body = spill_body, .access = {DUITE_CWP}};
 
 /* Nobody contributes, nobody overwrites, and nobody changes the third. */
-static int idle_body(const duite_call *call)
+KERNEL(IDLE, "idle", .access = {DUITE_CWP, DUITE_WP, DUITE_RWP})
 {
     (void)call;
     return 0;
 }
-static const duite_kernel IDLE = {
-    .name = "idle", .body = idle_body, .access = {DUITE_CWP, DUITE_WP, DUITE_RWP}};
 
 /* The body itself fails, after a child that does not. */
-static int fall_body(const duite_call *call)
+KERNEL(FALL, "fall", .access = {DUITE_RWP})
 {
     DUITE_FORK(call->rt, &ONE_MORE, NULL, call->param[0].object);
     return duite_fail(call, 44, "falls");
 }
-static const duite_kernel FALL = {.name = "fall", .body = fall_body, .access = {DUITE_RWP}};
 
-static int grows_body(const duite_call *call)
+KERNEL(GROWS, "grows", .access = {DUITE_RWP})
 {
     for (int i = 0; i < 3; i++)
         DUITE_FORK(call->rt, &GROW, NULL, call->param[0].object);
     return 0;
 }
-static const duite_kernel GROWS = {.name = "grows", .body = grows_body, .access = {DUITE_RWP}};
 
 /* Contributes 1 if it went on from another rank than home, and WENT_HOME more if it went there. */
 enum { WENT_HOME = 1 << 16 };
 struct origin {
     int32_t home, parent, depth;
 };
-static int step_body(const duite_call *call)
+KERNEL(STEP, "step", .access = {DUITE_CW}, .args_size = sizeof(struct origin))
 {
     const struct origin *from = call->args;
     if (from->parent != rank && from->parent != from->home)
         duite_out(call, 0, int32_t)[0] = rank == from->home ? WENT_HOME + 1 : 1;
     return 0;
 }
-static const duite_kernel STEP = {
-    .name = "step", .body = step_body, .access = {DUITE_CW}, .args_size = sizeof(struct origin)};
-
-static int walk_body(const duite_call *call);
-static const duite_kernel WALK = {
-    .name = "walk", .body = walk_body, .access = {DUITE_CWP}, .args_size = sizeof(struct origin)};
 
 /* All below it is over when it ends, wherever that ran. */
-static int walk_body(const duite_call *call)
+KERNEL(WALK, "walk", .access = {DUITE_CWP}, .args_size = sizeof(struct origin))
 {
     const struct origin *from = call->args;
     const struct origin own = {from->home, rank, from->depth - 1};

@@ -20,14 +20,12 @@ int MPI_Comm_get_attr(MPI_Comm comm, int key, void *value, int *known)
     return code;
 }
 
-static int slow_body(const duite_call *call)
+KERNEL(SLOW, "slow", .access = {DUITE_RW})
 {
     usleep(300000);
     duite_out(call, 0, int32_t)[0]++;
     return 0;
 }
-
-static const duite_kernel SLOW = {.name = "slow", .body = slow_body, .access = {DUITE_RW}};
 
 /* On the first rank, and copied to the last one. */
 struct pair {

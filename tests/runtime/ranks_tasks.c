@@ -49,20 +49,17 @@ static const duite_mapping TOLD = {.size = sizeof(duite_mapping),
                                    .map = map_first,
                                    .map_tasks = look};
 
-static int add(const duite_call *call)
+KERNEL(ADD_UP, "add_up", .access = {DUITE_RW})
 {
     duite_out(call, 0, int32_t)[0] += duite_in(call, 0, int32_t)[0] + 1;
     return 0;
 }
 
-static int link_up(const duite_call *call)
+KERNEL(LINK, "link", .access = {DUITE_W, DUITE_R})
 {
     duite_out(call, 0, int32_t)[0] = duite_in(call, 1, int32_t)[0] + 1;
     return 0;
 }
-
-static const duite_kernel ADD_UP = {.name = "add_up", .body = add, .access = {DUITE_RW}},
-                          LINK = {.name = "link", .body = link_up, .access = {DUITE_W, DUITE_R}};
 
 static duite *start(const duite_mapping *mapping)
 {

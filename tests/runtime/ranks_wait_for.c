@@ -34,7 +34,7 @@ static void *hold(void *argument)
 }
 
 /* Keeps no worker. */
-static int gate(const duite_call *call)
+KERNEL(GATE, "gate", .access = {DUITE_RW}, .events = 1)
 {
     struct held *held = malloc(sizeof *held);
     pthread_t thread;
@@ -45,10 +45,9 @@ static int gate(const duite_call *call)
         return 98;
     return pthread_detach(thread);
 }
-static const duite_kernel GATE = {.name = "gate", .body = gate, .access = {DUITE_RW}, .events = 1};
 
 /* Waits for the first of two children, and gets what it left. */
-static int parent(const duite_call *call)
+KERNEL(PARENT, "parent", .access = {DUITE_RWP})
 {
     const duite_object mine = call->param[0].object;
     duite_object other;
@@ -63,7 +62,6 @@ static int parent(const duite_call *call)
     code = duite_wait_for(call->rt, 2, (duite_object[]){mine, other});
     return code == 23 && strstr(duite_message(), "sentence 23") ? 0 : 2;
 }
-static const duite_kernel PARENT = {.name = "parent", .body = parent, .access = {DUITE_RWP}};
 
 static int start(unsigned threads, size_t window)
 {

@@ -7,8 +7,12 @@
 
 enum { READS = 37, WRITE = READS, SUM, LARGEST, WIDTH, ROUNDS = 7 };
 
+#define READ_5  DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_R
+#define READ_37 READ_5, READ_5, READ_5, READ_5, READ_5, READ_5, READ_5, DUITE_R, DUITE_R
+
 /* writes += sum of i + 1 times what it reads; that is contributed to a sum and to a maximum. */
-static int wide_body(const duite_call *call)
+KERNEL(WIDE, "wide", .access = {READ_37, DUITE_RW, DUITE_CW, DUITE_CW},
+       .law = DUITE_LAWS([LARGEST] = &duite_max))
 {
     int64_t all = 0;
 
@@ -22,53 +26,37 @@ static int wide_body(const duite_call *call)
 }
 
 /* Nothing but reads and writes: the ranks on which nothing of it is drop it at once. */
-static int plain_body(const duite_call *call)
+KERNEL(PLAIN, "plain", .access = {READ_37, DUITE_RW})
 {
     for (int i = 0; i < READS; i++)
         *duite_out(call, WRITE, int64_t) += (i + 1) * *duite_in(call, i, int64_t);
     return 0;
 }
 
-static int clear_body(const duite_call *call)
+KERNEL(CLEAR, "clear", .access = {DUITE_W})
 {
     *duite_out(call, 0, int64_t) = 0;
     return 0;
 }
 
-static int add_one_body(const duite_call *call)
+KERNEL(ADD_ONE, "add_one", .access = {DUITE_RW})
 {
     *duite_out(call, 0, int64_t) += 1;
     return 0;
 }
 
-static int last_body(const duite_call *call)
+/* The last mode that can be listed: bits and places behind the 63 others. */
+KERNEL(LAST, "last", .access = {READ_37, READ_5, READ_5, READ_5, READ_5, READ_5, DUITE_R, DUITE_RW})
 {
     for (size_t i = 0; i + 1 < DUITE_MAX_ACCESS; i++)
         *duite_out(call, DUITE_MAX_ACCESS - 1, int64_t) += *duite_in(call, i, int64_t);
     return 0;
 }
 
-#define READ_5  DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_R
-#define READ_37 READ_5, READ_5, READ_5, READ_5, READ_5, READ_5, READ_5, DUITE_R, DUITE_R
-
-static const duite_kernel WIDE = {.name = "wide",
-                                  .body = wide_body,
-                                  .access = {READ_37, DUITE_RW, DUITE_CW, DUITE_CW},
-                                  .law = DUITE_LAWS([LARGEST] = &duite_max)};
-static const duite_kernel PLAIN = {
-    .name = "plain", .body = plain_body, .access = {READ_37, DUITE_RW}};
-static const duite_kernel CLEAR = {.name = "clear", .body = clear_body, .access = {DUITE_W}};
-static const duite_kernel ADD_ONE = {.name = "add_one", .body = add_one_body, .access = {DUITE_RW}};
 static const duite_kernel FULL = {
     .name = "full",
-    .body = plain_body,
+    .body = PLAIN_body,
     .access = {READ_37, READ_5, READ_5, READ_5, READ_5, READ_5, DUITE_R, DUITE_R}};
-
-/* The last mode that can be listed: bits and places behind the 63 others. */
-static const duite_kernel LAST = {
-    .name = "last",
-    .body = last_body,
-    .access = {READ_37, READ_5, READ_5, READ_5, READ_5, READ_5, DUITE_R, DUITE_RW}};
 
 struct wide {
     duite_object object[WIDTH], other; /* `other` is written in place of WRITE by PLAIN */

@@ -14,7 +14,11 @@ uint32_t repeated_mixed(uint32_t to, uint32_t from, uint32_t number)
     return to * 31 + from * 7 + number;
 }
 
-static int mix(const duite_call *call)
+#define MIX_ACCESS                                                                                 \
+    {                                                                                              \
+        DUITE_RW, DUITE_R                                                                          \
+    }
+KERNEL_SHARED(MIX, "mix", .access = MIX_ACCESS, .args_size = sizeof(struct repeated_argument))
 {
     const struct repeated_argument *args = call->args;
     uint32_t *to = duite_out(call, 0, uint32_t);
@@ -28,7 +32,7 @@ static int mix(const duite_call *call)
     return args->fails ? duite_fail(call, args->fails, "mix %u", args->number) : 0;
 }
 
-static int hold(const duite_call *call)
+KERNEL_SHARED(HOLD, "hold", .access = {DUITE_RW})
 {
     (void)call;
     while (atomic_load(&repeated_held))
@@ -36,19 +40,20 @@ static int hold(const duite_call *call)
     return 0;
 }
 
-static int look(const duite_call *call)
+KERNEL_SHARED(LOOK, "look", .access = {DUITE_R})
 {
     (void)call;
     return 0;
 }
 
 /* Waits in its body for what it was lent. */
-static int ask(const duite_call *call)
+KERNEL_SHARED(ASK, "ask", .access = {DUITE_RP, DUITE_W})
 {
     return duite_get(call->rt, call->param[0].object, duite_out(call, 1, uint32_t));
 }
 
-static int put(const duite_call *call)
+KERNEL_SHARED(PUT, "put", .access = {DUITE_W, DUITE_R},
+              .args_size = sizeof(struct repeated_argument))
 {
     const struct repeated_argument *args = call->args;
 
@@ -56,25 +61,10 @@ static int put(const duite_call *call)
     return args->fails;
 }
 
-const duite_kernel PUT = {.name = "put",
-                          .body = put,
-                          .access = {DUITE_W, DUITE_R},
-                          .args_size = sizeof(struct repeated_argument)};
-#define MIX_ACCESS                                                                                 \
-    {                                                                                              \
-        DUITE_RW, DUITE_R                                                                          \
-    }
-const duite_kernel MIX = {.name = "mix",
-                          .body = mix,
-                          .access = MIX_ACCESS,
-                          .args_size = sizeof(struct repeated_argument)},
-                   TWIN = {.name = "twin",
-                           .body = mix,
+const duite_kernel TWIN = {.name = "twin",
+                           .body = MIX_body,
                            .access = MIX_ACCESS,
-                           .args_size = sizeof(struct repeated_argument)},
-                   HOLD = {.name = "hold", .body = hold, .access = {DUITE_RW}},
-                   LOOK = {.name = "look", .body = look, .access = {DUITE_R}},
-                   ASK = {.name = "ask", .body = ask, .access = {DUITE_RP, DUITE_W}};
+                           .args_size = sizeof(struct repeated_argument)};
 
 duite_options repeated_options(int memo)
 {

@@ -3,6 +3,8 @@
  *
  *   steals SCHEDULER THREADS
  */
+#include "tests/support/kernel.h"
+
 #include <duite.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,12 +12,7 @@
 
 enum { DEPTH = 11 };
 
-static int grow(const duite_call *call);
-
-static const duite_kernel GROW = {
-    .name = "grow", .body = grow, .access = {DUITE_RWP}, .args_size = sizeof(int)};
-
-static int grow(const duite_call *call)
+KERNEL(GROW, "grow", .access = {DUITE_RWP}, .args_size = sizeof(int))
 {
     const int depth = *(const int *)call->args - 1;
 

@@ -1,5 +1,6 @@
 /* The time in bodies, however a worker runs its tasks: that of bodies on top of one that waits
  * counts once. On one worker it is no more than has passed, and no less than one body took. */
+#include "tests/support/kernel.h"
 #include "tests/support/unit.h"
 
 #include <duite.h>
@@ -22,13 +23,7 @@ static double seconds_now(void)
 }
 
 /* Waits for a child as deep as `args` says; the last one takes its time. */
-static int nest(const duite_call *call);
-
-static const duite_kernel NEST = {
-    .name = "nest", .body = nest, .access = {DUITE_W}, .args_size = sizeof(int32_t)};
-static const duite_kernel *const KERNELS[] = {&NEST, NULL};
-
-static int nest(const duite_call *call)
+KERNEL(NEST, "nest", .access = {DUITE_W}, .args_size = sizeof(int32_t))
 {
     const int32_t left = *(const int32_t *)call->args - 1;
     const double since = seconds_now();
@@ -43,6 +38,8 @@ static int nest(const duite_call *call)
         code = DUITE_FORK(call->rt, &NEST, &left, child);
     return code ? code : duite_get(call->rt, child, duite_out(call, 0, int32_t));
 }
+
+static const duite_kernel *const KERNELS[] = {&NEST, NULL};
 
 UNIT_LOOP(once, 0, (int)(sizeof WAYS / sizeof *WAYS))
 {

@@ -1,6 +1,7 @@
 /* Checking mode finds what a body does beyond its declaration, and leaves honest programs as they
  * are. */
 
+#include "tests/support/kernel.h"
 #include "tests/support/said.h"
 #include "tests/support/unit.h"
 
@@ -107,21 +108,20 @@ static int body(const duite_call *call)
 static const duite_kernel BODY = {.name = "body",
                                   .body = body,
                                   .access = {DUITE_R, DUITE_W, DUITE_RW, DUITE_CW},
-                                  .args_size = sizeof(struct args)},
-                          ONCE = {.name = "once",
+                                  .args_size = sizeof(struct args)};
+static const duite_kernel ONCE = {.name = "once",
                                   .body = body,
                                   .access = {DUITE_R, DUITE_W, DUITE_RW, DUITE_CW},
                                   .args_size = sizeof(struct args),
                                   .side_effects = 1};
 
-static int peek(const duite_call *call)
+KERNEL(PEEK, "peek", .access = {DUITE_RW})
 {
     int32_t *values = duite_out(call, 0, int32_t);
 
     values[0] = values[duite_count(call, 0)];
     return 0;
 }
-static const duite_kernel PEEK = {.name = "peek", .body = peek, .access = {DUITE_RW}};
 
 static duite *rt;
 static duite_object object[4];
@@ -260,7 +260,7 @@ UNIT_TEST(honest_programs_are_as_without)
 }
 
 /* Makes its object as long as its argument says, one element after the other. */
-static int grow(const duite_call *call)
+KERNEL(GROW, "grow", .access = {DUITE_RW}, .args_size = sizeof(int32_t))
 {
     const int32_t n = *(const int32_t *)call->args;
     int code = duite_resize(call, 0, (size_t)n);
@@ -268,8 +268,6 @@ static int grow(const duite_call *call)
         duite_out(call, 0, int32_t)[i] += i;
     return code;
 }
-static const duite_kernel GROW = {
-    .name = "grow", .body = grow, .access = {DUITE_RW}, .args_size = sizeof(int32_t)};
 
 UNIT_TEST(objects_that_change_size)
 {

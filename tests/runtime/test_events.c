@@ -44,7 +44,7 @@ struct hold_args {
 };
 
 /* Adds 1, and leaves another 1 for each event to another thread. */
-static int hold(const duite_call *call)
+KERNEL(HOLD, "hold", .access = {DUITE_RW}, .args_size = sizeof(struct hold_args), .events = 1)
 {
     const struct hold_args *args = call->args;
     struct late *late = malloc(sizeof *late);
@@ -70,7 +70,7 @@ static int hold(const duite_call *call)
 static duite_event left[AT_ONCE];
 static _Atomic int n_left;
 
-static int leave(const duite_call *call)
+KERNEL(LEAVE, "leave", .access = {DUITE_RW}, .events = 1)
 {
     duite_event event;
     const int code = duite_event_new(call, &event);
@@ -81,14 +81,14 @@ static int leave(const duite_call *call)
     return code;
 }
 
-static int twice(const duite_call *call)
+KERNEL(TWICE, "twice", .access = {DUITE_R, DUITE_W})
 {
     *duite_out(call, 1, int64_t) = 2 * *duite_in(call, 0, int64_t);
     return 0;
 }
 
 /* Its kernel has no events. */
-static int without(const duite_call *call)
+KERNEL(WITHOUT, "without")
 {
     duite_event event = {1, 1};
     const int code = duite_event_new(call, &event);
@@ -98,18 +98,8 @@ static int without(const duite_call *call)
     return code == DUITE_E_STATE ? 0 : 1;
 }
 
-static const duite_kernel HOLD = {.name = "hold",
-                                  .body = hold,
-                                  .access = {DUITE_RW},
-                                  .args_size = sizeof(struct hold_args),
-                                  .events = 1};
-static const duite_kernel LEAVE = {
-    .name = "leave", .body = leave, .access = {DUITE_RW}, .events = 1};
-static const duite_kernel TWICE = {.name = "twice", .body = twice, .access = {DUITE_R, DUITE_W}};
-static const duite_kernel WITHOUT = {.name = "without", .body = without};
-
 /* Forks a child that is held, and waits for it. */
-static int parent(const duite_call *call)
+KERNEL(PARENT, "parent", .access = {DUITE_RWP})
 {
     const struct hold_args args = {.events = 2, .wait = LATE};
     int64_t value = 0;
@@ -119,7 +109,6 @@ static int parent(const duite_call *call)
         return 1;
     return value == 3 ? duite_wait(call->rt) : 2;
 }
-static const duite_kernel PARENT = {.name = "parent", .body = parent, .access = {DUITE_RWP}};
 
 static void start_with(const duite_kernel *const *kernels, unsigned threads, int check,
                        size_t window)
@@ -303,7 +292,7 @@ static int32_t there; /* that goes to this process itself */
 /* Receives parameter 0, and a SENDER or this body itself sends it, which may hand Fortran's handles
  * over. */
 enum { AWAITS_SENDER, SENDS, SENDS_BY_HANDLES };
-static int receive(const duite_call *call)
+KERNEL(RECEIVE, "receive", .access = {DUITE_W}, .args_size = sizeof(int), .events = 1)
 {
     const int how = *(const int *)call->args, sends = how != AWAITS_SENDER;
     MPI_Request request[2];
@@ -325,7 +314,7 @@ static int receive(const duite_call *call)
     return code;
 }
 
-static int send_late(const duite_call *call)
+KERNEL(SEND_LATE, "send_late")
 {
     usleep(1000000);
     ck_assert_int_eq(duite_mpi_begin(call->rt), DUITE_OK);
@@ -334,7 +323,7 @@ static int send_late(const duite_call *call)
 }
 
 /* Each call is refused with its sentence. */
-static int misuses(const duite_call *call)
+KERNEL(MISUSES, "misuses", .events = 1)
 {
     MPI_Request request[2] = {MPI_REQUEST_NULL, MPI_REQUEST_NULL};
     MPI_Fint handle[2] = {MPI_Request_c2f(MPI_REQUEST_NULL), 0};
@@ -357,7 +346,7 @@ static int misuses(const duite_call *call)
     return 0;
 }
 
-static int without_events(const duite_call *call)
+KERNEL(WITHOUT_EVENTS, "without_events")
 {
     MPI_Request request;
 
@@ -368,7 +357,7 @@ static int without_events(const duite_call *call)
 }
 
 /* Keeps MPI: ends, or waits for a child. */
-static int keep(const duite_call *call)
+KERNEL(KEEP, "keep", .access = {DUITE_RWP}, .args_size = sizeof(int))
 {
     const int waits = *(const int *)call->args;
     int code = duite_mpi_begin(call->rt);
@@ -383,13 +372,6 @@ static int keep(const duite_call *call)
     return code;
 }
 
-static const duite_kernel RECEIVE = {
-    .name = "receive", .body = receive, .access = {DUITE_W}, .args_size = sizeof(int), .events = 1};
-static const duite_kernel SEND_LATE = {.name = "send_late", .body = send_late};
-static const duite_kernel MISUSES = {.name = "misuses", .body = misuses, .events = 1};
-static const duite_kernel WITHOUT_EVENTS = {.name = "without_events", .body = without_events};
-static const duite_kernel KEEP = {
-    .name = "keep", .body = keep, .access = {DUITE_RWP}, .args_size = sizeof(int)};
 static const duite_kernel *const MPI_KERNELS[] = {&HOLD,    &TWICE,          &RECEIVE, &SEND_LATE,
                                                   &MISUSES, &WITHOUT_EVENTS, &KEEP,    NULL};
 

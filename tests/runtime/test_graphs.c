@@ -1,5 +1,6 @@
 /* Recorded graphs: what a replay leaves, how many rounds it has, and what may be changed between
  * two of them. What the values must be is computed here by plain loops. */
+#include "tests/support/kernel.h"
 #include "tests/support/unit.h"
 
 #include <duite.h>
@@ -16,7 +17,7 @@ static uint64_t mixed(uint64_t left, uint64_t middle, uint64_t right, uint64_t m
     return 3 * left + 5 * middle + 7 * right + more;
 }
 
-static int step(const duite_call *call)
+KERNEL(STEP, "step", .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_W}, .args_size = sizeof(uint64_t))
 {
     duite_out(call, 3, uint64_t)[0] =
         mixed(duite_in(call, 0, uint64_t)[0], duite_in(call, 1, uint64_t)[0],
@@ -24,7 +25,7 @@ static int step(const duite_call *call)
     return 0;
 }
 
-static int twice(const duite_call *call)
+KERNEL(TWICE, "twice", .access = {DUITE_RW})
 {
     uint64_t *x = duite_out(call, 0, uint64_t);
 
@@ -32,26 +33,18 @@ static int twice(const duite_call *call)
     return 0;
 }
 
-static int give(const duite_call *call)
+KERNEL(GIVE, "give", .access = {DUITE_R, DUITE_CW})
 {
     duite_out(call, 1, double)[0] = 1.0 / (double)(1 + duite_in(call, 0, uint64_t)[0] % 97);
     return 0;
 }
 
-static int count_down(const duite_call *call)
+KERNEL(COUNT_DOWN, "count down", .access = {DUITE_RW})
 {
     duite_out(call, 0, int32_t)[0]--;
     return 0;
 }
 
-static const duite_kernel STEP = {.name = "step",
-                                  .body = step,
-                                  .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_W},
-                                  .args_size = sizeof(uint64_t)};
-static const duite_kernel TWICE = {.name = "twice", .body = twice, .access = {DUITE_RW}};
-static const duite_kernel GIVE = {.name = "give", .body = give, .access = {DUITE_R, DUITE_CW}};
-static const duite_kernel COUNT_DOWN = {
-    .name = "count down", .body = count_down, .access = {DUITE_RW}};
 static const duite_kernel *const KERNELS[] = {&STEP, &TWICE, &GIVE, &COUNT_DOWN, NULL};
 
 static duite *start(unsigned threads, const char *scheduler)

@@ -1,5 +1,6 @@
 /* A program that loads libduite late, as interpreters and plug-ins do: what the library wants of
  * the memory of threads must fit into what such programs have left. */
+#include "tests/support/kernel.h"
 #include "tests/support/unit.h"
 
 #include <dlfcn.h>
@@ -9,14 +10,11 @@
 
 enum { TASKS = 1000 };
 
-static int add(const duite_call *call)
+KERNEL(ADD, "add", .access = {DUITE_RW}, .args_size = sizeof(int64_t))
 {
     *(int64_t *)call->param[0].data += *(const int64_t *)call->args;
     return 0;
 }
-
-static const duite_kernel ADD = {
-    .name = "add", .body = add, .access = {DUITE_RW}, .args_size = sizeof(int64_t)};
 
 /* What it calls. `found` is cleared by what is missing. */
 struct late {

@@ -85,7 +85,8 @@ static void digits_combine(void *left, const void *right, size_t count, duite_ty
 
 static const duite_law DIGITS = {.name = "digits", .type = DUITE_I64, .combine = digits_combine};
 
-static int find_least(const duite_call *call)
+KERNEL(FIND_LEAST, "find least", .access = {DUITE_CW}, .args_size = 2 * sizeof(double),
+       .law = DUITE_LAWS(&LEAST))
 {
     const double *given = call->args;
     struct least *least = duite_out(call, 0, struct least);
@@ -95,25 +96,14 @@ static int find_least(const duite_call *call)
     return begins_neutral ? 0 : 1;
 }
 
-static int give_all(const duite_call *call)
+KERNEL(GIVE_ALL, "give all", .access = {DUITE_CW, DUITE_CW, DUITE_CW}, .variadic = DUITE_CW,
+       .args_size = sizeof(int64_t), .law = DUITE_LAWS([1] = &duite_max, [2] = &DIGITS),
+       .variadic_law = &duite_min)
 {
     for (size_t i = 0; i < call->n_params; i++)
         duite_out(call, i, int64_t)[0] = *(const int64_t *)call->args;
     return 0;
 }
-
-static const duite_kernel FIND_LEAST = {.name = "find least",
-                                        .body = find_least,
-                                        .access = {DUITE_CW},
-                                        .args_size = 2 * sizeof(double),
-                                        .law = DUITE_LAWS(&LEAST)};
-static const duite_kernel GIVE_ALL = {.name = "give all",
-                                      .body = give_all,
-                                      .access = {DUITE_CW, DUITE_CW, DUITE_CW},
-                                      .variadic = DUITE_CW,
-                                      .args_size = sizeof(int64_t),
-                                      .law = DUITE_LAWS([1] = &duite_max, [2] = &DIGITS),
-                                      .variadic_law = &duite_min};
 
 static duite *rt;
 

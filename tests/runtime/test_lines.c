@@ -2,6 +2,7 @@
  * each other (runtime/workers/await.c). All values, against a loop; of recorded graphs and of forks
  * that are recognised, with bodies that take unequal times. And two values that change side by
  * side, of which one decides on further rounds: the other one's next node may never come. */
+#include "tests/support/kernel.h"
 #include "tests/support/unit.h"
 
 #include <duite.h>
@@ -36,7 +37,7 @@ static void linger(uint64_t value)
     turn(value % 31 ? (unsigned)(value % 7) : 4000 * (unsigned)(value % 2));
 }
 
-static int step(const duite_call *call)
+KERNEL(END, "end", .access = {DUITE_W, DUITE_R, DUITE_R})
 {
     const size_t n = call->n_params - 1;
     uint64_t old[3];
@@ -48,10 +49,8 @@ static int step(const duite_call *call)
     return 0;
 }
 
-static const duite_kernel END = {
-    .name = "end", .body = step, .access = {DUITE_W, DUITE_R, DUITE_R}};
 static const duite_kernel INNER = {
-    .name = "inner", .body = step, .access = {DUITE_W, DUITE_R, DUITE_R, DUITE_R}};
+    .name = "inner", .body = END_body, .access = {DUITE_W, DUITE_R, DUITE_R, DUITE_R}};
 static const duite_kernel *const KERNELS[] = {&END, &INNER, NULL};
 
 /* The points whose values point i needs: from *first on. */
@@ -148,7 +147,7 @@ UNIT_TEST(neighbours_wait_for_each_other)
 /* ---- Rounds that one value decides on ---- */
 
 /* Both bodies take so long that two workers run them, and either may be the last. */
-static int change(const duite_call *call)
+KERNEL(CHANGE, "change", .access = {DUITE_RW})
 {
     uint64_t *value = duite_out(call, 0, uint64_t);
     *value = value_after(value, 1);
@@ -156,16 +155,13 @@ static int change(const duite_call *call)
     return 0;
 }
 
-static int pass(const duite_call *call)
+KERNEL(PASS, "pass", .access = {DUITE_RW})
 {
     int32_t *left = duite_out(call, 0, int32_t);
     --*left;
     turn(700 * (unsigned)(*left % 3));
     return 0;
 }
-
-static const duite_kernel CHANGE = {.name = "change", .body = change, .access = {DUITE_RW}};
-static const duite_kernel PASS = {.name = "pass", .body = pass, .access = {DUITE_RW}};
 
 struct pair {
     duite_object value, left;

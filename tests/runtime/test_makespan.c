@@ -30,7 +30,7 @@ static bool is_whole(void)
     return now.inside == 2 || (!now.free && !now.ready);
 }
 
-static int unit(const duite_call *call)
+KERNEL(UNIT, "unit", .access = {DUITE_RW, DUITE_R}, .args_size = sizeof(int))
 {
     const bool link = *(const int *)call->args;
 
@@ -54,17 +54,11 @@ static int unit(const duite_call *call)
     return 0;
 }
 
-static int begin(const duite_call *call)
+KERNEL(BEGIN, "begin", .access = {DUITE_W})
 {
     (void)call;
     return 0;
 }
-
-static const duite_kernel BEGIN = {.name = "begin", .body = begin, .access = {DUITE_W}},
-                          UNIT = {.name = "unit",
-                                  .body = unit,
-                                  .access = {DUITE_RW, DUITE_R},
-                                  .args_size = sizeof(int)};
 
 /* The chain is forked last; all wait for the first task, so that all are there when one is taken.
  */

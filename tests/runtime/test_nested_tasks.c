@@ -1,6 +1,7 @@
 /* Tasks that fork: depth, the memory of a body that forks for ever, and where failures are said to
  * be. What values, sizes and contributions they leave, also in replays, random programs ask. */
 
+#include "tests/support/kernel.h"
 #include "tests/support/unit.h"
 
 #include <duite.h>
@@ -21,24 +22,7 @@ static size_t grown;   /* bytes that a body's forks left */
 
 /* ---- Kernels ---- */
 
-static duite_body put, append, copy, fails, deeper, deeper_waiting, fail_all, for_ever;
-
 #define ARGS .args_size = sizeof(struct args)
-static const duite_kernel PUT = {.name = "put", .body = put, .access = {DUITE_W}, ARGS},
-                          APPEND = {.name = "append", .body = append, .access = {DUITE_RW}, ARGS},
-                          COPY = {.name = "copy", .body = copy, .access = {DUITE_R, DUITE_W}},
-                          FAILS = {.name = "fails", .body = fails, .access = {DUITE_RW}, ARGS},
-                          DEEPER = {.name = "deeper", .body = deeper, .access = {DUITE_WP}, ARGS},
-                          DEEPER_WAITING = {.name = "deeper, waiting",
-                                            .body = deeper_waiting,
-                                            .access = {DUITE_RWP},
-                                            ARGS},
-                          FAIL_ALL = {.name = "fail all",
-                                      .body = fail_all,
-                                      .access = {DUITE_RWP, DUITE_RWP},
-                                      ARGS},
-                          FOR_EVER = {
-                              .name = "for ever", .body = for_ever, .access = {DUITE_RWP}, ARGS};
 
 static const struct args *args_of(const duite_call *call)
 {
@@ -51,14 +35,14 @@ static void remember_told(int code)
     strncpy(said, code ? duite_message() : "", sizeof said - 1);
 }
 
-static int put(const duite_call *call)
+KERNEL(PUT, "put", .access = {DUITE_W}, ARGS)
 {
     duite_out(call, 0, int32_t)[0] = args_of(call)->n;
     return 0;
 }
 
 /* As a digit. */
-static int append(const duite_call *call)
+KERNEL(APPEND, "append", .access = {DUITE_RW}, ARGS)
 {
     int32_t *value = duite_out(call, 0, int32_t);
 
@@ -66,18 +50,18 @@ static int append(const duite_call *call)
     return 0;
 }
 
-static int copy(const duite_call *call)
+KERNEL(COPY, "copy", .access = {DUITE_R, DUITE_W})
 {
     duite_out(call, 1, int32_t)[0] = duite_in(call, 0, int32_t)[0];
     return 0;
 }
 
-static int fails(const duite_call *call)
+KERNEL(FAILS, "fails", .access = {DUITE_RW}, ARGS)
 {
     return duite_fail(call, args_of(call)->code, "on purpose");
 }
 
-static int deeper(const duite_call *call)
+KERNEL(DEEPER, "deeper", .access = {DUITE_WP}, ARGS)
 {
     struct args less = *args_of(call);
 
@@ -86,7 +70,7 @@ static int deeper(const duite_call *call)
     return DUITE_FORK(call->rt, &DEEPER, &less, call->param[0].object);
 }
 
-static int deeper_waiting(const duite_call *call)
+KERNEL(DEEPER_WAITING, "deeper, waiting", .access = {DUITE_RWP}, ARGS)
 {
     struct args less = *args_of(call);
     const duite_object own = call->param[0].object;
@@ -101,7 +85,7 @@ static int deeper_waiting(const duite_call *call)
 }
 
 /* The second child writes the first object, so it may run long before the first one. */
-static int fail_all(const duite_call *call)
+KERNEL(FAIL_ALL, "fail all", .access = {DUITE_RWP, DUITE_RWP}, ARGS)
 {
     DUITE_FORK(call->rt, &FAILS, DUITE_ARGS(struct args, .code = 21), call->param[1].object);
     DUITE_FORK(call->rt, &FAILS, DUITE_ARGS(struct args, .code = 22), call->param[0].object);
@@ -110,7 +94,7 @@ static int fail_all(const duite_call *call)
     return 0;
 }
 
-static int for_ever(const duite_call *call)
+KERNEL(FOR_EVER, "for ever", .access = {DUITE_RWP}, ARGS)
 {
     const int32_t n = args_of(call)->n;
     size_t before = 0;
@@ -131,13 +115,11 @@ static int for_ever(const duite_call *call)
     return code;
 }
 
-static int nothing(const duite_call *call)
+KERNEL(NOTHING, "nothing", .access = {DUITE_WP})
 {
     (void)call;
     return 0;
 }
-
-static const duite_kernel NOTHING = {.name = "nothing", .body = nothing, .access = {DUITE_WP}};
 
 /* ---- Cases ---- */
 

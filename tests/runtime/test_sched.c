@@ -18,13 +18,13 @@ static unsigned worker_of[BLOCKS][STEPS];
 
 #define URGENCY(i) ((i)*7 % 5 - 2) /* of a task, by its number */
 
-static int note(const duite_call *call)
+KERNEL(NOTE, "note", .access = {DUITE_W}, .args_size = sizeof(int))
 {
     order[n_ran++] = *(const int *)call->args;
     return 0;
 }
 
-static int step(const duite_call *call)
+KERNEL(STEP, "step", .access = {DUITE_RW, DUITE_R}, .args_size = 2 * sizeof(int))
 {
     const int *where = call->args;
 
@@ -34,11 +34,6 @@ static int step(const duite_call *call)
     duite_out(call, 0, int32_t)[0] += duite_in(call, 1, int32_t)[0] + 1;
     return 0;
 }
-
-static const duite_kernel NOTE = {
-    .name = "note", .body = note, .access = {DUITE_W}, .args_size = sizeof(int)};
-static const duite_kernel STEP = {
-    .name = "step", .body = step, .access = {DUITE_RW, DUITE_R}, .args_size = 2 * sizeof(int)};
 
 static duite *start(const char *scheduler, unsigned threads)
 {

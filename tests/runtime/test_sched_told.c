@@ -14,17 +14,14 @@ enum { TASKS = 30 };
 
 static int order[TASKS], n_ran; /* the tasks' numbers as they ran */
 
-static int note(const duite_call *call)
+KERNEL(NOTE, "note", .access = {DUITE_W}, .args_size = sizeof(int))
 {
     order[n_ran++] = *(const int *)call->args;
     return 0;
 }
 
-static const duite_kernel NOTE = {
-    .name = "note", .body = note, .access = {DUITE_W}, .args_size = sizeof(int)};
-
 /* As long as data need to be worth staying with. */
-static int last_long(const duite_call *call)
+KERNEL(LONG, "long", .access = {DUITE_W})
 {
     struct timespec begin, now;
     (void)call;
@@ -35,8 +32,6 @@ static int last_long(const duite_call *call)
            1e-5);
     return 0;
 }
-
-static const duite_kernel LONG = {.name = "long", .body = last_long, .access = {DUITE_W}};
 
 static duite *start(const struct duite_scheduler *scheduler, unsigned threads)
 {

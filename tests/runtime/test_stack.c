@@ -1,5 +1,6 @@
 /* Bodies that wait on top of one another, on stacks of a megabyte: many tasks that wait beside each
  * other do not fill it; tasks that nest more deeply than it allows end in an error. */
+#include "tests/support/kernel.h"
 #include "tests/support/unit.h"
 
 #include <duite.h>
@@ -15,14 +16,14 @@ enum { MANY = 3000, STACK_BYTES = 4 << 20 };
 enum { MANY = 3000, STACK_BYTES = 1 << 20 };
 #endif
 
-static int increase(const duite_call *call)
+KERNEL(INCREASE, "increase", .access = {DUITE_RW})
 {
     *duite_out(call, 0, int64_t) += 1;
     return 0;
 }
 
 /* Adds what it was lent to a sum. */
-static int look(const duite_call *call)
+KERNEL(LOOK, "look", .access = {DUITE_RP, DUITE_CW})
 {
     int64_t value = 0;
     const int code = duite_get(call->rt, call->param[0].object, &value);
@@ -32,16 +33,7 @@ static int look(const duite_call *call)
 }
 
 /* n levels: 1 and what the child gives. */
-static int deeper(const duite_call *call);
-
-static const duite_kernel INCREASE = {.name = "increase", .body = increase, .access = {DUITE_RW}},
-                          LOOK = {.name = "look", .body = look, .access = {DUITE_RP, DUITE_CW}},
-                          DEEPER = {.name = "deeper",
-                                    .body = deeper,
-                                    .access = {DUITE_W},
-                                    .args_size = sizeof(int32_t)};
-
-static int deeper(const duite_call *call)
+KERNEL(DEEPER, "deeper", .access = {DUITE_W}, .args_size = sizeof(int32_t))
 {
     const int32_t left = *(const int32_t *)call->args - 1;
     duite_object child;

@@ -9,7 +9,7 @@ enum { TASKS = 400, OBJECTS = 5, RECORDED = 10 };
 
 static atomic_int n_over; /* bodies */
 
-static int step(const duite_call *call)
+KERNEL(STEP, "step", .access = {DUITE_RW, DUITE_R})
 {
     for (volatile int i = 0; i < 500; i++)
         ;
@@ -18,15 +18,12 @@ static int step(const duite_call *call)
     return 0;
 }
 
-static int add(const duite_call *call)
+KERNEL(ADD_ONE, "add", .access = {DUITE_CW})
 {
     duite_out(call, 0, int32_t)[0] += 1;
     atomic_fetch_add(&n_over, 1);
     return 0;
 }
-
-static const duite_kernel STEP = {.name = "step", .body = step, .access = {DUITE_RW, DUITE_R}};
-static const duite_kernel ADD_ONE = {.name = "add", .body = add, .access = {DUITE_CW}};
 
 static duite *start(size_t window, unsigned threads)
 {

@@ -2,7 +2,6 @@
 #define BENCH_TILES_H
 
 #include <stddef.h>
-#include <stdint.h>
 
 /* A dense matrix of doubles by square tiles, and its factorisation: Cholesky's A = L transpose(L),
  * of which only the lower triangle is kept, or A = L U without pivoting, where L has ones on its

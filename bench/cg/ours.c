@@ -11,7 +11,6 @@
 #include "cloth/flow/solver/solve.h"
 #include "tests/support/rank.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -5,8 +5,6 @@
 #include "bench/tasks/tasks.h"
 #include "cloth/flow/state/bodies.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* An object of any type, copied; freed by whom it is given to. */

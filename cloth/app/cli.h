@@ -6,6 +6,7 @@
 #include <argp.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 /* The command lines of duite-view, duite-garment and duite-mannequin: a row of a table for each
  * option, whose value goes to a member of the program's own struct. Wrong ones end the process with

@@ -6,7 +6,6 @@
 #include "cloth/output/mannequin.h"
 #include "cloth/output/output.h"
 
-#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>

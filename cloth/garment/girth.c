@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const double STEP = 0.02;             /* m: between levels */
 static const double NEAR = 0.03;             /* of a seam: how far cuts of both sides may be */

@@ -13,7 +13,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { PATH = 300, STATE = 500 };
 static const double END_OLD = 2; /* s: a run that ends is gone by then */

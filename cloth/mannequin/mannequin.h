@@ -4,7 +4,6 @@
 #include "cloth/base/error.h"
 #include "cloth/mesh/mesh.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* A figure that garments are put on: the mesh of a standing person without a face, its arms held

@@ -3,7 +3,6 @@
 
 #include "cloth/base/error.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* The cut of the vertices into blocks of about `grain`, balanced by vertices. METIS' recursive

@@ -7,7 +7,6 @@
 #include "cloth/physics/spring.h"
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 /* The parts of a model (model.h): materials, cloths, and the picks, pins, motions, loads, joints

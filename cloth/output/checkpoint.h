@@ -4,7 +4,6 @@
 #include "cloth/base/error.h"
 
 #include <stddef.h>
-#include <stdint.h>
 
 /* Checkpoints in a folder of frames: DIR/checkpoints/000001.checkpoint and so on, the last
  * OUTPUT_CHECKPOINTS_KEPT of them. A file holds opaque parts. It is written beside its name,

@@ -3,8 +3,6 @@
 
 #include "cloth/element/strain.h"
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 /* Data beside the positions that viewers colour cloth by: DIR/colours.bin, in a folder of frames

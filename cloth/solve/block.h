@@ -4,7 +4,6 @@
 #include "cloth/solve/cg.h"
 #include "cloth/solve/format.h"
 
-#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 

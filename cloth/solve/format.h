@@ -4,7 +4,6 @@
 #include "cloth/solve/matrix3.h"
 
 #include <stddef.h>
-#include <stdint.h>
 
 /* How the off-diagonal part of a matrix is kept. An entry joins two rows, a and b: with N = -A_ab
  * it adds N d, d = p_a - p_b, to row a and takes N' d from row b. So the diagonal is not kept. Its

@@ -10,7 +10,6 @@
 #include <GLFW/glfw3.h>
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
 
 static const double SEEN = 2.0;   /* s that the time line stays after the mouse has moved */
 static const double ASLEEP = 0.1; /* s between two looks at the clock */

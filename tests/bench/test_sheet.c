@@ -3,7 +3,6 @@
 #include "bench/ranks/ranks.h"
 #include "tests/support/unit.h"
 
-#include <math.h>
 #include <stdio.h>
 
 enum { SIDE = 20, GRAIN = 40, COUNT = 30 };

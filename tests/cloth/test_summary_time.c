@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* 100 steps in 10 s of two workers on two cores. Each case gives 20 s to busy, idle and the rest.
  */

@@ -2,7 +2,6 @@
  * each time. Prints what the runtime counted. */
 #include <duite.h>
 
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

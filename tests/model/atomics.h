@@ -7,7 +7,6 @@
 #include "tests/model/explore.h"
 
 #include <errno.h>
-#include <time.h>
 
 /* The value's type, without _Atomic. */
 #define EXPLORE_TYPE(object) __typeof__(((void)0, *(object)))

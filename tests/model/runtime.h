@@ -6,7 +6,6 @@
  * which forgets it with each execution. */
 #include <mpi.h>
 #include <sched.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/types.h>

@@ -3,7 +3,6 @@
 #include "tests/runtime/random_cells.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 const struct prog_failure PROG_NO_FAILURE = {~0u, DUITE_OK};
 

@@ -4,7 +4,6 @@
 
 #include "tests/runtime/random_program.h"
 
-#include <limits.h>
 #include <math.h>
 
 /* Of a type, by its mix of two values. */

@@ -2,8 +2,6 @@
  * tasks append digits to numbers, so that their order can be read. */
 #include "tests/runtime/graphs_fixture.h"
 
-#include <string.h>
-
 UNIT_TEST(arguments_change)
 {
     struct graphs_fixture f = graphs_begin(graphs_build);

@@ -6,7 +6,6 @@
 #include <duite.h>
 
 #include <pthread.h>
-#include <string.h>
 #include <sys/resource.h>
 
 /* ThreadSanitizer keeps much of its own there. */

@@ -7,7 +7,6 @@
 #include "cloth/mesh/mesh.h"
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 /* Frame by frame, which triangles of cloth go through each other and through obstacles, by

@@ -7,7 +7,6 @@
 #include "cloth/solve/assemble.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* The blocks of an element's corners, each once. Returns how many. */
 static uint32_t blocks_of(const struct flow_source *source, const struct element *element,

@@ -7,7 +7,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static int check_used(const struct flow_picking *picking, const struct model_probe *probe,
                       size_t from, struct cloth_error *error)

@@ -7,7 +7,6 @@
 #include "cloth/base/memory.h"
 #include "cloth/base/order.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 /* ---- Set-up ---- */

@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* kg of a vertex: squares of momenta beyond these would vanish or be infinite. */
 static const double MIN_MASS = 1e-30, MAX_MASS = 1e30;

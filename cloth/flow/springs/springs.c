@@ -4,7 +4,6 @@
 
 #include "cloth/base/memory.h"
 
-#include <math.h>
 #include <string.h>
 
 /* Finds the moduli of the regions of a cloth, for its lattice. */

@@ -4,7 +4,6 @@
 #include "cloth/output/hdf5/hdf5.h"
 
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 struct output_hdf5 {

@@ -2,7 +2,6 @@
 #include "cloth/scene/build/build.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Checks that the mesh has an edge between each two consecutive vertices. */

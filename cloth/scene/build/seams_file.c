@@ -3,8 +3,6 @@
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/pattern/reader.h"
 
-#include <string.h>
-
 static const struct scene_words WORDS = {
     .noun = "file of seams", .form = "JSON", .start = "it is a map of \"seams\""};
 

@@ -4,7 +4,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 static const double LEAST_DENSITY = 0.005, MOST_DENSITY = 5; /* kg/m^2: of a veil, of a carpet */
 static const double MOST_RIGIDITY = 1e-2;                    /* N m: of thick leather */

@@ -4,7 +4,6 @@
 
 #include <stdbool.h>
 #include <stdio.h>
-#include <string.h>
 
 enum { RIB_KNIT, SILK, DENIM, POLYCOTTON };
 const struct model_word scene_fabrics[] = {

@@ -13,7 +13,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 static const double GF_PER_CM = 0.980665;       /* N/m */
 static const double GF_CM = 9.80665e-5;         /* N m */

@@ -1,9 +1,7 @@
 /* Words for people: the values that a rule allows, and guesses for a wrong word. */
 #include "cloth/scene/schema/rules.h"
 
-#include <stdarg.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { LONGEST = 31 }; /* words beyond this length are not guessed at */

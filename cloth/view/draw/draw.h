@@ -5,7 +5,6 @@
 
 #include <epoxy/gl.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 /* The parts of a scene. An OpenGL context is current in all functions. */

@@ -6,7 +6,6 @@
 #include "tests/support/random.h"
 
 #include <check.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 

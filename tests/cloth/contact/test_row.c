@@ -4,8 +4,6 @@
 #include "cloth/contact/row.h"
 #include "tests/support/unit.h"
 
-#include <string.h>
-
 static const double G = 9.81, THICKNESS = 1e-3, DEGREE = 0.017453292519943295;
 
 struct mass {

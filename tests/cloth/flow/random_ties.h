@@ -6,7 +6,6 @@
 #include "cloth/flow/solver/solve.h"
 #include "tests/support/unit.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -7,7 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { LINKS = 20 };
 static const double M = 0.01, K = 5000, G = 9.81, LENGTH = 0.05;

@@ -3,7 +3,6 @@
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 static const double FALL = 9.81e-6 * 55; /* of ten steps of implicit Euler */

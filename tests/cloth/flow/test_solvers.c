@@ -4,8 +4,6 @@
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 
-#include <math.h>
-
 static const enum model_preconditioner kinds[] = {MODEL_JACOBI, MODEL_IC0, MODEL_COARSE,
                                                   MODEL_IC0_COARSE};
 enum { KINDS = sizeof kinds / sizeof *kinds };

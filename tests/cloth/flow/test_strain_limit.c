@@ -7,7 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { LINKS = 10 };
 static const double M = 0.002, K = 40, LIMIT = 400, AT = 0.01, LENGTH = 0.1;

@@ -8,7 +8,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Reads patterns/NAME.json, or ends the case. */
 static inline struct garment_pattern read_pattern(const char *name)

@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static inline const double *place_of(const struct mesh *mesh, uint32_t v)
 {

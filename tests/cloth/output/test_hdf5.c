@@ -4,7 +4,6 @@
 #include "tests/support/unit.h"
 
 #include <hdf5.h>
-#include <math.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -2,8 +2,6 @@
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
 
-#include <string.h>
-
 static void same_vector(const double *a, double x, double y, double z)
 {
     ck_assert_double_eq(a[0], x);

@@ -3,7 +3,6 @@
 #include "tests/cloth/solve/two_level.h"
 #include "tests/support/unit.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

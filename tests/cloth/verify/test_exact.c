@@ -8,7 +8,6 @@
 
 #include <gmp.h>
 #include <math.h>
-#include <stdio.h>
 
 enum { SIGNS = 20000, PAIRS = 6000, KINDS = 6 };
 

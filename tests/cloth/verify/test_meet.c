@@ -4,7 +4,6 @@
 #include "tests/support/unit.h"
 
 #include <math.h>
-#include <stdio.h>
 
 /* Six points; the second triangle has the corners b, the first one 0 1 2. */
 struct pair {

@@ -1,7 +1,7 @@
-/* Pressure on triangles (cloth/physics/pressure.h). It is not in the matrix, so steps have a limit.
+/* Pressure on triangles (cloth/physics/air.h). It is not in the matrix, so steps have a limit.
  */
-#include "cloth/physics/pressure.h"
 #include "cloth/element/cloths.h"
+#include "cloth/physics/air.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -13,7 +13,7 @@ double phys_limit_euler(double omega, double a);
 /* x by the new v: 2 / omega, less where there is damping. */
 double phys_limit_symplectic(double omega, double a);
 
-/* Velocity Verlet as in cloth/physics/stage.h, a without the drag that it solves for: 2 / omega,
+/* Velocity Verlet as in cloth/physics/particle.h, a without the drag that it solves for: 2 / omega,
  * less where there is such damping. */
 double phys_limit_verlet(double omega, double a);
 

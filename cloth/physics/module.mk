@@ -5,14 +5,11 @@ libduite_cloth_a_SOURCES += \
     cloth/physics/element.h \
     cloth/physics/quadratic.c \
     cloth/physics/hinge.c \
-    cloth/physics/energy.c cloth/physics/energy.h \
-    cloth/physics/implicit.c cloth/physics/implicit.h \
     cloth/physics/limit.c cloth/physics/limit.h \
     cloth/physics/motion.c cloth/physics/motion.h \
     cloth/physics/particle.c cloth/physics/particle.h \
-    cloth/physics/pressure.c cloth/physics/pressure.h \
     cloth/physics/spring.c cloth/physics/spring.h \
-    cloth/physics/stage.c cloth/physics/stage.h cloth/physics/tiny.h \
+    cloth/physics/tiny.h \
     cloth/physics/strain_limit.c cloth/physics/strain_limit.h \
     cloth/physics/triangle.c cloth/physics/triangle_system.c cloth/physics/triangle.h \
     cloth/physics/vec.h \

@@ -278,3 +278,16 @@ PHYS_KERNEL(phys_springs_range,
         range[1] = lanes[1][i] > range[1] ? lanes[1][i] : range[1];
     }
 }
+
+/* The same bits whichever of a spring's ends comes first. */
+double phys_energy_springs(const struct phys_springs *springs, const phys_vec *x,
+                           const phys_vec *x_other)
+{
+    double sum = 0;
+    for (size_t i = 0; i < springs->n; i++) {
+        const phys_vec d = x_other[springs->end[i][1]] - x[springs->end[i][0]];
+        const double longer = sqrt(phys_dot(&d, &d)) - springs->length[i];
+        sum += 0.5 * springs->stiffness[i] * (longer * longer);
+    }
+    return sum;
+}

@@ -51,4 +51,9 @@ void phys_springs_system(const struct phys_springs *springs, double h, double pu
 void phys_springs_range(const struct phys_springs *springs, const unsigned char *chosen,
                         const phys_vec *x, const phys_vec *x_other, double range[2]);
 
+/* Sum of k (l - L)^2 / 2, J, in the order of the springs. End 1 is looked up in x_other, which is x
+ * where both ends are here. */
+double phys_energy_springs(const struct phys_springs *springs, const phys_vec *x,
+                           const phys_vec *x_other);
+
 #endif

@@ -1,14 +1,13 @@
 /* Explicit integrators: both Eulers, velocity Verlet, the classic Runge-Kutta method. They have no
- * solve (cloth/physics/stage.h). Each step begins and ends with x, v and their halos. A task that
- * finds forces reads its neighbours' halos and moves its own rows at once. It writes its next rows
- * to spare halos. These become the halos when all such tasks are forked. So blocks do not wait
+ * solve (cloth/physics/particle.h). Each step begins and ends with x, v and their halos. A task
+ * that finds forces reads its neighbours' halos and moves its own rows at once. It writes its next
+ * rows to spare halos. These become the halos when all such tasks are forked. So blocks do not wait
  * until neighbours have read them, and forces stay in the caches. */
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/pins/sliders.h"
 #include "cloth/flow/run/step.h"
 
 #include "cloth/physics/particle.h"
-#include "cloth/physics/stage.h"
 
 /* Spare halos become the halos that neighbours read next. Called when all tasks are forked. */
 static void swap_halos_v(struct flow_state *state)

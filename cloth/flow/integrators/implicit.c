@@ -7,7 +7,6 @@
 #include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"
 
-#include "cloth/physics/implicit.h"
 #include "cloth/physics/particle.h"
 
 static const double OVERSHOT = 0.5; /* of the slope at the begin of a Newton step, and uphill */
@@ -169,7 +168,7 @@ static int fork_move(struct flow_state *state)
 
 /* ---- Newton steps ----
  *
- * They and steps by BDF2 have bases (cloth/physics/implicit.h); args.h is the t of the step. */
+ * They and steps by BDF2 have bases (cloth/physics/particle.h); args.h is the t of the step. */
 
 /* f becomes the right side of the next Newton step. */
 FLOW_KERNEL(residual, FLOW_ACCELERATION, struct flow_step_args,

@@ -3,7 +3,7 @@
  * weights to that of the others. All its blocks compute it in this direction, to the same bits. */
 #include "cloth/flow/state/bodies.h"
 
-#include "cloth/physics/energy.h"
+#include "cloth/physics/spring.h"
 
 /* A joint as a spring from point 0 to point 1; it points to itself. */
 struct one_joint {

@@ -5,8 +5,8 @@
 #include "cloth/flow/pins/sliders.h"
 #include "cloth/flow/run/step.h"
 
-#include "cloth/physics/energy.h"
 #include "cloth/physics/particle.h"
+#include "cloth/physics/spring.h"
 
 FLOW_KERNEL(energy, FLOW_NO_PART, struct flow_step_args,
             (R(table), R(x), R(v), SUM(energies), NEIGHBOURS(halo_x), IF_MADE(tie_table),

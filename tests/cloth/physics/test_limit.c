@@ -1,7 +1,7 @@
 /* Limits of explicit steps: a mode a little below its limit dies out or stays, a little above it
  * grows, whatever its damping. Verlet and Runge-Kutta are their own bodies here. */
 #include "cloth/physics/limit.h"
-#include "cloth/physics/stage.h"
+#include "cloth/physics/particle.h"
 #include "tests/support/unit.h"
 
 #include <math.h>

@@ -1,8 +1,7 @@
 /* Particles one by one, their energies and stages of explicit steps, against values worked out by
  * hand. */
-#include "cloth/physics/energy.h"
 #include "cloth/physics/particle.h"
-#include "cloth/physics/stage.h"
+#include "cloth/physics/spring.h"
 #include "tests/support/unit.h"
 
 #include <math.h>

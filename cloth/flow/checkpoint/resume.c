@@ -67,7 +67,6 @@ int flow_resume(struct flow *flow, struct flow_checkpoint from, struct flow_resu
 /* ---- State of the main program ---- */
 
 FLOW_KERNEL_WITH(resume_main, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(sent)), .fixed = 1)
-static int resume_main_body(const duite_call *call, const struct resume_main_fields *on)
 {
     memcpy(on->sent, flow_of(call)->from.bytes,
            duite_count(call, FLOW_INDEX_OF(resume_main, sent)));
@@ -161,7 +160,6 @@ static bool is_field(const struct flow *flow, uint32_t block, const duite_param 
 }
 
 FLOW_KERNEL_WITH(resume_load, FLOW_NO_PART, struct load_args, (REST_W(saved_objects)), .fixed = 1)
-static int resume_load_body(const duite_call *call, const struct resume_load_fields *on)
 {
     const struct load_args *args = on->args;
     const struct flow *flow = flow_of(call);
@@ -188,7 +186,6 @@ static int resume_load_body(const duite_call *call, const struct resume_load_fie
 /* Runs at the block's home and writes last, so that the home holds the objects. */
 FLOW_KERNEL(resume, FLOW_NO_PART, struct flow_block_args,
             (R(table), RW(x), RW(v), W(halo_x), W(halo_v)))
-static int resume_body(const duite_call *call, const struct resume_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     flow_write_halo(&table, on->x, on->halo_x);

@@ -45,7 +45,6 @@ struct save_args {
 
 FLOW_KERNEL_WITH(save, FLOW_OUTPUT, struct save_args, (RW(token), REST_R(saved_objects)),
                  .side_effects = 1, .fixed = 1)
-static int save_body(const duite_call *call, const struct save_fields *on)
 {
     struct flow *flow = flow_of(call);
     for (size_t i = 0; i < on->n_saved_objects; i++)

@@ -68,7 +68,6 @@ void flow_body_open(const struct model *model, uint32_t obstacle, const unsigned
 /* Makes ids behind those of the cloth, so that none is also a vertex of it. */
 FLOW_KERNEL_WITH(body_skin, FLOW_COLLIDE, struct flow_block_args, (W(body_skins), W(body_fans)),
                  .replicated = 1)
-static int body_skin_body(const duite_call *call, const struct body_skin_fields *on)
 {
     const struct flow *flow = flow_of(call);
     const struct model *model = flow->model;
@@ -104,7 +103,6 @@ struct follow_args {
 
 FLOW_KERNEL_WITH(body_refit, FLOW_COLLIDE, struct follow_args,
                  (R(body_skins), W(body_points), W(body_boxes)), .replicated = 1)
-static int body_refit_body(const duite_call *call, const struct body_refit_fields *on)
 {
     const struct model *model = flow_of(call)->model;
     memset(on->body_boxes, 0, flow_body_place(model, model->n_obstacles).boxes);

@@ -62,7 +62,7 @@ static void cut_move_row(const struct moving *m, uint32_t i, double mass, const 
 
 FLOW_KERNEL(push, FLOW_COLLIDE, struct cut_args,
             (R(table), R(kept_x), RW(x), RW(v), W(halo_x), W(halo_v), SUM(cut_counts),
-             REST_R(meetings)))
+             REST_R(meetings)));
 
 /* Finds the pushes that part a pair where the step ends, m, along the row's normal, as that is
  * where the step begins. They are 0 if none do. */
@@ -147,7 +147,7 @@ static int push_body(const duite_call *call, const struct push_fields *on)
 
 FLOW_KERNEL(cut, FLOW_COLLIDE, struct cut_args,
             (R(table), R(kept_x), RW(x), RW(v), RW(cut_runs), W(halo_x), W(halo_v), SUM(cut_counts),
-             MAX(cut_longest), REST_R(meetings)))
+             MAX(cut_longest), REST_R(meetings)));
 
 /* Finds the part of its way that each row may go, by all failing pairs. */
 static void contact_cut_find_parts(const struct cut_fields *on, double *part)

@@ -7,7 +7,6 @@
 FLOW_KERNEL(contact_force, FLOW_OUTPUT, struct flow_block_args,
             (R(table), R(x), R(v), R(a), R(contact_rows), R(contact_obstacles), W(contact_force),
              SUM(obstacle_force), IF_MADE(tie_table), TIED(tie_halo)))
-static int contact_force_body(const duite_call *call, const struct contact_force_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const phys_vec *value = flow_tie_values(t, flow_matrix_in(call, t, on->a));

@@ -105,7 +105,6 @@ static void draw_part(const struct flow *flow, uint32_t obstacle, uint32_t block
 }
 
 FLOW_KERNEL_WITH(map_draw, FLOW_COLLIDE, struct flow_block_args, (W(maps)), .replicated = 1)
-static int map_draw_body(const duite_call *call, const struct map_draw_fields *on)
 {
     const struct flow *flow = flow_of(call);
     for (uint32_t i = 0; i < flow->model->n_obstacles; i++)
@@ -116,7 +115,6 @@ static int map_draw_body(const duite_call *call, const struct map_draw_fields *o
 
 /* Redraws only bodies that change their shape. */
 FLOW_KERNEL_WITH(map_draw_again, FLOW_COLLIDE, struct flow_block_args, (RW(maps)), .replicated = 1)
-static int map_draw_again_body(const duite_call *call, const struct map_draw_again_fields *on)
 {
     const struct flow *flow = flow_of(call);
     const struct model *model = flow->model;

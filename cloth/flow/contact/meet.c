@@ -60,7 +60,6 @@ static int query_meeting(struct meeting *m, const struct contact_side *other)
 
 FLOW_KERNEL(meet_self, FLOW_COLLIDE, struct flow_meet_args,
             (GIVEN_RW(near), GIVEN_SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes)))
-static int meet_self_body(const duite_call *call, const struct meet_self_fields *on)
 {
     struct meeting m;
     begin_meeting(call, FLOW_INDEX_OF(meet_self, near), on->near, on->meeting_counts, on->args,
@@ -77,7 +76,6 @@ static int meet_self_body(const duite_call *call, const struct meet_self_fields 
 FLOW_KERNEL(meet, FLOW_COLLIDE, struct flow_meet_args,
             (GIVEN_RW(near), GIVEN_SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes),
              GIVEN_R(other_skin), GIVEN_R(other_x), GIVEN_R(other_boxes)))
-static int meet_body(const duite_call *call, const struct meet_fields *on)
 {
     struct meeting m;
     begin_meeting(call, FLOW_INDEX_OF(meet, near), on->near, on->meeting_counts, on->args, on->skin,
@@ -91,7 +89,6 @@ static int meet_body(const duite_call *call, const struct meet_fields *on)
 FLOW_KERNEL(meet_figure, FLOW_COLLIDE, struct flow_meet_args,
             (GIVEN_RW(near), GIVEN_SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes),
              R(body_skins), R(body_points), R(body_boxes), R(body_fans)))
-static int meet_figure_body(const duite_call *call, const struct meet_figure_fields *on)
 {
     struct meeting m;
     begin_meeting(call, FLOW_INDEX_OF(meet_figure, near), on->near, on->meeting_counts, on->args,

@@ -371,7 +371,6 @@ static void keep_places(struct shape_meeting *m)
 
 FLOW_KERNEL(meet_shape, FLOW_COLLIDE, struct flow_meet_args,
             (GIVEN_RW(near), GIVEN_SUM(meeting_counts), R(skin), R(skin_x), R(skin_boxes)))
-static int meet_shape_body(const duite_call *call, const struct meet_shape_fields *on)
 {
     const struct flow_meet_args *args = on->args;
     const struct flow *flow = flow_of(call);

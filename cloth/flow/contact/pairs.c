@@ -26,7 +26,6 @@ enum { MOST_FAILING = 10 };
 /* ---- Boxes ---- */
 
 FLOW_KERNEL(root, FLOW_COLLIDE, struct flow_block_args, (R(skin_boxes), W(root)))
-static int root_body(const duite_call *call, const struct root_fields *on)
 {
     (void)call;
     contact_boxes_root(on->skin_boxes, on->root, on->root + 3);
@@ -37,7 +36,6 @@ static int root_body(const duite_call *call, const struct root_fields *on)
 /* On every rank; zeros for obstacles that are no bodies. */
 FLOW_KERNEL_WITH(roots, FLOW_COLLIDE, struct flow_block_args,
                  (W(roots), IF_MADE(body_boxes), ALL(root)), .replicated = 1)
-static int roots_body(const duite_call *call, const struct roots_fields *on)
 {
     const struct model *model = flow_of(call)->model;
     const uint32_t n_blocks = flow_of(call)->tables.n_blocks;

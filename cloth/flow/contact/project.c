@@ -9,7 +9,6 @@
 /* ---- The filter of the solve ---- */
 
 FLOW_KERNEL(filter, FLOW_COLLIDE, struct flow_step_args, (R(table), W(filter)))
-static int filter_body(const duite_call *call, const struct filter_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     phys_vec *filter = on->filter;
@@ -32,7 +31,6 @@ int flow_contact_filter(struct flow_state *state, struct flow_step_args args)
 
 /* Filters the right side, and gives the matrix its filter. */
 FLOW_KERNEL(constrain, FLOW_COLLIDE, struct flow_block_args, (R(table), R(filter), RW(f), RW(a)))
-static int constrain_body(const duite_call *call, const struct constrain_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     for (uint32_t i = 0; i < t->n; i++) {
@@ -120,7 +118,6 @@ static size_t obstacle_meets(const duite_call *call, const struct flow_step_args
 
 FLOW_KERNEL(collide, FLOW_COLLIDE, struct flow_step_args,
             (R(table), RW(x), RW(v), W(halo_x), W(halo_v), SUM(status), ALL(maps)))
-static int collide_body(const duite_call *call, const struct collide_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct model *model = flow_of(call)->model;

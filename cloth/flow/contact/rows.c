@@ -77,7 +77,6 @@ struct row_args {
 /* ---- The record of a block ---- */
 
 FLOW_KERNEL(tie_count, FLOW_COLLIDE, struct row_args, (W(tie_record), KEEPERS(contacts)))
-static int tie_count_body(const duite_call *call, const struct tie_count_fields *on)
 {
     const struct row_args *args = on->args;
     const struct flow *flow = flow_of(call);
@@ -106,7 +105,6 @@ static int tie_count_body(const duite_call *call, const struct tie_count_fields 
 /* Joins the records of all blocks, on every rank. */
 FLOW_KERNEL_WITH(tie_say, FLOW_COLLIDE, struct flow_block_args, (W(tie_said), ALL(tie_record)),
                  .replicated = 1)
-static int tie_say_body(const duite_call *call, const struct tie_say_fields *on)
 {
     const uint32_t n_blocks = flow_of(call)->tables.n_blocks;
     size_t bytes = 0;
@@ -173,7 +171,6 @@ static void write_rows(const struct flow *flow, const struct flow_step_args *ste
 FLOW_KERNEL(tie_contacts, FLOW_COLLIDE, struct row_args,
             (R(table), R(tie_links), W(tie_table), W(contact_rows), W(contact_obstacles),
              KEEPERS(contacts)))
-static int tie_contacts_body(const duite_call *call, const struct tie_contacts_fields *on)
 {
     const struct row_args *args = on->args;
     const struct flow *flow = flow_of(call);

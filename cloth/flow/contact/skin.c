@@ -76,7 +76,6 @@ bool flow_kin_has(const struct flow_skin_kin *kin, uint32_t point, uint32_t n,
 /* ---- In a step ---- */
 
 FLOW_KERNEL(keep_halo, FLOW_COLLIDE, struct flow_block_args, (R(halo_x), W(kept_halo_x)))
-static int keep_halo_body(const duite_call *call, const struct keep_halo_fields *on)
 {
     const size_t bytes = duite_count(call, FLOW_INDEX_OF(keep_halo, halo_x)) * sizeof(double);
     memcpy(on->kept_halo_x, on->halo_x, bytes);
@@ -118,7 +117,6 @@ struct refit_args {
 FLOW_KERNEL(skin_refit, FLOW_COLLIDE, struct refit_args,
             (R(skin), R(kept_x), R(x), RW(skin_x), W(skin_boxes), NEIGHBOURS(kept_halo_x),
              NEIGHBOURS(halo_x)))
-static int skin_refit_body(const duite_call *call, const struct skin_refit_fields *on)
 {
     const uint32_t n_neighbours = flow_shape_of(call)->n_neighbours;
     const struct flow_skin skin = flow_skin_open(on->skin);
@@ -138,7 +136,6 @@ static int skin_refit_body(const duite_call *call, const struct skin_refit_field
 /* Points that stand still. */
 FLOW_KERNEL(skin_place, FLOW_COLLIDE, struct flow_block_args,
             (R(skin), R(x), W(skin_x), W(skin_boxes), NEIGHBOURS(halo_x)))
-static int skin_place_body(const duite_call *call, const struct skin_place_fields *on)
 {
     const struct flow_skin skin = flow_skin_open(on->skin);
     const uint32_t n = skin.skin.n_points;

@@ -32,7 +32,7 @@ struct touch_args {
  * block, its points; contacts of other blocks that may share corners with these. */
 FLOW_KERNEL(touch, FLOW_COLLIDE, struct touch_args,
             (R(contacts), W(contacts_next), R(skin_x), SUM(contact_energy), SUM(status),
-             REST_R(meetings)))
+             REST_R(meetings)));
 
 /* State of the body. */
 struct touching {

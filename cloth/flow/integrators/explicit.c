@@ -97,7 +97,6 @@ FLOW_KERNEL(euler, FLOW_VELOCITY, struct flow_step_args,
             (R(table), RW(x), RW(v), W(spare_halo_x), W(spare_halo_v), SUM(status),
              NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table), IF_MADE(contact_rows),
              TIED(tie_halo)))
-static int euler_body(const duite_call *call, const struct euler_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = FLOW_VIEW(on);
@@ -110,7 +109,6 @@ FLOW_KERNEL(euler_next, FLOW_VELOCITY, struct flow_step_args,
             (R(table), R(x), R(v), W(kept_x), W(kept_v), W(spare_halo_x), W(spare_halo_v),
              SUM(status), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table),
              IF_MADE(contact_rows), TIED(tie_halo)))
-static int euler_next_body(const duite_call *call, const struct euler_next_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = FLOW_VIEW(on);
@@ -163,7 +161,6 @@ static int verlet_begin(struct flow_state *state)
 /* v becomes a guess of the velocity at the end of the step, for forces that depend on it. */
 FLOW_KERNEL(verlet_first, FLOW_POSITION, struct flow_step_args,
             (R(table), RW(x), RW(v), R(f), W(v0), W(halo_x), W(halo_v), SUM(status)))
-static int verlet_first_body(const duite_call *call, const struct verlet_first_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const double h = on->args->h, half = 0.5 * h;
@@ -181,7 +178,6 @@ static int verlet_first_body(const duite_call *call, const struct verlet_first_f
 FLOW_KERNEL(verlet_second, FLOW_VELOCITY, struct flow_step_args,
             (R(table), R(x), RW(v), W(f), R(v0), W(spare_halo_v), SUM(status), NEIGHBOURS(halo_x),
              NEIGHBOURS(halo_v), IF_MADE(tie_table), IF_MADE(contact_rows), TIED(tie_halo)))
-static int verlet_second_body(const duite_call *call, const struct verlet_second_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct flow_view view = FLOW_VIEW(on);
@@ -222,7 +218,6 @@ FLOW_KERNEL(runge, FLOW_POSITION, struct runge_args,
             (R(table), RW(x), RW(v), RW(x0), RW(v0), RW(sum_x), RW(sum_v), W(spare_halo_x),
              W(spare_halo_v), SUM(status), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v),
              IF_MADE(tie_table), IF_MADE(contact_rows), TIED(tie_halo)))
-static int runge_body(const duite_call *call, const struct runge_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct flow_step_args *step = &on->args->step;

@@ -125,7 +125,6 @@ static int implicit_move(const duite_call *call, const struct flow_table *t,
 FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_step_args,
             (R(table), R(f), R(a), R(dv), R(r), RW(x), RW(v), W(halo_x), W(halo_v), R(scalars),
              SUM(status), IF_MADE(tie_table)))
-static int implicit_body(const duite_call *call, const struct implicit_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct solved solved = IMPLICIT_SOLVED(call, t, on);
@@ -137,7 +136,6 @@ static int implicit_body(const duite_call *call, const struct implicit_fields *o
 FLOW_KERNEL(implicit_next, FLOW_POSITION, struct flow_step_args,
             (R(table), R(f), R(a), R(dv), R(r), R(x), R(v), W(kept_x), W(kept_v), W(halo_x),
              W(halo_v), R(scalars), SUM(status), IF_MADE(tie_table)))
-static int implicit_next_body(const duite_call *call, const struct implicit_next_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct solved solved = IMPLICIT_SOLVED(call, t, on);
@@ -173,7 +171,6 @@ static int fork_move(struct flow_state *state)
 /* f becomes the right side of the next Newton step. */
 FLOW_KERNEL(residual, FLOW_ACCELERATION, struct flow_step_args,
             (R(table), R(base_v), R(v), R(dv), RW(f), SUM(slope)))
-static int residual_body(const duite_call *call, const struct residual_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     phys_residual(t->n, on->args->h, t->mass, on->base_v, on->v, on->f);
@@ -214,7 +211,6 @@ struct shift_args {
 /* A part of dv more. */
 FLOW_KERNEL(shift, FLOW_VELOCITY, struct shift_args,
             (R(table), R(dv), R(base_x), RW(v), W(x), W(halo_v), W(halo_x)))
-static int shift_body(const duite_call *call, const struct shift_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct newton_move move = {on->dv, on->base_x, on->v, on->x, on->halo_v, on->halo_x};
@@ -243,7 +239,6 @@ static int search_line(struct flow_state *state, struct flow_step_args args, dou
 FLOW_KERNEL(correct, FLOW_VELOCITY, struct flow_step_args,
             (R(table), R(f), R(a), R(dv), R(r), R(base_x), R(base_v), RW(v), W(x), W(halo_v),
              W(halo_x), R(scalars), SUM(status), IF_MADE(tie_table)))
-static int correct_body(const duite_call *call, const struct correct_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct solved solved = IMPLICIT_SOLVED(call, t, on);
@@ -358,7 +353,6 @@ static void constrain_bases(const duite_call *call, const struct flow_table *t,
 /* Its bases, and x where v would lead. */
 FLOW_KERNEL(predict, FLOW_POSITION, struct flow_step_args,
             (R(table), RW(x), R(v), RW(last_x), RW(last_v), W(base_x), W(base_v), W(halo_x)))
-static int predict_body(const duite_call *call, const struct predict_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const double h = on->args->h;

@@ -107,7 +107,6 @@ struct tie_args {
 };
 
 FLOW_KERNEL(tie, FLOW_NO_PART, struct tie_args, (R(table), R(tie_links), W(tie_table)))
-static int tie_body(const duite_call *call, const struct tie_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_tie_list list = joints_at(flow_of(call), on->args->tick);
@@ -190,7 +189,6 @@ bool flow_ties_will_change(const struct flow_state *state)
 /* ---- Rows shown to others ---- */
 
 FLOW_KERNEL(tie_show, FLOW_FORCE, struct flow_block_args, (R(tie_table), R(x), R(v), W(tie_halo)))
-static int tie_show_body(const duite_call *call, const struct tie_show_fields *on)
 {
     const struct flow_ties ties = flow_ties_open(on->tie_table);
     (void)call;

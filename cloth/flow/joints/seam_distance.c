@@ -24,7 +24,6 @@ static double square_of(const struct flow_table *t, uint32_t i, const phys_vec *
 
 FLOW_KERNEL(seams, FLOW_OUTPUT, struct flow_block_args,
             (R(table), R(x), MAX(seam_peaks), NEIGHBOURS(halo_x)))
-static int seams_body(const duite_call *call, const struct seams_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     for (uint32_t i = 0; i < t->n_pulled; i++) {

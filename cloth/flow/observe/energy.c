@@ -11,7 +11,6 @@
 FLOW_KERNEL(energy, FLOW_NO_PART, struct flow_step_args,
             (R(table), R(x), R(v), SUM(energies), NEIGHBOURS(halo_x), IF_MADE(tie_table),
              TIED(tie_halo)))
-static int energy_body(const duite_call *call, const struct energy_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const double *gravity = flow_of(call)->model->gravity;
@@ -40,7 +39,6 @@ static int energy_body(const duite_call *call, const struct energy_fields *on)
 /* f becomes v plus half a kick: the velocity at the time of x, for steps that hold them half a step
  * apart. */
 FLOW_KERNEL(level, FLOW_NO_PART, struct flow_step_args, (R(table), R(v), RW(f)))
-static int level_body(const duite_call *call, const struct level_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     phys_accelerate(t->n, t->mass, t->free, on->f);

@@ -16,7 +16,6 @@ static int largest_stretch(struct flow_state *state)
 
 /* Runs alone. */
 FLOW_KERNEL(seconds, FLOW_NO_PART, struct flow_block_args, (SUM(seconds)))
-static int seconds_body(const duite_call *call, const struct seconds_fields *on)
 {
     const struct flow *flow = flow_of(call);
     for (unsigned w = 0; w < flow->n_clocks; w++)
@@ -95,7 +94,6 @@ static void place_rows(const struct flow_state *state, uint32_t block, const str
 
 /* A vector of a block without its fourth lane. */
 FLOW_KERNEL(collect, FLOW_NO_PART, struct flow_block_args, (R(x), W(gathered)))
-static int collect_body(const duite_call *call, const struct collect_fields *on)
 {
     const struct flow_table *t = flow_shape_of(call);
     unsigned char *to = on->gathered;
@@ -194,7 +192,6 @@ static void hash_state(struct flow_state *state)
 }
 
 FLOW_KERNEL(broadcast, FLOW_NO_PART, struct flow_block_args, (W(broadcast)))
-static int broadcast_body(const duite_call *call, const struct broadcast_fields *on)
 {
     on->broadcast[FLOW_BROADCAST_FRAMES] = flow_of(call)->frames;
     on->broadcast[FLOW_BROADCAST_HASH] = flow_of(call)->hash;

@@ -90,7 +90,6 @@ static int show_vector(struct flow *flow, const struct frame_args *args)
 }
 
 FLOW_KERNEL_WITH(frame, FLOW_OUTPUT, struct frame_args, (RW(token), ALL(x)), .side_effects = 1)
-static int frame_body(const duite_call *call, const struct frame_fields *on)
 {
     struct flow *flow = flow_of(call);
     const bool places = on->args->shows == POSITIONS;

@@ -12,7 +12,7 @@ struct probe_args {
 };
 
 FLOW_KERNEL(probe, FLOW_OUTPUT, struct probe_args,
-            (R(table), R(x), R(v), R(probe_force), W(probe_values), IF_MADE(contact_force)))
+            (R(table), R(x), R(v), R(probe_force), W(probe_values), IF_MADE(contact_force)));
 
 /* m a - f of a row that is held, a the acceleration that its pin gives it. */
 static void reaction_of_held(const duite_call *call, const struct flow_table *t, uint32_t row,
@@ -117,7 +117,6 @@ FLOW_KERNEL_WITH(row, FLOW_OUTPUT, struct row_args,
                  (RW(token), R(status), R(peaks), R(energy), IF_MADE(obstacle_force),
                   ALL(probe_values)),
                  .side_effects = 1)
-static int row_body(const duite_call *call, const struct row_fields *on)
 {
     struct flow *flow = flow_of(call);
     double *to = flow->row, *probe_values = flow->probe_values;

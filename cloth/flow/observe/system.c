@@ -243,7 +243,6 @@ struct save_args {
 
 FLOW_KERNEL_WITH(system_save, FLOW_NO_PART, struct save_args, (RW(token), REST_R(system_objects)),
                  .side_effects = 1)
-static int system_save_body(const duite_call *call, const struct system_save_fields *on)
 {
     struct flow *flow = flow_of(call);
     struct solve_system system = {0};

@@ -30,7 +30,6 @@ static void watch_find_range(const struct flow_table *t, const phys_vec *x,
 
 FLOW_KERNEL(stretch, FLOW_NO_PART, struct flow_block_args,
             (R(table), R(x), MAX(stretch), NEIGHBOURS(halo_x)))
-static int stretch_body(const duite_call *call, const struct stretch_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     double range[2] = {0};
@@ -55,7 +54,6 @@ int flow_stretch_get(struct flow_state *state, double *stretch)
 
 FLOW_KERNEL(watch, FLOW_OUTPUT, struct flow_block_args,
             (R(table), R(x), R(v), MAX(peaks), NEIGHBOURS(halo_x)))
-static int watch_body(const duite_call *call, const struct watch_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     double range[2] = {INFINITY, -INFINITY}, max = 0;

@@ -112,8 +112,6 @@ static int fork_moved(struct flow_state *state, const struct flow_kernel *kernel
 
 FLOW_KERNEL(prescribe_velocity, FLOW_VELOCITY, struct flow_step_args,
             (R(table), R(x), RW(v), W(halo_v)))
-static int prescribe_velocity_body(const duite_call *call,
-                                   const struct prescribe_velocity_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const double h = on->args->h;
@@ -144,8 +142,6 @@ int flow_pins_prescribe_velocity(struct flow_state *state)
 }
 
 FLOW_KERNEL(prescribe_position, FLOW_POSITION, struct flow_step_args, (R(table), RW(x), W(halo_x)))
-static int prescribe_position_body(const duite_call *call,
-                                   const struct prescribe_position_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     phys_vec *x = on->x;

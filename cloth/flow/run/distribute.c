@@ -121,14 +121,12 @@ static void make_head(const struct flow *flow, struct flow_head *head)
 }
 
 FLOW_KERNEL(broadcast_head, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(sent)))
-static int broadcast_head_body(const duite_call *call, const struct broadcast_head_fields *on)
 {
     make_head(flow_of(call), (struct flow_head *)(void *)on->sent);
     return 0;
 }
 
 FLOW_KERNEL(broadcast_shared, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(sent)))
-static int broadcast_shared_body(const duite_call *call, const struct broadcast_shared_fields *on)
 {
     const struct flow *flow = flow_of(call);
     const struct flow_source *source = &flow->source;
@@ -256,7 +254,6 @@ int flow_share(struct flow_state *state)
 
 FLOW_KERNEL_IF(table_make, skin, FLOW_NO_PART, struct flow_block_args, (W(table), W_IF(skin)),
                .side_effects = 0)
-static int table_make_body(const duite_call *call, const struct table_make_fields *on)
 {
     const struct flow *flow = flow_of(call);
     struct cloth_error error = {0};
@@ -271,7 +268,6 @@ static int table_make_body(const duite_call *call, const struct table_make_field
 /* Does nothing: the rank that writes an object last holds it. */
 FLOW_KERNEL_IF(table_keep, skin, FLOW_NO_PART, struct flow_block_args, (RW(table), RW_IF(skin)),
                .side_effects = 0)
-static int table_keep_body(const duite_call *call, const struct table_keep_fields *on)
 {
     (void)call, (void)on;
     return 0;

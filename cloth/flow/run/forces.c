@@ -39,7 +39,6 @@ void flow_forces(const duite_call *call, const struct flow_table *t,
 FLOW_KERNEL(force, FLOW_FORCE, struct flow_step_args,
             (R(table), R(x), R(v), W(f), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table),
              IF_MADE(contact_rows), TIED(tie_halo)))
-static int force_body(const duite_call *call, const struct force_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = FLOW_VIEW(on);
@@ -51,7 +50,6 @@ static int force_body(const duite_call *call, const struct force_fields *on)
 FLOW_KERNEL(force_free, FLOW_FORCE, struct flow_step_args,
             (R(table), R(x), R(v), W(f), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table),
              IF_MADE(contact_rows), TIED(tie_halo)))
-static int force_free_body(const duite_call *call, const struct force_free_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = FLOW_VIEW(on);

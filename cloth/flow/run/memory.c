@@ -80,7 +80,6 @@ static void take_all(struct flow_state *state)
 }
 
 FLOW_KERNEL(ready, FLOW_NO_PART, struct flow_block_args, (GIVEN_SUM(lacks)))
-static int ready_body(const duite_call *call, const struct ready_fields *on)
 {
     const struct cloth_error *trouble = &flow_of(call)->trouble;
     (void)on;

@@ -42,7 +42,6 @@ static void note_due(const duite_call *call, double *status)
 }
 
 FLOW_KERNEL(status, FLOW_NO_PART, struct flow_block_args, (SUM(status)))
-static int status_body(const duite_call *call, const struct status_fields *on)
 {
     status_note_stop(call, on->status);
     note_due(call, on->status);

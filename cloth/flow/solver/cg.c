@@ -107,7 +107,6 @@ int flow_cg_record(struct flow_state *state)
 /* ---- The scalars, on every rank ---- */
 
 FLOW_KERNEL_WITH(cg_begin, FLOW_NO_PART, struct begin_args, (W(scalars)), .replicated = 1)
-static int cg_begin_body(const duite_call *call, const struct cg_begin_fields *on)
 {
     const struct flow_step_args *step = &on->args->step;
     *on->scalars = solve_scalars_start(step->begin, on->args->phase);
@@ -118,7 +117,6 @@ static int cg_begin_body(const duite_call *call, const struct cg_begin_fields *o
 
 FLOW_KERNEL_WITH(cg_motion, FLOW_CG, struct flow_block_args, (W(motion), R(coarse), ALL(part)),
                  .replicated = 1)
-static int cg_motion_body(const duite_call *call, const struct cg_motion_fields *on)
 {
     flow_coarse_motion(flow_of(call), on->coarse, on->part, on->motion);
     return 0;
@@ -193,7 +191,7 @@ static int next_scalars(const duite_call *call, const double dots[SOLVE_DOTS],
 FLOW_KERNEL_IF(cg_scalars, motion_next, FLOW_CG, struct flow_block_args,
                (W(scalars_next), R(scalars), W_IF(motion_next), IF_MADE(sums), IF_MADE(coarse),
                 ALL(part)),
-               .replicated = 1)
+               .replicated = 1);
 
 /* The dots of all blocks, which groups have summed if there are levels. */
 static void solver_cg_add_parts(const struct flow *flow, const duite_param *part,

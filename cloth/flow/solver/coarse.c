@@ -17,7 +17,6 @@
 
 FLOW_KERNEL(basis, FLOW_NO_PART, struct flow_block_args,
             (R(table), W(basis), W(halo_basis), IF_MADE(filter)))
-static int basis_body(const duite_call *call, const struct basis_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct solve_patches patches = solve_patches_of(t->n, flow_of(call)->patches);
@@ -33,7 +32,6 @@ static int basis_body(const duite_call *call, const struct basis_fields *on)
 
 FLOW_KERNEL(basis_ghosts, FLOW_NO_PART, struct flow_block_args,
             (R(table), W(basis_ghosts), NEIGHBOURS(halo_basis)))
-static int basis_ghosts_body(const duite_call *call, const struct basis_ghosts_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     on->basis_ghosts[0] = (phys_vec){0};
@@ -83,7 +81,7 @@ static struct solve_patches patches_of_neighbour(const struct flow *flow,
 
 FLOW_KERNEL(couple, FLOW_CG, struct flow_block_args,
             (R(table), R(a), R(basis), R(basis_ghosts), W(coupling), IF_MADE(tie_table),
-             TIED(tie_basis)))
+             TIED(tie_basis)));
 
 /* A tie as the coarse space sees it: P' of its weights, for each patch that it has corners in. */
 struct coupled_tie {
@@ -212,7 +210,6 @@ static int couple_body(const duite_call *call, const struct couple_fields *on)
 
 FLOW_KERNEL_WITH(factor_coarse, FLOW_CG, struct flow_block_args, (W(coarse), ALL(coupling)),
                  .replicated = 1)
-static int factor_coarse_body(const duite_call *call, const struct factor_coarse_fields *on)
 {
     const struct flow *flow = flow_of(call);
     const struct flow_graph graph = flow_levels_graph(flow);

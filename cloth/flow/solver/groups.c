@@ -104,7 +104,6 @@ static int fork_groups(struct flow_state *state, const struct flow_kernel *kerne
 
 FLOW_KERNEL(group_factor, FLOW_CG, struct group_args,
             (GIVEN_W(group_factor), GIVEN_W(group_coupling), R(lift), REST_R(covered)))
-static int group_factor_body(const duite_call *call, const struct group_factor_fields *on)
 {
     const struct group group = solver_groups_group_of(call, on->args, on->lift);
     const struct solve_cover *cover = group.cover;
@@ -175,7 +174,6 @@ static void solve_group(const struct group *group, const double *factor, const d
 FLOW_KERNEL(group_solve, FLOW_CG, struct group_args,
             (GIVEN_W(group_motion), GIVEN_W(group_part), GIVEN_R(group_factor), R(lift), R(scalars),
              REST_R(covered)))
-static int group_solve_body(const duite_call *call, const struct group_solve_fields *on)
 {
     const struct group group = solver_groups_group_of(call, on->args, on->lift);
     double *motion = on->group_motion, *part = on->group_part;

@@ -138,7 +138,6 @@ struct pack_args {
 };
 
 FLOW_KERNEL(cg_pack, FLOW_CG, struct pack_args, (GIVEN_R(whole_halo), GIVEN_W(packed_halo)))
-static int cg_pack_body(const duite_call *call, const struct cg_pack_fields *on)
 {
     const struct flow_packed_halo *halo = flow_of(call)->packed_halo + on->args->halo;
     double *to = on->packed_halo;

@@ -65,7 +65,6 @@ void flow_levels_make(struct flow_state *state)
 /* ---- The lifts of nodes into their groups ---- */
 
 FLOW_KERNEL(patch_frame, FLOW_NO_PART, struct flow_block_args, (R(table), W(patch_frame)))
-static int patch_frame_body(const duite_call *call, const struct patch_frame_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct solve_patches patches = solve_patches_of(t->n, flow_of(call)->patches);
@@ -91,7 +90,6 @@ static struct solve_frame solver_levels_frame_of(const struct flow *flow, const 
 
 FLOW_KERNEL_WITH(lift, FLOW_NO_PART, struct flow_block_args, (W(lift), ALL(patch_frame)),
                  .replicated = 1)
-static int lift_body(const duite_call *call, const struct lift_fields *on)
 {
     const struct flow *flow = flow_of(call);
     double *to = on->lift;

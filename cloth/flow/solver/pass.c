@@ -16,7 +16,6 @@
 
 FLOW_KERNEL(factor, FLOW_CG, struct flow_block_args,
             (R(table), R(a), W(factor), SUM(status), IF_MADE(tie_table)))
-static int factor_body(const duite_call *call, const struct factor_fields *on)
 {
     const enum solve_local local = flow_of(call)->conditioner.local;
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -105,7 +104,6 @@ FLOW_KERNEL_IF(cg_start, part, FLOW_CG, struct flow_block_args,
                (R(table), R(f), W(dv), W(r), W(p), W(q), W(ghosts), W(halo_q), W_IF(part), W_IF(z),
                 W_IF(s), IF_MADE(factor), IF_MADE(basis)),
                .side_effects = 0)
-static int cg_start_body(const duite_call *call, const struct cg_start_fields *on)
 {
     struct pass pass = {.call = call,
                         .table = flow_table_in(call, on->table),
@@ -130,7 +128,6 @@ struct guess_args {
 /* With a guess: the first pass multiplies by it, and a later one begins again. */
 FLOW_KERNEL(cg_guess, FLOW_CG, struct guess_args,
             (R(table), R(f), R(a), RW(dv), W(r), W(p), W(q), W(halo_q)))
-static int cg_guess_body(const duite_call *call, const struct cg_guess_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     flow_matrix_in(call, t, on->a);
@@ -295,7 +292,7 @@ FLOW_KERNEL_IF(cg_pass, part, FLOW_CG, struct flow_block_args,
                 NEIGHBOURS(halo_q), IF_MADE(factor), IF_MADE(basis), IF_MADE(basis_ghosts),
                 IF_MADE(motion), IF_MADE(lift), IF_MADE(tie_table), TIED(tie_q), TIED(tie_basis),
                 REST_R(group_motion)),
-               .side_effects = 0)
+               .side_effects = 0);
 
 /* The preconditioner as the pass sees it. */
 static struct flow_preconditioner conditioning(const duite_call *call,

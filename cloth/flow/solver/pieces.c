@@ -19,7 +19,7 @@ static bool solver_pieces_is_held(const struct flow_table *t, uint32_t row)
 }
 
 FLOW_KERNEL(piece_sums, FLOW_CG, struct flow_block_args,
-            (R(table), R(f), R(a), R(dv), SUM(pieces), IF_MADE(groups)))
+            (R(table), R(f), R(a), R(dv), SUM(pieces), IF_MADE(groups)));
 
 /* The number of a piece's sums, from 1; pieces joined by ties share them. 0: none, as a pin holds
  * the piece. */
@@ -70,7 +70,6 @@ static void shift_of(const double *sums, phys_vec *shift)
 
 FLOW_KERNEL(piece_shift, FLOW_CG, struct flow_block_args,
             (R(table), R(a), R(pieces), RW(dv), RW(r), IF_MADE(groups)))
-static int piece_shift_body(const duite_call *call, const struct piece_shift_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const void *value = flow_matrix_in(call, t, on->a);

@@ -167,7 +167,6 @@ static void make_system(const duite_call *call, const struct flow_table *t,
 FLOW_KERNEL(system, FLOW_MATRIX, struct flow_step_args,
             (R(table), R(x), R(v), W(f), W(a), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v),
              IF_MADE(tie_table), IF_MADE(contact_rows), TIED(tie_halo)))
-static int system_body(const duite_call *call, const struct system_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = FLOW_VIEW(on);
@@ -179,7 +178,6 @@ static int system_body(const duite_call *call, const struct system_fields *on)
 FLOW_KERNEL(system_of_forces, FLOW_MATRIX, struct flow_step_args,
             (R(table), R(x), R(v), RW(f), W(a), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v),
              IF_MADE(tie_table), IF_MADE(contact_rows), TIED(tie_halo)))
-static int system_of_forces_body(const duite_call *call, const struct system_of_forces_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = FLOW_VIEW(on);
@@ -191,7 +189,6 @@ static int system_of_forces_body(const duite_call *call, const struct system_of_
 FLOW_KERNEL(matrix, FLOW_MATRIX, struct flow_step_args,
             (R(table), R(x), W(a), NEIGHBOURS(halo_x), IF_MADE(tie_table), IF_MADE(contact_rows),
              TIED(tie_halo)))
-static int matrix_body(const duite_call *call, const struct matrix_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = {.x = on->x,

@@ -110,7 +110,6 @@ static void pack_shown(const struct flow_ties *ties, const phys_vec *y, double *
 
 /* For the first pass of a solve; the fork puts another vector in place of q. */
 FLOW_KERNEL(tie_pack, FLOW_CG, struct flow_block_args, (R(tie_table), R(q), W(tie_q)))
-static int tie_pack_body(const duite_call *call, const struct tie_pack_fields *on)
 {
     const struct flow_ties ties = flow_ties_open(on->tie_table);
     (void)call;
@@ -121,7 +120,6 @@ static int tie_pack_body(const duite_call *call, const struct tie_pack_fields *o
 /* For the next pass, after the one with these scalars. */
 FLOW_KERNEL(tie_pack_pass, FLOW_CG, struct flow_block_args,
             (R(tie_table), R(scalars), R(dv), R(q), W(tie_q_next)))
-static int tie_pack_pass_body(const duite_call *call, const struct tie_pack_pass_fields *on)
 {
     const struct flow_ties ties = flow_ties_open(on->tie_table);
     (void)call;
@@ -130,7 +128,6 @@ static int tie_pack_pass_body(const duite_call *call, const struct tie_pack_pass
 }
 
 FLOW_KERNEL(tie_show_basis, FLOW_CG, struct flow_block_args, (R(tie_table), R(basis), W(tie_basis)))
-static int tie_show_basis_body(const duite_call *call, const struct tie_show_basis_fields *on)
 {
     const struct flow_ties ties = flow_ties_open(on->tie_table);
     (void)call;

@@ -45,7 +45,6 @@ static void show_ends(const duite_call *call, const struct flow_table *t, double
 FLOW_KERNEL(edge_start, FLOW_CORRECTION, struct edge_args,
             (R(table), R(x), R(v), R(kept_x), W(edge_base), W(edge_moved), W(edge_ends), W(edge_x),
              W(edge_calm)))
-static int edge_start_body(const duite_call *call, const struct edge_start_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     for (uint32_t i = 0; i < t->n; i++) {
@@ -60,7 +59,6 @@ static int edge_start_body(const duite_call *call, const struct edge_start_field
 }
 
 FLOW_KERNEL_WITH(edge_begin, FLOW_NO_PART, struct edge_args, (W(edge_rounds)), .replicated = 1)
-static int edge_begin_body(const duite_call *call, const struct edge_begin_fields *on)
 {
     const struct edge_args *args = on->args;
     (void)call;
@@ -176,7 +174,6 @@ FLOW_KERNEL(edge_round, FLOW_CORRECTION, struct flow_block_args,
             (R(table), RW(x), R(kept_x), R(edge_base), RW(edge_moved), W(edge_x_next),
              RW(edge_calm), R(edge_rounds), MAX(edge_excess), NEIGHBOURS(edge_x),
              NEIGHBOURS(edge_ends)))
-static int edge_round_body(const duite_call *call, const struct edge_round_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct shown shown = {on->edge_x_next, on->edge_x, on->edge_ends};
@@ -201,7 +198,6 @@ static int edge_round_body(const duite_call *call, const struct edge_round_field
 
 FLOW_KERNEL_WITH(edge_next, FLOW_NO_PART, struct flow_block_args,
                  (R(edge_rounds), W(edge_rounds_next), R(edge_excess)), .replicated = 1)
-static int edge_next_body(const duite_call *call, const struct edge_next_fields *on)
 {
     const struct solve_excess found = {on->edge_excess[0], on->edge_excess[1]};
     *on->edge_rounds_next =
@@ -237,7 +233,6 @@ static void note_rounds(const struct solve_rounds *rounds, double *status)
 FLOW_KERNEL(edge_end, FLOW_CORRECTION, struct flow_block_args,
             (R(table), R(x), RW(v), W(halo_x), W(halo_v), R(edge_moved), R(edge_rounds),
              SUM(status)))
-static int edge_end_body(const duite_call *call, const struct edge_end_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct solve_rounds *rounds = on->edge_rounds;

@@ -4,22 +4,22 @@
 #include "cloth/flow/state/fields.h"
 
 /* How a kernel is declared, and forked. A kernel names the fields (fields.h) that its task uses,
- * once, above its body:
+ * once, in front of its body:
  *
  *     FLOW_KERNEL(velocity, FLOW_VELOCITY, struct flow_step_args,
  *                 (R(table), R(dv), RW(v), W(halo_v), SUM(status)))
- *     static int velocity_body(const duite_call *call, const struct velocity_fields *on)
  *     {
  *         const struct flow_table table = flow_table_in(call, on->table), *t = &table;
  *         phys_advance(t->n, 1, on->dv, on->v);
  *         ...
  *     }
  *
- * The rest follows: the body's struct of pointers, the parameters' modes, and the objects at the
- * fork, `flow_fork_each(state, &flow_kernel_velocity, &args)`. A pointer has the type that the
+ * The rest follows: the head of the body, `static int velocity_body(const duite_call *call, const
+ * struct velocity_fields *on)`, its struct of pointers, the parameters' modes, and the objects at
+ * the fork, `flow_fork_each(state, &flow_kernel_velocity, &args)`. A pointer has the type that the
  * field's row says, const under R. A field that is undeclared or misspelt does not compile, nor
  * does a kernel that is missing in the list of kernels.h. A kernel's name in traces is its name
- * here.
+ * here. With a semicolon behind it the body comes further down, with its head, below what it calls.
  *
  *     R W RW     reads, overwrites, changes: a field of the task's block or of the run
  *     SUM MAX    contributes to it, added up, or the largest counts
@@ -58,7 +58,8 @@
     FLOW_KERNEL_OPEN(name, part, arguments, fields)                                                \
     const struct flow_kernel flow_kernel_##name = {                                                \
         .task = FLOW_TASK(name, #name, WITH, arguments, fields, __VA_ARGS__),                      \
-        .parameter = {FLOW_EACH(FLOW_PARAMETER, name, fields)}};
+        .parameter = {FLOW_EACH(FLOW_PARAMETER, name, fields)}};                                   \
+    FLOW_KERNEL_BODY(name)
 
 /* A kernel with W_IF, RW_IF, SUM_ELSE, which exist together with this field. The runtime knows two,
  * name and name_less: it is in the list FLOW_KERNELS_IF, too. */
@@ -70,7 +71,8 @@
         .task = FLOW_TASK(name, #name, WITH, arguments, fields, __VA_ARGS__),                      \
         .less = &flow_kernel_##name##_less,                                                        \
         .with = FLOW_FIELD_##field,                                                                \
-        .parameter = {FLOW_EACH(FLOW_PARAMETER, name, fields)}};
+        .parameter = {FLOW_EACH(FLOW_PARAMETER, name, fields)}};                                   \
+    FLOW_KERNEL_BODY(name)
 
 #define FLOW_INDEX_OF(name, field) name##_at_##field
 
@@ -220,13 +222,16 @@ struct flow_kernel {
 #define FLOW_FURTHER_00(mode) | mode
 /* clang-format on */
 
+#define FLOW_KERNEL_BODY(name)                                                                     \
+    static int name##_body(const duite_call *call, const struct name##_fields *on)
+
 #define FLOW_KERNEL_OPEN(name, part, arguments, fields)                                            \
     enum { FLOW_EACH(FLOW_INDEX, name, fields) name##_at_end };                                    \
     struct name##_fields {                                                                         \
         const arguments *args;                                                                     \
         FLOW_EACH(FLOW_HAS, name, fields)                                                          \
     };                                                                                             \
-    static int name##_body(const duite_call *call, const struct name##_fields *on);                \
+    FLOW_KERNEL_BODY(name);                                                                        \
     static int name##_open(const duite_call *call)                                                 \
     {                                                                                              \
         struct name##_fields on = {.args = call->args};                                            \

@@ -8,7 +8,6 @@
 
 FLOW_KERNEL(initial, FLOW_NO_PART, struct flow_block_args,
             (R(table), W(x), W(v), W(halo_x), W(halo_v)))
-static int initial_body(const duite_call *call, const struct initial_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     for (uint32_t i = 0; i < t->n; i++) {
@@ -30,7 +29,6 @@ int flow_initialise(struct flow_state *state)
 }
 
 FLOW_KERNEL(keep, FLOW_POSITION, struct flow_block_args, (R(x), R(v), W(kept_x), W(kept_v)))
-static int keep_body(const duite_call *call, const struct keep_fields *on)
 {
     memcpy(on->kept_x, on->x, duite_count(call, FLOW_INDEX_OF(keep, x)) * sizeof(double));
     memcpy(on->kept_v, on->v, duite_count(call, FLOW_INDEX_OF(keep, v)) * sizeof(double));
@@ -50,7 +48,6 @@ int flow_keep(struct flow_state *state)
 
 FLOW_KERNEL(restore, FLOW_POSITION, struct flow_block_args,
             (R(table), R(kept_x), R(kept_v), W(x), W(v), W(halo_x), W(halo_v)))
-static int restore_body(const duite_call *call, const struct restore_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     memcpy(on->x, on->kept_x, duite_count(call, FLOW_INDEX_OF(restore, x)) * sizeof(double));

@@ -30,16 +30,6 @@ FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_block_args, (R(table), R(v), RW
 #else
 FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_step_args, (R(table), R(v), RW(x), W(halo_x)))
 #endif
-
-#if WRONG == 3
-#define FIELDS somewhere_fields
-#define BODY   somewhere_body
-#else
-#define FIELDS implicit_fields
-#define BODY   implicit_body
-#endif
-
-static int BODY(const duite_call *call, const struct FIELDS *on)
 {
     (void)call;
 #if WRONG == 6 /* it is read only */

@@ -44,11 +44,10 @@ UNIT_TEST(a_chain_and_a_point)
 static void fails(uint32_t n_vertices, const double *x, uint32_t n_edges, const uint32_t *edges,
                   uint32_t n_triangles, const uint32_t *triangles, const char *says)
 {
-    struct cloth_error error = {0};
     struct mesh mesh;
-    int code = mesh_inline(&mesh, n_vertices, x, n_edges, edges, n_triangles, triangles, &error);
-    ck_assert_int_eq(code, CLOTH_E_INPUT);
-    ck_assert_str_eq(error.text, says);
+    UNIT_CALL(mesh_inline(&mesh, n_vertices, x, n_edges, edges, n_triangles, triangles, &error),
+              ck_assert_int_eq(unit_code, CLOTH_E_INPUT);
+              ck_assert_str_eq(error.text, says));
     ck_assert_ptr_null(mesh.position);
 }
 

@@ -204,11 +204,9 @@ UNIT_TEST(stretch_and_bend_of_the_same_vertices)
 
 static void fails(const struct mesh *mesh, double bend, const char *says)
 {
-    struct cloth_error error = {0};
     struct mesh_lattice lattice;
     struct mesh_moduli moduli = {1, 1, bend, 1, 0, NULL, 0};
-    ck_assert_int_eq(mesh_lattice_build(&lattice, mesh, &moduli, &error), CLOTH_E_INPUT);
-    ck_assert_msg(strncmp(error.text, says, strlen(says)) == 0, "%s", error.text);
+    UNIT_REFUSED(mesh_lattice_build(&lattice, mesh, &moduli, &error), CLOTH_E_INPUT, says);
     ck_assert(lattice.n == 0 && !lattice.spring);
 }
 

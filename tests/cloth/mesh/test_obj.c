@@ -283,18 +283,17 @@ UNIT_TEST(zero_bytes)
 
 UNIT_TEST(unreadable)
 {
-    struct cloth_error error = {0};
+    static const char *const cases[][2] = {
+        {"/nonexistent/a.obj", "/nonexistent/a.obj: cannot be opened: No such file or directory"},
+        {"/", "/: cannot be opened: Is a directory"},
+        {"/dev/zero", /* has no end */
+         "/dev/zero: cannot be opened: it is no plain file, but a pipe, a device or the like"}};
     struct mesh mesh;
-    ck_assert_int_eq(mesh_read_obj(&mesh, "/nonexistent/a.obj", &error), CLOTH_E_IO);
-    ck_assert_str_eq(error.text, "/nonexistent/a.obj: cannot be opened: No such file or directory");
-    error = (struct cloth_error){0};
-    ck_assert_int_eq(mesh_read_obj(&mesh, "/", &error), CLOTH_E_IO);
-    ck_assert_str_eq(error.text, "/: cannot be opened: Is a directory");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        UNIT_CALL(mesh_read_obj(&mesh, cases[i][0], &error),
+                  ck_assert_int_eq(unit_code, CLOTH_E_IO);
+                  ck_assert_str_eq(error.text, cases[i][1]));
     ck_assert_int_eq(mesh_read_obj(&mesh, "/nonexistent", NULL), CLOTH_E_IO);
-    error = (struct cloth_error){0};
-    ck_assert_int_eq(mesh_read_obj(&mesh, "/dev/zero", &error), CLOTH_E_IO); /* has no end */
-    ck_assert_str_eq(error.text, "/dev/zero: cannot be opened: it is no plain file, but a pipe, a "
-                                 "device or the like");
 }
 
 UNIT_TEST(long_paths_keep_the_reason)

@@ -12,31 +12,33 @@
 UNIT_TEST(files_that_cannot_be_read)
 {
     UNIT_OWNED(model_free) struct model model;
-    struct cloth_error error = {0};
-    ck_assert_int_eq(scene_read(&model, "/nowhere/x.yaml", 0, NULL, &error), CLOTH_E_INPUT);
-    ck_assert_str_eq(error.text,
-                     "/nowhere/x.yaml: cannot open the scene file: No such file or directory");
-    model_free(&model);
-    error = (struct cloth_error){0};
-    ck_assert_int_eq(scene_read(&model, "/tmp", 0, NULL, &error), CLOTH_E_INPUT);
-    ck_assert_str_eq(error.text, "/tmp: cannot read the scene file: Is a directory");
-    model_free(&model);
+    static const char *const cases[][2] = {
+        {"/nowhere/x.yaml",
+         "/nowhere/x.yaml: cannot open the scene file: No such file or directory"},
+        {"/tmp", "/tmp: cannot read the scene file: Is a directory"}};
+    for (int i = 0; i < 2; i++) {
+        UNIT_CALL(scene_read(&model, cases[i][0], 0, NULL, &error),
+                  ck_assert_int_eq(unit_code, CLOTH_E_INPUT);
+                  ck_assert_str_eq(error.text, cases[i][1]));
+        model_free(&model);
+    }
     ck_assert_int_eq(scene_read(&model, "/tmp", 0, NULL, NULL), CLOTH_E_INPUT);
 }
 
 UNIT_TEST(sets_of_other_options)
 {
     UNIT_OWNED(model_free) struct model model;
-    struct cloth_error error = {0};
     const struct scene_set sets[] = {{"time.h=1e-3", NULL}, {"grain=0", "--grain 0"}};
-    ck_assert_int_eq(scene_read_text(&model, scene_right, 2, sets, &error), CLOTH_E_INPUT);
-    ck_assert_str_eq(error.text,
-                     "--grain 0: grain is 0; a whole number from 1 to 4294967295 is expected");
+    UNIT_CALL(
+        scene_read_text(&model, scene_right, 2, sets, &error),
+        ck_assert_int_eq(unit_code, CLOTH_E_INPUT);
+        ck_assert_str_eq(error.text,
+                         "--grain 0: grain is 0; a whole number from 1 to 4294967295 is expected"));
     model_free(&model);
-    error = (struct cloth_error){0};
     const struct scene_set open[] = {{"time.end=[", "--end ["}};
-    ck_assert_int_eq(scene_read_text(&model, scene_right, 1, open, &error), CLOTH_E_INPUT);
-    ck_assert_ptr_eq(strstr(error.text, "--end [: the value is not YAML: "), error.text);
+    UNIT_CALL(scene_read_text(&model, scene_right, 1, open, &error),
+              ck_assert_int_eq(unit_code, CLOTH_E_INPUT);
+              ck_assert_ptr_eq(strstr(error.text, "--end [: the value is not YAML: "), error.text));
 }
 
 static void expect_error(const char *from, const char *to, const char *expected)

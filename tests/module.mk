@@ -74,7 +74,7 @@ installcheck-local:
 .PHONY: check-long check-threads check-threads-long check-programs golden-sentences
 
 EXTRA_DIST += tests/arrows.txt tests/support/policies.h tests/support/tap.sh tests/support/predicted.sh tests/support/commands.sh \
-	tests/support/bodies.sh tests/support/hangs.c tests/support/probes.sh tests/support/table.sh tests/support/dress.awk tests/support/mpi.sh tests/support/kernel.h tests/support/rank.h tests/support/run.sh tests/support/screen.sh \
+	tests/support/bodies.sh tests/support/hangs.c tests/support/cloth.sh tests/support/probes.sh tests/support/table.sh tests/support/dress.awk tests/support/mpi.sh tests/support/kernel.h tests/support/rank.h tests/support/run.sh tests/support/screen.sh \
 	tests/support/count.sh tests/support/mirror.sh tests/installed.sh \
     tests/support/lsan.supp tests/support/tsan.supp tests/support/valgrind.supp
 ASAN_SH += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/embedding.sh tests/completion.sh tests/bootstrap.sh

@@ -1,4 +1,4 @@
-# Sourced after tap.sh by tests that hold scenes against closed forms through probes alone; works in $scratch.
+# Sourced in place of tap.sh by tests that hold scenes against closed forms through probes alone; works in $scratch.
 #     run SCENE...                     duite-cloth on one thread, quietly; its table of probes in out/probes.csv
 #     last COLUMN...                   of the table's last row; columns are named without their unit
 #     rows PROGRAM [-v NAME=VALUE]...  awk over the rows, where c(COLUMN) is a number of the row
@@ -9,9 +9,8 @@
 #     says SENTENCE SCENE...           a hundredth of a second of the scene, which says the sentence
 # near and below print to the test's own output, as TAP comments, also when a case passes.
 
+. "${srcdir:-.}/tests/support/cloth.sh"
 . "$srcdir/tests/support/table.sh"
-skip_unless "$DUITE_CLOTH"
-cd "$scratch" || exit 99
 exec 3>&1
 
 says() {

@@ -2,11 +2,8 @@
 # Contact that the scene leaves no room or no time for: obstacles that close on cloth for good, a ring that it does not fit through, obstacles
 # at 100 m/s, bodies that jump, 50 layers in the room of one. A run goes on, or ends, and names the first pair without room.
 # Nothing goes through anything in its frames, a step takes no more than twice the memory that the cloth takes at rest, and a signal ends it.
-. "${srcdir:-.}/tests/support/tap.sh"
+. "${srcdir:-.}/tests/support/cloth.sh"
 . "$srcdir/tests/support/bodies.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
 
 bad() { # NAME CLOTHS OBSTACLES END
     cat > "$1.yaml" << END

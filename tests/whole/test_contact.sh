@@ -1,10 +1,7 @@
 #!/bin/sh
 # Cloth with certified contact goes through nothing: scenes by step length, material and integrator, each looked at in every frame by
 # --check-intersections. And one state_hash over ranks, threads, schedulers, mappings and balancers. With DUITE_LONG=1: all products.
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
+. "${srcdir:-.}/tests/support/cloth.sh"
 
 # 256 to 545 vertices.
 scene() { # NAME CLOTHS MORE END

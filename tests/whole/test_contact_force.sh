@@ -1,10 +1,7 @@
 #!/bin/sh
 # The force of contact as probes report it: with weights it is what changes the momentum of a cloth in each step; cloths press each other
 # alike; what obstacles press is all that comes from outside.
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
+. "${srcdir:-.}/tests/support/cloth.sh"
 exec 3>&1
 
 all='box: [[-9, -9, -9], [9, 9, 9]]'

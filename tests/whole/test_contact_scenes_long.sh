@@ -2,10 +2,7 @@
 # The scenes whose contact is certified, each as it ships and to its end; then a sheet on a ball and five sheets on each other,
 # coarser, in steps of 1, 4 and 10 ms, by springs and triangles, by implicit Euler and BDF2. In no frame goes anything through
 # anything, by exact arithmetic, and no vertex is cut in more than 20 steps in a row.
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
+. "${srcdir:-.}/tests/support/cloth.sh"
 exec 3>&1
 
 nothing_enters() { # NAME SCENE OPTION...

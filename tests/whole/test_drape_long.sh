@@ -1,10 +1,7 @@
 #!/bin/sh
 # The drape test with the fabrics that every scene knows: each comes to rest, through nothing, and two meshes differ by at most two
 # points. The coefficients are those that docs/physics.md quotes, to a point and a half: a cloth has several shapes at rest.
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
+. "${srcdir:-.}/tests/support/cloth.sh"
 exec 3>&1
 
 drape() { # FABRIC RINGS: leaves its coefficient in $found

@@ -1,11 +1,8 @@
 #!/bin/sh
 # The garment scenes, coarse: T-shirt, jeans and both are sewn around the mannequin, welded and draped. No frame has an intersection; the
 # garment has the Euler number and boundary of what it is, and the mass of its panels. One state_hash over ranks, threads and policies.
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
+. "${srcdir:-.}/tests/support/cloth.sh"
 . "$srcdir/tests/whole/dressing.sh"
-cd "$scratch" || exit 99
 
 # Jeans so coarse do not come to rest: a drape of 0.4 s. Only the T-shirt's goes on until rest.
 scene dressing 900 3 && scene jeans 900 0.4 && scene layers 900 0.4 || exit 99

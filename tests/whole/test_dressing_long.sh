@@ -1,11 +1,8 @@
 #!/bin/sh
 # The garment scenes whole, on the mannequin and, where its file is there, on a body of another source: sewn, at rest, no frame with an
 # intersection. One state_hash of each over ranks, threads, schedulers, mappings and balancers, coarser and with a drape of 0.1 s.
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
+. "${srcdir:-.}/tests/support/cloth.sh"
 . "$srcdir/tests/whole/dressing.sh"
-cd "$scratch" || exit 99
 
 body=$srcdir/../shared/data/body/female_generic.obj
 one="end sewn rest" two="end sewn end sewn rest"

@@ -1,10 +1,8 @@
 #!/bin/sh
 # Pins that follow obstacles: as pins with the obstacle's motion do, on the triangles of a body that changes its shape, touching it or in
 # it, and on every rank.
-. "${srcdir:-.}/tests/support/tap.sh"
-plan_later
+. "${srcdir:-.}/tests/support/probes.sh"
 . "$srcdir/tests/support/bodies.sh"
-. "$srcdir/tests/support/probes.sh"
 hash() { "$@" --quiet --report report.json && value state_hash; }
 
 box_obj -0.1 -0.1 -0.1 0.1 0 0.1 > box.obj # its upper side is at y 0

@@ -1,11 +1,8 @@
 #!/bin/sh
 # Integrators as a user meets them: free fall of each by its own formula, read from probes; energies and Newton steps, and that little
 # is gained.
-. "${srcdir:-.}/tests/support/tap.sh"
+. "${srcdir:-.}/tests/support/cloth.sh"
 . "$srcdir/tests/support/table.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
 
 exec 3>&1
 build=$OLDPWD

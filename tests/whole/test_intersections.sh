@@ -1,10 +1,7 @@
 #!/bin/sh
 # duite-cloth --check-intersections: what it finds, what it says, reports and returns.
-. "${srcdir:-.}/tests/support/tap.sh"
+. "${srcdir:-.}/tests/support/cloth.sh"
 . "$srcdir/tests/support/bodies.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
 
 # scene NAME CLOTHS MORE: of triangles that nothing moves, unless MORE says gravity.
 scene() {

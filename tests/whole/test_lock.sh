@@ -2,10 +2,7 @@
 # A folder belongs to one run at a time: a second one is refused before it touches anything, with a sentence that names the first.
 # A lock that a dead process left is replaced on the same host only, whoever has its number now, and whether or not its parent knows.
 # shellcheck disable=SC2086 # commands of several words
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
+. "${srcdir:-.}/tests/support/cloth.sh"
 
 cat > scene.yaml << 'END'
 schema: 1

@@ -1,11 +1,8 @@
 #!/bin/sh
 # Momentum and spin of cloths that nothing holds, from probes: momentum is kept to rounding, whatever the solve leaves; spin falls by the
 # closed form of implicit Euler. And cloths that something holds keep their bits.
-. "${srcdir:-.}/tests/support/tap.sh"
+. "${srcdir:-.}/tests/support/cloth.sh"
 . "$srcdir/tests/support/table.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
 exec 3>&1
 
 run() { limited "$DUITE_CLOTH" "$@" --quiet; }

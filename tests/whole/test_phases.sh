@@ -2,10 +2,7 @@
 # Phases: what passes from one to the next, to the last bit, against closed forms and against one run; frames, rows and reports that go
 # on; obstacles in scene.json; what ends a phase; and bad input.
 # shellcheck disable=SC2086 # lists of settings
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
+. "${srcdir:-.}/tests/support/cloth.sh"
 
 cat > sheet.yaml << 'END'
 schema: 1

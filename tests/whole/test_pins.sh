@@ -1,9 +1,6 @@
 #!/bin/sh
 # Pins as a user meets them: beads on lines and in planes against closed forms, from scenes and probes alone; reactions.
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
+. "${srcdir:-.}/tests/support/cloth.sh"
 
 run() { limited "$DUITE_CLOTH" "$@" --quiet; }
 last() { # NAME...: the last numbers of columns of out/probes.csv

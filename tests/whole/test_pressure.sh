@@ -1,10 +1,7 @@
 #!/bin/sh
 # A balloon: a sphere of cloth under pressure rests where p = 2 T / r. With T = Y / (1 - nu) e of an isotropic membrane, e = r / R - 1, that
 # is at r = R / (1 - p R (1 - nu) / 2 Y).
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
+. "${srcdir:-.}/tests/support/cloth.sh"
 
 # An octahedron of edges of n parts, blown up to a sphere of 0.2 m.
 awk -v n=12 'function vertex(x, y, z,    key, r) {

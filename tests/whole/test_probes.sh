@@ -1,9 +1,6 @@
 #!/bin/sh
 # The table of probes and the end of a run at rest, as a user sees them.
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
+. "${srcdir:-.}/tests/support/cloth.sh"
 
 cat > sheet.yaml << 'END'
 schema: 1

@@ -1,10 +1,8 @@
 #!/bin/sh
 # Contact by springs, contact.mode: repulsion: what rests on a plane, slides and creeps on it against closed forms, also where the plane is carried
 # along; a sheet comes to rest; two cloths that meet keep their momentum; a sheet stays out of a ball; one state_hash.
-. "${srcdir:-.}/tests/support/tap.sh"
+. "${srcdir:-.}/tests/support/probes.sh"
 . "$srcdir/tests/support/bodies.sh"
-. "$srcdir/tests/support/probes.sh"
-plan_later
 
 cat > rest.yaml << END
 schema: 1

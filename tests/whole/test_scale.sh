@@ -2,10 +2,7 @@
 # No number of contact is a length of its own: a scene 128 times as large, and one 128 times as small, with gravity, densities and pressure
 # that fit, has the same motion and the same counts. Sizes are powers of two, so all of it is equal to the last bit. Certificates try less for
 # features that are 2 m long (cloth/contact/certificate.c), so the edges of the large one are of 1 m.
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
+. "${srcdir:-.}/tests/support/cloth.sh"
 
 # scene SIZE MODE: two sheets fall onto a ball and a floor, and onto each other.
 scene() {

@@ -1,8 +1,6 @@
 #!/bin/sh
 # Sides that a scene names: two with a friction of their own, and cloths, obstacles and groups that do not meet, by certified contact and by
 # projection, on every rank, for who checks intersections, and for who reads the frames.
-. "${srcdir:-.}/tests/support/tap.sh"
-plan_later
 . "${srcdir:-.}/tests/support/probes.sh"
 
 # ---- Friction of two ----

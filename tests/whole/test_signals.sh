@@ -2,10 +2,7 @@
 # SIGUSR1 and SIGTERM stop a run: it finishes its step, whenever the next frame is due, and writes the state after it as the last frame. It
 # may come to any rank, and before the run begins. Each run here would take hours: one that goes on is killed, and fails.
 # shellcheck disable=SC2086 # commands of several words
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
+. "${srcdir:-.}/tests/support/cloth.sh"
 
 cat > scene.yaml << 'END'
 schema: 1

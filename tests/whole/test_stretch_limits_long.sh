@@ -1,11 +1,8 @@
 #!/bin/sh
 # Implicit steps of 1, 5, 20 and 40 ms keep every scene that states a stretch limit within it, by halving steps where
 # they must: a table of how often. Scenes run to their end, at least three steps.
-. "${srcdir:-.}/tests/support/tap.sh"
+. "${srcdir:-.}/tests/support/cloth.sh"
 . "$srcdir/tests/support/table.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
 exec 3>&1
 
 

@@ -1,10 +1,7 @@
 #!/bin/sh
 # duite-cloth --save-system: the system of the last step, which its solution solves; the same files from any ranks and
 # threads, and for any grain up to the last bits of sums.
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
+. "${srcdir:-.}/tests/support/cloth.sh"
 
 cat > scene.yaml << 'END'
 schema: 1

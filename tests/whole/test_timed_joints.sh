@@ -1,10 +1,8 @@
 #!/bin/sh
 # Joints that begin and end while a run is on: the motion of two masses before, during and after, the same motion as by a joint that is
 # always there, what is recorded again, steps that are halved, and the same bits on any ranks and threads.
-. "${srcdir:-.}/tests/support/tap.sh"
-plan_later
 . "${srcdir:-.}/tests/support/probes.sh"
-. "${srcdir:-.}/tests/whole/joints.sh"
+. "$srcdir/tests/whole/joints.sh"
 
 # ---- Two masses, 0.5 m farther apart than a joint of 40 N/m and 0.1 kg/s is long, which acts from 0.1 s to 0.2 s ----
 timed='--set joints[0].begin=0.1 --set joints[0].end=0.2'

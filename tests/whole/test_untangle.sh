@@ -1,11 +1,8 @@
 #!/bin/sh
 # contact.untangle: starts that are tangled are made free and then run certified; free ones keep every bit; what cannot be untangled is
 # refused with its pairs named.
-. "${srcdir:-.}/tests/support/tap.sh"
+. "${srcdir:-.}/tests/support/cloth.sh"
 . "$srcdir/tests/support/bodies.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
 
 # scene NAME CLOTHS OBSTACLES
 scene() {

@@ -1,8 +1,6 @@
 #!/bin/sh
 # Welds: two halves of a sheet are the whole sheet, bit for bit, on one rank and two; pins, loads, masses and probes by either name of a
 # vertex; and several panels at one vertex.
-. "${srcdir:-.}/tests/support/tap.sh"
-plan_later
 . "${srcdir:-.}/tests/support/probes.sh"
 
 all='[[-9, -9, -9], [9, 9, 9]]'

@@ -1,9 +1,6 @@
 #!/bin/sh
 # Textbook cases said by scenes and read from probes alone: what moves pins, what they carry, how chains hang.
-. "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
-plan_later
-cd "$scratch" || exit 99
+. "${srcdir:-.}/tests/support/cloth.sh"
 
 run() { limited "$DUITE_CLOTH" "$@" --quiet; }
 

@@ -225,6 +225,22 @@ static int run_round(struct measure *measure, const char *name, const struct tea
 
 /* ---- Metrics ---- */
 
+double measure_sum(const struct measure_metric *metric, size_t round)
+{
+    double sum = 0;
+    for (size_t i = 0; i < metric->n; i++)
+        sum += metric->of[i].sample[round];
+    return sum;
+}
+
+double measure_geometric(const struct measure_metric *metric, size_t round)
+{
+    double sum = 0;
+    for (size_t i = 0; i < metric->n; i++)
+        sum += log(metric->of[i].sample[round] / metric->against[i].sample[round]);
+    return exp(sum / (double)metric->n);
+}
+
 static int by_size(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;

@@ -68,6 +68,10 @@ struct measure_metric *measure_metric(struct measure *measure, const char *unit,
                                       double (*value)(const struct measure_metric *, size_t),
                                       const char *name, ...) __attribute__((format(printf, 4, 5)));
 
+/* Such functions: the sum of the samples of all series; the geometric mean of their ratios. */
+double measure_sum(const struct measure_metric *metric, size_t round);
+double measure_geometric(const struct measure_metric *metric, size_t round);
+
 /* scale x sample; and the ratio of the samples of two series per unit of work. */
 void measure_value(struct measure *measure, const struct measure_series *of, double scale,
                    const char *unit, const char *name, ...) __attribute__((format(printf, 5, 6)));

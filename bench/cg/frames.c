@@ -3,6 +3,8 @@
  * numbers; each is told once, then there is another run. */
 #include "bench/cg/cg.h"
 
+#include "cloth/base/order.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -54,12 +56,6 @@ static int show(void *context, uint64_t frame, double time, const double *positi
     return 0;
 }
 
-static int by_size(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Seconds a frame: the mean, and in *p95 what 95 % of them stay below. */
 static double seconds_a_frame(const struct film *film, double *p95)
 {
@@ -67,7 +63,7 @@ static double seconds_a_frame(const struct film *film, double *p95)
     const uint64_t n = film->n / STEPS_A_FRAME;
     for (uint64_t i = 0; i < n; i++)
         frame[i] = film->at[(i + 1) * STEPS_A_FRAME] - film->at[i * STEPS_A_FRAME];
-    qsort(frame, n, sizeof *frame, by_size);
+    qsort(frame, n, sizeof *frame, cloth_by_double);
     *p95 = n ? frame[(n - 1) * 95 / 100] : NAN;
     return n ? (film->at[n * STEPS_A_FRAME] - film->at[0]) / (double)n : NAN;
 }

@@ -149,14 +149,6 @@ const struct bench_case cg_solve = {
 
 /* ---- The default preconditioner ---- */
 
-static double geometric(const struct measure_metric *metric, size_t round)
-{
-    double sum = 0;
-    for (size_t i = 0; i < metric->n; i++)
-        sum += log(metric->of[i].sample[round] / metric->against[i].sample[round]);
-    return exp(sum / (double)metric->n);
-}
-
 double cg_worst(const struct measure_metric *metric, size_t round)
 {
     double most = 0;
@@ -193,7 +185,7 @@ static void plan_jacobi(struct measure *measure, const struct bench_options *opt
         snprintf(more, sizeof more, " solver=jacobi%s", what[i]);
         const struct measure_series *jacobi = cg_solves(measure, options, states_met(), more, &n);
         struct measure_metric *metric[] = {
-            measure_metric(measure, "x", geometric, "%s_vs_jacobi_geo", name[i]),
+            measure_metric(measure, "x", measure_geometric, "%s_vs_jacobi_geo", name[i]),
             measure_metric(measure, "x", cg_worst, "%s_vs_jacobi_worst", name[i])};
         for (int k = 0; k < 2; k++) {
             metric[k]->of = ours;

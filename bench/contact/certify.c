@@ -1,6 +1,7 @@
 /* Certificates of random pairs, some at a time, so that they lie in the first cache as corners do
  * that a task has just gathered. */
 #include "bench/contact/contact.h"
+#include "bench/contact/shapes.h"
 
 #include "cloth/base/simd.h"
 #include "cloth/contact/certificate.h"
@@ -10,23 +11,17 @@
 enum { BATCH = 64 };
 static const double SIDE = 0.01, WAY = 0.002, THICKNESS = 0.001; /* m */
 
-static double draw(uint64_t *seed, double reach)
-{
-    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-    return reach * ((double)(*seed >> 11) * 0x1p-52 - 1);
-}
-
 static void draw_vector(uint64_t *seed, double reach, phys_vec *x)
 {
     for (int c = 0; c < 3; c++)
-        (*x)[c] = draw(seed, reach);
+        (*x)[c] = contact_draw(seed, reach);
     (*x)[3] = 0;
 }
 
 static void draw_pair(uint64_t *seed, struct contact_moving *pair)
 {
     phys_vec common, own;
-    pair->pair = draw(seed, 1) < 0 ? CONTACT_VT : CONTACT_EE;
+    pair->pair = contact_draw(seed, 1) < 0 ? CONTACT_VT : CONTACT_EE;
     draw_vector(seed, WAY, &common);
     for (int k = 0; k < 4; k++) {
         draw_vector(seed, SIDE / 2, pair->x + k);

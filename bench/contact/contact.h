@@ -24,6 +24,9 @@ extern const struct serve_run contact_detect_runs[];
  * seconds a vertex to look one up there. The best of so many rounds each. */
 extern const struct serve_run contact_map_runs[];
 
+/* Runs work(context) on so many threads, this one among them. 0, or what serve_fail returns. */
+int contact_on_threads(unsigned threads, void *(*work)(void *context), void *context);
+
 /* ---- Scenes ---- */
 
 /* Reads a scene of the bench by its name, to the end of the part that the bench runs. self: "on"

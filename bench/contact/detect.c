@@ -208,17 +208,17 @@ static void *work_meet(void *context)
     return NULL;
 }
 
-static int on_threads(unsigned threads, void *(*work)(void *context), struct sheet *sheet)
+int contact_on_threads(unsigned threads, void *(*work)(void *context), void *context)
 {
     pthread_t thread[MOST_THREADS];
     unsigned n = 1;
     int code = threads > MOST_THREADS ? serve_fail("too many threads") : 0;
     for (; n < threads && !code; n++)
-        if (pthread_create(thread + n, NULL, work, sheet))
+        if (pthread_create(thread + n, NULL, work, context))
             code = serve_fail("no thread");
     n -= code != 0;
     if (!code)
-        work(sheet);
+        work(context);
     for (unsigned i = 1; i < n; i++)
         pthread_join(thread[i], NULL);
     return code;
@@ -230,11 +230,11 @@ static int step(struct sheet *sheet, unsigned threads)
     atomic_store(&sheet->next_pair, 0);
     atomic_store(&sheet->near, 0);
     atomic_store(&sheet->visited, 0);
-    const int code = on_threads(threads, work_refit, sheet);
+    const int code = contact_on_threads(threads, work_refit, sheet);
     if (code)
         return code;
     find_pairs(sheet);
-    return on_threads(threads, work_meet, sheet);
+    return contact_on_threads(threads, work_meet, sheet);
 }
 
 /* Seconds a vertex of the best step. Every step must find as much as the first. */

@@ -6,7 +6,6 @@
 #include "cloth/mesh/mesh.h"
 
 #include <math.h>
-#include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,8 +15,7 @@ enum {
     ACROSS = 46,
     QUICK = 8, /* parts of these, and of the resolution, that a quick run has */
     RESOLUTION = 1024,
-    SIDE = 187, /* vertices of the sheet that is looked up, along an edge */
-    MOST_THREADS = 64
+    SIDE = 187 /* vertices of the sheet that is looked up, along an edge */
 };
 static const double RADIUS = 0.45, TUBE = 0.05; /* m */
 
@@ -101,19 +99,8 @@ static void *work(void *context)
 
 static int draw(struct ring *ring, unsigned threads)
 {
-    pthread_t thread[MOST_THREADS];
-    unsigned n = 1;
-    int code = threads > MOST_THREADS ? serve_fail("too many threads") : 0;
     atomic_store(&ring->next, 0);
-    for (; n < threads && !code; n++)
-        if (pthread_create(thread + n, NULL, work, ring))
-            code = serve_fail("no thread");
-    n -= code != 0;
-    if (!code)
-        work(ring);
-    for (unsigned i = 1; i < n; i++)
-        pthread_join(thread[i], NULL);
-    return code;
+    return contact_on_threads(threads, work, ring);
 }
 
 /* What a sheet through the ring sees: how much of it is inside, and the sum of its gaps there. */

@@ -2,6 +2,8 @@
  * counts, too, where it says `cold`. */
 #include "bench/contact/contact.h"
 
+#include "cloth/base/order.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,9 +14,7 @@ static double all_intersections = NAN;
 
 static double note_intersections(const struct measure_metric *metric, size_t round)
 {
-    double sum = 0;
-    for (size_t i = 0; i < metric->n; i++)
-        sum += metric->of[i].sample[round];
+    const double sum = measure_sum(metric, round);
     all_intersections = isnan(all_intersections) ? sum : all_intersections + sum;
     return sum;
 }
@@ -213,14 +213,6 @@ look(struct measure *measure, const struct bench_options *options, unsigned rank
                           options->scheduler, options->quick);
 }
 
-static double geometric(const struct measure_metric *metric, size_t round)
-{
-    double sum = 0;
-    for (size_t i = 0; i < metric->n; i++)
-        sum += log(metric->of[i].sample[round] / metric->against[i].sample[round]);
-    return exp(sum / (double)metric->n);
-}
-
 enum { STATES = 2 };
 
 static void plan_iterations(struct measure *measure, const struct bench_options *options)
@@ -236,7 +228,7 @@ static void plan_iterations(struct measure *measure, const struct bench_options 
                                after[options->quick][i], with, options->threads, options->scheduler,
                                options->quick);
     struct measure_metric *metric =
-        measure_metric(measure, "x", geometric, "iterations_with_contact");
+        measure_metric(measure, "x", measure_geometric, "iterations_with_contact");
     metric->of = of[1][0];
     metric->against = of[0][0];
     metric->n = STATES;
@@ -271,12 +263,6 @@ const struct bench_case contact_iterations = {
 
 /* ---- Balancers ---- */
 
-static int by_size(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double ratio(const struct measure_metric *metric, size_t i, size_t round)
 {
     return metric->of[i].sample[round] / metric->against->sample[round];
@@ -288,7 +274,7 @@ static double median(const struct measure_metric *metric, size_t i)
     size_t n = 0;
     for (; n < metric->rounds && n < sizeof value / sizeof *value; n++)
         value[n] = ratio(metric, i, n);
-    qsort(value, n, sizeof *value, by_size);
+    qsort(value, n, sizeof *value, cloth_by_double);
     return n ? (value[(n - 1) / 2] + value[n / 2]) / 2 : NAN;
 }
 

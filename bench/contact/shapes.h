@@ -5,6 +5,13 @@
 
 #include <stdint.h>
 
+/* A number within `reach` of 0, drawn. */
+static inline double contact_draw(uint64_t *seed, double reach)
+{
+    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+    return reach * ((double)(*seed >> 11) * 0x1p-52 - 1);
+}
+
 /* The sheets in which features are looked for that are near each other, by us and by rivals:
  * square, u and v from 0 to 1; nearer than SHAPES_REACH, while they go down by SHAPES_DOWN and each
  * vertex by up to half of SHAPES_OWN along each axis, m. */

@@ -1,5 +1,6 @@
 /* Triangles that lie on a ball and on a box, each a batch of which is in the first cache. */
 #include "bench/contact/contact.h"
+#include "bench/contact/shapes.h"
 
 #include "cloth/base/simd.h"
 #include "cloth/contact/solid.h"
@@ -12,15 +13,10 @@ struct ends {
     phys_vec x[3], y[3];
 };
 
-static double draw(uint64_t *seed, double reach)
-{
-    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-    return reach * ((double)(*seed >> 11) * 0x1p-52 - 1);
-}
-
 static void draw_vector(uint64_t *seed, double reach, phys_vec *x)
 {
-    *x = (phys_vec){draw(seed, reach), draw(seed, reach), draw(seed, reach), 0};
+    *x = (phys_vec){contact_draw(seed, reach), contact_draw(seed, reach), contact_draw(seed, reach),
+                    0};
 }
 
 /* A triangle of about an edge, one to three gaps from the shape. */
@@ -34,7 +30,7 @@ static void draw_ends(const struct contact_solid *solid, uint64_t *seed, struct 
         ends->x[k] = middle + own;
     }
     contact_solid_nearest(solid, CONTACT_BEGIN, ends->x, &point);
-    const double gap = 2 * GAP + draw(seed, GAP);
+    const double gap = 2 * GAP + contact_draw(seed, GAP);
     for (int k = 0; k < 3; k++) {
         draw_vector(seed, WAY, &own);
         ends->x[k] += (gap - point.gap) * point.normal;

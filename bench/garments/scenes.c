@@ -236,17 +236,9 @@ const struct bench_case garments_walk = {
     "walks; seconds for each 1/25 s, certified contact",
     plan_walk, garments_scene_runs, 2};
 
-static double sum_up(const struct measure_metric *metric, size_t round)
-{
-    double sum = 0;
-    for (size_t i = 0; i < metric->n; i++)
-        sum += metric->of[i].sample[round];
-    return sum;
-}
-
 static void plan_intersections(struct measure *measure, const struct bench_options *options)
 {
-    struct measure_metric *metric = measure_metric(measure, "pairs", sum_up, "intersections");
+    struct measure_metric *metric = measure_metric(measure, "pairs", measure_sum, "intersections");
     const struct measure_series *of[N_SCENES];
     measure->cold = true;
     for (int i = 0; i < N_SCENES; i++)

@@ -49,6 +49,13 @@ static inline int cloth_by_u64(const void *a, const void *b)
     return (one > other) - (one < other);
 }
 
+/* The same of items that begin with a double, none of which is NaN. */
+static inline int cloth_by_double(const void *a, const void *b)
+{
+    const double one = *(const double *)a, other = *(const double *)b;
+    return (one > other) - (one < other);
+}
+
 /* The place of the first of n ascending numbers that is not below `least`; n: there is none. They
  * lie `stride` numbers from each other. */
 static inline uint32_t cloth_first_from(const void *numbers, size_t stride, uint32_t n,

@@ -1,6 +1,7 @@
 /* A shadow is cut by evenly spaced lines. The intervals of all triangles along a line are joined,
  * so overlapping triangles count once. */
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 #include "cloth/base/vector.h"
 #include "cloth/mesh/mesh.h"
 
@@ -93,16 +94,10 @@ static struct interval shadow_cut_triangle(const struct shadow *shadow, uint32_t
     return cut;
 }
 
-static int compare_intervals(const void *a, const void *b)
-{
-    const double p = ((const struct interval *)a)->from, q = ((const struct interval *)b)->from;
-    return (p > q) - (p < q);
-}
-
 static double length_of_union(struct interval *cut, uint32_t n)
 {
     double length = 0, end = -INFINITY;
-    qsort(cut, n, sizeof *cut, compare_intervals);
+    qsort(cut, n, sizeof *cut, cloth_by_double); /* by `from` */
     for (uint32_t i = 0; i < n; i++) {
         if (cut[i].to > end)
             length += cut[i].to - fmax(cut[i].from, end);

@@ -2,6 +2,7 @@
 #include "cloth/view/colours.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -34,12 +35,6 @@ static void view_colours_find_range(const double *value, size_t n, double *low, 
     }
 }
 
-static int view_colours_compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The number that one in twenty of those above 0 exceeds, so that a few vertices at a pin do not
  * leave one colour for all others. Many vertices are sampled evenly. Sorts `value`. NaN: none is
  * above 0. */
@@ -50,7 +45,7 @@ static double find_high(double *value, size_t n)
     for (size_t v = 0; v < n; v += stride)
         if (value[v] > 0)
             value[found++] = value[v];
-    qsort(value, found, sizeof *value, view_colours_compare);
+    qsort(value, found, sizeof *value, cloth_by_double);
     return found ? value[found - 1 - found / 20] : (double)NAN;
 }
 

@@ -1,5 +1,6 @@
 /* The project's own garments: their panels, seams and surfaces, of all sizes and of random
  * measures. */
+#include "cloth/base/order.h"
 #include "cloth/garment/own/own.h"
 #include "tests/cloth/garment/tools.h"
 
@@ -58,12 +59,6 @@ static uint32_t root_of(uint32_t *parent, uint32_t v)
     return v;
 }
 
-static int compare(const void *a, const void *b)
-{
-    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-    return (x > y) - (x < y);
-}
-
 /* The Euler number of the sewn surface, and how many loops its boundary has. */
 static int surface_of(const struct garment *garment, uint32_t *loops)
 {
@@ -84,7 +79,7 @@ static int surface_of(const struct garment *garment, uint32_t *loops)
             const uint64_t b = root_of(parent, garment->triangle[t][(i + 1) % 3]);
             edge[3 * t + (uint32_t)i] = a < b ? a << 32 | b : b << 32 | a;
         }
-    qsort(edge, n_edges, sizeof *edge, compare);
+    qsort(edge, n_edges, sizeof *edge, cloth_by_u64);
     for (uint32_t v = 0; v < n; v++)
         euler += parent[v] == v;
     *loops = 0;

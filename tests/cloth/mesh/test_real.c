@@ -1,5 +1,6 @@
 /* Garments: dresses that tests/support/dress.awk makes, and, where they are beside the source tree,
  * those of others. */
+#include "cloth/base/order.h"
 #include "cloth/mesh/blocks.h"
 #include "cloth/mesh/lattice.h"
 #include "tests/cloth/mesh/tools.h"
@@ -26,12 +27,6 @@ static const char *path_of(const char *name)
     return path;
 }
 
-static int by_value(const void *left, const void *right)
-{
-    uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
-    return (a > b) - (a < b);
-}
-
 /* Counts edges another way than the code does. */
 static uint32_t count_edges(const struct mesh *mesh)
 {
@@ -41,7 +36,7 @@ static uint32_t count_edges(const struct mesh *mesh)
         uint64_t a = mesh->triangle[i], b = mesh->triangle[i % 3 == 2 ? i - 2 : i + 1];
         keys[i] = a < b ? a << 32 | b : b << 32 | a;
     }
-    qsort(keys, n, sizeof *keys, by_value);
+    qsort(keys, n, sizeof *keys, cloth_by_u64);
     uint32_t count = 0;
     for (size_t i = 0; i < n; i++)
         count += i == 0 || keys[i] != keys[i - 1];

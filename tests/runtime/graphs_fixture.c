@@ -1,6 +1,8 @@
-/* What the tests of graphs that change, fail or are refused share. */
+/* What the tests of graphs share. */
 #include "tests/runtime/graphs_fixture.h"
 #include "tests/support/kernel.h"
+
+#include <duite_policy.h>
 
 KERNEL_SHARED(DIGIT, "digit", .access = {DUITE_RW}, .args_size = sizeof(int32_t))
 {
@@ -47,6 +49,35 @@ int graphs_build(duite *rt, void *context)
     return 0;
 }
 
+duite *graphs_start(const duite_kernel *const *kernels, unsigned threads, const char *scheduler)
+{
+    duite_options options = duite_options_default();
+    duite *rt = NULL;
+
+    options.kernels = kernels;
+    options.threads = threads;
+    options.bind = 0;
+    options.scheduler = scheduler ? duite_scheduler_find(scheduler) : options.scheduler;
+    ck_assert_msg(!duite_start(&rt, &options), "%s", duite_message());
+    return rt;
+}
+
+duite_graph graphs_record(duite *rt, duite_build *build, void *context)
+{
+    duite_graph graph;
+
+    ck_assert_msg(!duite_graph_new(rt, build, context, &graph), "%s", duite_message());
+    return graph;
+}
+
+uint64_t graphs_rounds_of(duite *rt, duite_graph graph)
+{
+    uint64_t rounds = 99999;
+
+    ck_assert_msg(!duite_graph_rounds(rt, graph, &rounds), "%s", duite_message());
+    return rounds;
+}
+
 duite_object graphs_number(duite *rt, int64_t value)
 {
     duite_object object;
@@ -67,18 +98,13 @@ int64_t graphs_value_of(duite *rt, duite_object object)
 struct graphs_fixture graphs_begin(duite_build *builds)
 {
     static const duite_kernel *const KERNELS[] = {&DIGIT, &LIMIT, &COPY, &ROUND_DIGIT, &LEND, NULL};
-    duite_options options = duite_options_default();
     static struct graphs_fixture f; /* build sees the fields of its time */
 
-    f = (struct graphs_fixture){0};
-    options.kernels = KERNELS;
-    options.threads = 2;
-    options.bind = 0;
-    ck_assert_msg(!duite_start(&f.rt, &options), "%s", duite_message());
+    f = (struct graphs_fixture){.rt = graphs_start(KERNELS, 2, NULL)};
     f.a = graphs_number(f.rt, 0);
     f.b = graphs_number(f.rt, 0);
     f.c = graphs_number(f.rt, 0);
-    ck_assert_msg(!duite_graph_new(f.rt, builds, &f, &f.graph), "%s", duite_message());
+    f.graph = graphs_record(f.rt, builds, &f);
     return f;
 }
 

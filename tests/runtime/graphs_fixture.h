@@ -23,6 +23,10 @@ struct graphs_fixture {
 /* Appends 1 to a, 2 to b, 3 to a. Its context is a fixture. */
 int graphs_build(duite *rt, void *context);
 
+/* A runtime of so many workers that are not bound. scheduler: NULL is the default. */
+duite *graphs_start(const duite_kernel *const *kernels, unsigned threads, const char *scheduler);
+duite_graph graphs_record(duite *rt, duite_build *build, void *context);
+uint64_t graphs_rounds_of(duite *rt, duite_graph graph);
 duite_object graphs_number(duite *rt, int64_t value);
 int64_t graphs_value_of(duite *rt, duite_object object);
 

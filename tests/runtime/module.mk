@@ -70,15 +70,16 @@ tests_runtime_test_sched_told_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_makespan_SOURCES = tests/runtime/test_makespan.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_makespan_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_monitor_LDADD = $(DUITE_TEST_LIBS)
+GRAPHS = tests/runtime/graphs_fixture.c tests/runtime/graphs_fixture.h
+tests_runtime_test_graphs_SOURCES = tests/runtime/test_graphs.c $(GRAPHS)
 tests_runtime_test_graphs_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_graphs_change_SOURCES = tests/runtime/test_graphs_change.c \
-    tests/runtime/graphs_fixture.c tests/runtime/graphs_fixture.h
-tests_runtime_test_graphs_refused_SOURCES = tests/runtime/test_graphs_refused.c \
-    tests/runtime/graphs_fixture.c tests/runtime/graphs_fixture.h
+tests_runtime_test_graphs_change_SOURCES = tests/runtime/test_graphs_change.c $(GRAPHS)
+tests_runtime_test_graphs_refused_SOURCES = tests/runtime/test_graphs_refused.c $(GRAPHS)
 tests_runtime_test_graphs_refused_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graphs_change_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_passes_SOURCES = tests/runtime/test_passes.c tests/runtime/rounds_run.c tests/runtime/rounds_run.h
 tests_runtime_test_passes_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_lines_SOURCES = tests/runtime/test_lines.c $(GRAPHS)
 tests_runtime_test_lines_LDADD = $(DUITE_TEST_LIBS)
 endif
 

@@ -1,7 +1,7 @@
 /* Recorded graphs: what a replay leaves, how many rounds it has, and what may be changed between
  * two of them. What the values must be is computed here by plain loops. */
+#include "tests/runtime/graphs_fixture.h"
 #include "tests/support/kernel.h"
-#include "tests/support/unit.h"
 
 #include <duite.h>
 #include <duite_policy.h>
@@ -47,55 +47,9 @@ KERNEL(COUNT_DOWN, "count down", .access = {DUITE_RW})
 
 static const duite_kernel *const KERNELS[] = {&STEP, &TWICE, &GIVE, &COUNT_DOWN, NULL};
 
-static duite *start(unsigned threads, const char *scheduler)
-{
-    duite_options options = duite_options_default();
-    duite *rt = NULL;
-
-    options.kernels = KERNELS;
-    options.threads = threads;
-    options.bind = 0;
-    options.scheduler = duite_scheduler_find(scheduler);
-    ck_assert_msg(!duite_start(&rt, &options), "%s", duite_message());
-    return rt;
-}
-
 static void stop(duite *rt)
 {
     ck_assert_msg(!duite_stop(&rt), "%s", duite_message());
-}
-
-static duite_object number(duite *rt, uint64_t value)
-{
-    duite_object object;
-
-    ck_assert_int_eq(duite_new(rt, DUITE_I64, 1, &object), 0);
-    ck_assert_int_eq(duite_set(rt, object, &value), 0);
-    return object;
-}
-
-static uint64_t value_of(duite *rt, duite_object object)
-{
-    uint64_t value = 0;
-
-    ck_assert_msg(!duite_get(rt, object, &value), "%s", duite_message());
-    return value;
-}
-
-static uint64_t rounds_of(duite *rt, duite_graph graph)
-{
-    uint64_t rounds = 99999;
-
-    ck_assert_msg(!duite_graph_rounds(rt, graph, &rounds), "%s", duite_message());
-    return rounds;
-}
-
-static duite_graph record(duite *rt, duite_build *build, void *context)
-{
-    duite_graph graph;
-
-    ck_assert_msg(!duite_graph_new(rt, build, context, &graph), "%s", duite_message());
-    return graph;
 }
 
 /* ---- A stencil: two steps a round, from one copy of the points to the other and back ---- */
@@ -112,7 +66,7 @@ static void ring_make(duite *rt, struct ring *ring)
     ring->more[1] = 13;
     for (int i = 0; i < 2 * POINTS; i++) {
         ring->value[i % 2][i / 2] = (uint64_t)i * 7919;
-        ring->x[i % 2][i / 2] = number(rt, (uint64_t)i * 7919);
+        ring->x[i % 2][i / 2] = graphs_number(rt, (int64_t)i * 7919);
     }
 }
 
@@ -139,7 +93,8 @@ static void ring_round(struct ring *ring)
 static void ring_check(duite *rt, const struct ring *ring)
 {
     for (int i = 0; i < 2 * POINTS; i++)
-        ck_assert_uint_eq(value_of(rt, ring->x[i % 2][i / 2]), ring->value[i % 2][i / 2]);
+        ck_assert_uint_eq((uint64_t)graphs_value_of(rt, ring->x[i % 2][i / 2]),
+                          ring->value[i % 2][i / 2]);
 }
 
 static void ring_free(duite *rt, const struct ring *ring)
@@ -154,20 +109,20 @@ UNIT_TEST(stencil_as_by_hand)
 
     for (const char *const *name = duite_scheduler_names(); *name; name++)
         for (unsigned threads = 1; threads <= 4; threads++) {
-            duite *rt = start(threads, *name);
+            duite *rt = graphs_start(KERNELS, threads, *name);
             struct ring ring;
 
             ring_make(rt, &ring);
-            const duite_graph graph = record(rt, ring_build, &ring);
+            const duite_graph graph = graphs_record(rt, ring_build, &ring);
 
-            ck_assert_uint_eq(rounds_of(rt, graph), 0);
+            ck_assert_uint_eq(graphs_rounds_of(rt, graph), 0);
             for (size_t i = 0; i < sizeof ROUNDS / sizeof *ROUNDS; i++) {
                 ck_assert_int_eq(duite_replay(rt, graph, ROUNDS[i]), 0);
                 for (unsigned r = 0; r < ROUNDS[i]; r++)
                     ring_round(&ring);
                 if (i % 2 == 0)
                     ring_check(rt, &ring);
-                ck_assert_uint_eq(rounds_of(rt, graph), ROUNDS[i]);
+                ck_assert_uint_eq(graphs_rounds_of(rt, graph), ROUNDS[i]);
             }
             ring_check(rt, &ring);
             ck_assert_int_eq(duite_graph_free(rt, graph), 0);
@@ -178,13 +133,13 @@ UNIT_TEST(stencil_as_by_hand)
 
 UNIT_TEST(counters_of_replays)
 {
-    duite *rt = start(2, "steal");
+    duite *rt = graphs_start(KERNELS, 2, "steal");
     struct ring ring;
     duite_counters before, after;
     const uint64_t tasks = 2 * POINTS * 100;
 
     ring_make(rt, &ring);
-    const duite_graph graph = record(rt, ring_build, &ring);
+    const duite_graph graph = graphs_record(rt, ring_build, &ring);
 
     ck_assert_int_eq(duite_wait(rt), 0);
     ck_assert_int_eq(duite_count_all(rt, &before), 0);
@@ -231,22 +186,22 @@ static int sums_build(duite *rt, void *context)
 /* Replays, and forks the same by hand; both leave the same bits. */
 static void check_sums(duite_build *build, unsigned rounds, int begun)
 {
-    duite *rt = start(3, "shuffle");
+    duite *rt = graphs_start(KERNELS, 3, "shuffle");
     struct sums sums[2];
     double value[2];
 
     for (int way = 0; way < 2; way++) {
-        sums[way].x = number(rt, 5);
+        sums[way].x = graphs_number(rt, 5);
         ck_assert_int_eq(duite_new(rt, DUITE_F64, 1, &sums[way].sum), 0);
         for (int i = 0; i < begun; i++)
             DUITE_FORK(rt, &GIVE, NULL, sums[way].x, sums[way].sum);
     }
-    const duite_graph graph = record(rt, build, &sums[0]);
+    const duite_graph graph = graphs_record(rt, build, &sums[0]);
 
     ck_assert_int_eq(duite_replay(rt, graph, rounds), 0);
     for (unsigned r = 0; r < rounds; r++)
         build(rt, &sums[1]);
-    ck_assert_uint_eq(rounds_of(rt, graph), rounds);
+    ck_assert_uint_eq(graphs_rounds_of(rt, graph), rounds);
     for (int way = 0; way < 2; way++) {
         DUITE_FORK(rt, &GIVE, NULL, sums[way].x, sums[way].sum);
         ck_assert_int_eq(duite_get(rt, sums[way].sum, &value[way]), 0);
@@ -305,19 +260,21 @@ static uint64_t doubled(unsigned times)
 /* The flag counts down from `from`; x and y are 0 before. */
 static void check_loop(unsigned threads, int32_t from, uint64_t max, uint64_t expected)
 {
-    duite *rt = start(threads, "steal");
-    struct loop loop = {.x = number(rt, 0), .y = number(rt, 0)};
+    duite *rt = graphs_start(KERNELS, threads, "steal");
+    struct loop loop = {.x = graphs_number(rt, 0), .y = graphs_number(rt, 0)};
 
     ck_assert_int_eq(duite_new(rt, DUITE_I32, 1, &loop.flag), 0);
-    const duite_graph graph = record(rt, loop_build, &loop);
+    const duite_graph graph = graphs_record(rt, loop_build, &loop);
 
     for (unsigned again = 1; again < 4; again++) {
         ck_assert_int_eq(duite_set(rt, loop.flag, &from), 0);
         ck_assert_int_eq(duite_replay_while(rt, graph, loop.flag, max), 0);
         if (again < 3)
-            ck_assert_uint_eq(rounds_of(rt, graph), expected);
-        ck_assert_uint_eq(value_of(rt, loop.x), doubled(again * (unsigned)expected));
-        ck_assert_uint_eq(value_of(rt, loop.y), doubled(3 * again * (unsigned)expected));
+            ck_assert_uint_eq(graphs_rounds_of(rt, graph), expected);
+        ck_assert_uint_eq((uint64_t)graphs_value_of(rt, loop.x),
+                          doubled(again * (unsigned)expected));
+        ck_assert_uint_eq((uint64_t)graphs_value_of(rt, loop.y),
+                          doubled(3 * again * (unsigned)expected));
     }
     loop_end(rt, graph, &loop);
 }
@@ -339,11 +296,11 @@ UNIT_TEST(flags_of_every_type)
 {
     static const duite_type TYPES[] = {DUITE_BYTE, DUITE_I32, DUITE_I64, DUITE_F32,
                                        DUITE_F64,  DUITE_U16, DUITE_CF32};
-    duite *rt = start(2, "fifo");
-    struct loop loop = {.x = number(rt, 0), .y = number(rt, 0)};
+    duite *rt = graphs_start(KERNELS, 2, "fifo");
+    struct loop loop = {.x = graphs_number(rt, 0), .y = graphs_number(rt, 0)};
 
     ck_assert_int_eq(duite_new(rt, DUITE_I32, 1, &loop.flag), 0);
-    const duite_graph graph = record(rt, loop_build, &loop);
+    const duite_graph graph = graphs_record(rt, loop_build, &loop);
 
     for (size_t i = 0; i < sizeof TYPES / sizeof *TYPES; i++) {
         const unsigned char byte[3] = {1, 0, 0};
@@ -358,14 +315,14 @@ UNIT_TEST(flags_of_every_type)
 
         ck_assert_int_eq(duite_new(rt, TYPES[i], 3, &flag), 0);
         ck_assert_int_eq(duite_replay_while(rt, graph, flag, 4), 0);
-        ck_assert_uint_eq(rounds_of(rt, graph), 1);
+        ck_assert_uint_eq(graphs_rounds_of(rt, graph), 1);
         ck_assert_int_eq(duite_set(rt, flag, values[i]), 0);
         ck_assert_int_eq(duite_replay_while(rt, graph, flag, 4), 0);
-        ck_assert_uint_eq(rounds_of(rt, graph), 4);
+        ck_assert_uint_eq(graphs_rounds_of(rt, graph), 4);
         if (TYPES[i] == DUITE_F32) {
             ck_assert_int_eq(duite_set(rt, flag, (float[3]){minus, 1, 1}), 0);
             ck_assert_int_eq(duite_replay_while(rt, graph, flag, 4), 0);
-            ck_assert_uint_eq(rounds_of(rt, graph), 1);
+            ck_assert_uint_eq(graphs_rounds_of(rt, graph), 1);
         }
         ck_assert_int_eq(duite_free(rt, flag), 0);
     }

@@ -2,8 +2,8 @@
  * each other (runtime/workers/await.c). All values, against a loop; of recorded graphs and of forks
  * that are recognised, with bodies that take unequal times. And two values that change side by
  * side, of which one decides on further rounds: the other one's next node may never come. */
+#include "tests/runtime/graphs_fixture.h"
 #include "tests/support/kernel.h"
-#include "tests/support/unit.h"
 
 #include <duite.h>
 #include <stdbool.h>
@@ -97,19 +97,9 @@ static void line_run(duite *rt, struct line *line, unsigned rounds, bool recorde
             ck_assert_int_eq(line_round(rt, line), 0);
         return;
     }
-    duite_graph graph;
-    ck_assert_int_eq(duite_graph_new(rt, line_round, line, &graph), 0);
+    const duite_graph graph = graphs_record(rt, line_round, line);
     ck_assert_int_eq(duite_replay(rt, graph, rounds), 0);
     ck_assert_int_eq(duite_graph_free(rt, graph), 0);
-}
-
-static void start(duite **rt, const duite_kernel *const *kernels, unsigned threads)
-{
-    duite_options options = duite_options_default();
-    options.kernels = kernels;
-    options.threads = threads;
-    options.bind = 0;
-    ck_assert_msg(!duite_start(rt, &options), "%s", duite_message());
 }
 
 static void line_check(unsigned points, unsigned threads, bool recorded)
@@ -117,8 +107,7 @@ static void line_check(unsigned points, unsigned threads, bool recorded)
     const unsigned rounds = unit_quick() ? ROUNDS / 10 : ROUNDS;
     struct line line = {.points = points};
     uint64_t value[MOST] = {0}, got;
-    duite *rt = NULL;
-    start(&rt, KERNELS, threads);
+    duite *rt = graphs_start(KERNELS, threads, NULL);
     for (unsigned i = 0; i < points; i++) {
         value[i] = i;
         for (int s = 0; s < 2; s++)
@@ -179,12 +168,10 @@ UNIT_TEST(rounds_that_do_not_come_are_not_awaited)
     const unsigned replays = unit_quick() ? REPLAYS / 10 : REPLAYS;
     struct pair pair;
     uint64_t value = 0, got;
-    duite *rt = NULL;
-    duite_graph graph;
-    start(&rt, (const duite_kernel *const[]){&CHANGE, &PASS, NULL}, 2);
+    duite *rt = graphs_start((const duite_kernel *const[]){&CHANGE, &PASS, NULL}, 2, NULL);
     ck_assert_int_eq(duite_new(rt, DUITE_I64, 1, &pair.value), 0);
     ck_assert_int_eq(duite_new(rt, DUITE_I32, 1, &pair.left), 0);
-    ck_assert_int_eq(duite_graph_new(rt, pair_round, &pair, &graph), 0);
+    const duite_graph graph = graphs_record(rt, pair_round, &pair);
     for (unsigned i = 0; i < replays; i++) {
         const int32_t rounds = 20 + (int32_t)(i % 3);
         ck_assert_int_eq(duite_set(rt, pair.left, &rounds), 0);

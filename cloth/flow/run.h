@@ -226,6 +226,9 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
              const struct flow_progress *progress, struct flow_report *report,
              struct cloth_error *error);
 
+/* Adds counters to others (sign 1), or takes them away (-1). Pure. */
+void flow_counters_add(duite_counters *to, const duite_counters *of, int sign);
+
 /* Vertices of all cloths together; 0 where a flow only joined and has not run. Local. */
 uint64_t flow_vertices(const struct flow *flow);
 

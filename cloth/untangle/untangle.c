@@ -18,11 +18,6 @@ static int untangle_find_wrong(struct untangle *all)
     return code ? code : untangle_near(all);
 }
 
-static uint64_t sum_of(const struct untangle_count *count)
-{
-    return count->pairs + count->entered + count->near + count->layers;
-}
-
 /* The round with the least wrong so far. */
 static void untangle_keep(struct untangle *all, struct untangle_result *result)
 {
@@ -69,7 +64,7 @@ static int go_round(struct untangle *all, const struct untangle_listener *listen
     uint32_t since = 0;
     int code;
     while (!(code = untangle_find_wrong(all))) {
-        const uint64_t wrong = sum_of(&all->count);
+        const uint64_t wrong = untangle_faults(&all->count);
         if (!result->rounds)
             untangle_turned(all, result);
         since++;

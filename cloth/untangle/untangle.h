@@ -32,6 +32,11 @@ struct untangle_count {
     uint64_t layers;  /* vertices of an outer cloth that are inside of an inner one */
 };
 
+static inline uint64_t untangle_faults(const struct untangle_count *count)
+{
+    return count->pairs + count->entered + count->near + count->layers;
+}
+
 /* A connected part of a cloth. Where x begins, more points of outer cloths are on its inner side
  * than on its outer one: it is inside out, or they are in it. */
 struct untangle_turned {

@@ -138,24 +138,6 @@ static void add_seconds(struct flow_report *to, const struct flow_report *of)
     to->seconds_output = sum(to->seconds_output, of->seconds_output);
 }
 
-static void add_counters(duite_counters *to, const duite_counters *of)
-{
-    to->tasks += of->tasks;
-    to->placed += of->placed;
-    to->stolen += of->stolen;
-    to->chained += of->chained;
-    to->messages += of->messages;
-    to->bytes += of->bytes;
-    to->busy += of->busy;
-    to->idle += of->idle;
-    to->graphs_recorded += of->graphs_recorded;
-    to->delegated += of->delegated;
-    to->awaited += of->awaited;
-    to->exposed += of->exposed;
-    to->migrated += of->migrated;
-    to->stolen_far += of->stolen_far;
-}
-
 static uint64_t larger(uint64_t a, uint64_t b)
 {
     return a > b ? a : b;
@@ -201,7 +183,7 @@ void phases_add(struct phases *phases, const struct flow_report *report)
         return;
     add_counts(total, &before);
     add_seconds(total, &before);
-    add_counters(&total->counters, &before.counters);
+    flow_counters_add(&total->counters, &before.counters, 1);
     take_peaks(total, &before);
     if (before.contact_pinch[0])
         memcpy(total->contact_pinch, before.contact_pinch, sizeof total->contact_pinch);

@@ -162,11 +162,6 @@ static int run_start_refuse(const struct model *model, const struct untangle_res
                       near[2], near[3]);
 }
 
-static bool run_start_is_free(const struct untangle_count *left)
-{
-    return !(left->pairs + left->entered + left->near + left->layers);
-}
-
 static int look_at_start(const struct model *model, const struct contact_apart *apart,
                          const double *position, bool written, struct intersections_found *found,
                          struct cloth_error *error)
@@ -213,7 +208,7 @@ static int make_free(struct model *model, struct flow **flow, int ranks, bool sa
     int code = untangle(&cloths, tangle->x, &listener, result, error);
     if (!code)
         warn_of_turned(model, result);
-    if (!code && !run_start_is_free(&result->left)) {
+    if (!code && untangle_faults(&result->left)) {
         code = name_pairs(model, tangle, error);
         return code ? code : run_start_refuse(model, result, error);
     }

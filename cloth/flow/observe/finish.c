@@ -225,26 +225,33 @@ int flow_last_frame(struct flow_state *state)
     return DUITE_OK;
 }
 
+void flow_counters_add(duite_counters *to, const duite_counters *of, int sign)
+{
+    const uint64_t times = (uint64_t)sign; /* counts wrap around: -1 takes them away */
+    to->tasks += times * of->tasks;
+    to->placed += times * of->placed;
+    to->stolen += times * of->stolen;
+    to->chained += times * of->chained;
+    to->messages += times * of->messages;
+    to->bytes += times * of->bytes;
+    to->graphs_recorded += times * of->graphs_recorded;
+    to->delegated += times * of->delegated;
+    to->migrated += times * of->migrated;
+    to->stolen_far += times * of->stolen_far;
+    to->recognised += times * of->recognised;
+    to->recognised_rounds += times * of->recognised_rounds;
+    to->busy += sign * of->busy;
+    to->idle += sign * of->idle;
+    to->awaited += sign * of->awaited;
+    to->exposed += sign * of->exposed;
+}
+
 /* The counters of the run itself, without its preparations. */
 static int observe_finish_count(struct flow_state *state)
 {
     duite_counters *now = &state->report->counters;
-    const duite_counters *before = &state->before;
     flow_noted(state, duite_count_all(state->rt, now));
-    now->tasks -= before->tasks;
-    now->placed -= before->placed;
-    now->stolen -= before->stolen;
-    now->chained -= before->chained;
-    now->messages -= before->messages;
-    now->bytes -= before->bytes;
-    now->busy -= before->busy;
-    now->idle -= before->idle;
-    now->graphs_recorded -= before->graphs_recorded;
-    now->delegated -= before->delegated;
-    now->migrated -= before->migrated;
-    now->awaited -= before->awaited;
-    now->exposed -= before->exposed;
-    now->stolen_far -= before->stolen_far;
+    flow_counters_add(now, &state->before, -1);
     return state->code;
 }
 

@@ -41,6 +41,7 @@ static void finish(void)
     const char *folder = getenv(FOLDER);
     if (folder)
         temporary_remove(folder);
+    predict_quota_end();
 }
 
 static int prepare(const struct bench_options *options,

@@ -15,9 +15,12 @@ static const struct predict_config CONFIGS[] = {
     {2, 1, "steal", "random", "none"}};
 enum { N_CONFIGS = sizeof CONFIGS / sizeof *CONFIGS };
 
+/* And where the second host is half as fast, on a machine that can do that. */
+static const struct predict_config UNLIKE = {2, 1, "steal", "metis", "none"};
+
 /* Of the sheet as it is planned: what the runs are predicted to take; < 0: not yet, NAN: it failed.
  */
-static double predicted[N_CONFIGS];
+static double predicted[N_CONFIGS + 1];
 
 /* ---- Being traced ---- */
 
@@ -39,7 +42,8 @@ static void errors_predict(size_t round)
     known = round;
     struct trace_run *run = predict_read_sheet(round);
     for (int i = 0; i < N_CONFIGS; i++)
-        predicted[i] = run ? predict_makespan(run, &CONFIGS[i]) : NAN;
+        predicted[i] = run ? predict_makespan(run, &CONFIGS[i], false) : NAN;
+    predicted[N_CONFIGS] = run ? predict_makespan(run, &UNLIKE, true) : NAN;
     trace_run_free(run);
 }
 
@@ -52,7 +56,7 @@ static int compare(const void *a, const void *b)
 /* scale: which of the sorted errors, 0.5: the median. */
 static double error_of(const struct measure_metric *metric, size_t round)
 {
-    double error[N_CONFIGS];
+    double error[N_CONFIGS + 1];
     size_t n = 0;
     errors_predict(round);
     for (size_t i = 0; i < metric->n; i++) {
@@ -65,6 +69,12 @@ static double error_of(const struct measure_metric *metric, size_t round)
     return error[(size_t)(metric->scale * (double)(n - 1))];
 }
 
+static double unlike_of(const struct measure_metric *metric, size_t round)
+{
+    errors_predict(round);
+    return predicted[N_CONFIGS] / metric->of->sample[round];
+}
+
 static void plan_errors(struct measure *measure, const struct bench_options *options)
 {
     predict_series(measure, options, &CONFIGS[0], "kept");
@@ -73,12 +83,16 @@ static void plan_errors(struct measure *measure, const struct bench_options *opt
         const struct measure_series *series = predict_series(measure, options, &CONFIGS[i], "run");
         first = first ? first : series;
     }
+    const bool unlike = predict_quota_is_there();
+    if (unlike)
+        measure_metric(measure, "x", unlike_of, "predicted_unlike_vs_run")->of =
+            predict_series(measure, options, &UNLIKE, "slow");
     struct measure_metric *median =
         measure_metric(measure, "", error_of, "%s", "predict_error_median");
     struct measure_metric *worst =
         measure_metric(measure, "", error_of, "%s", "predict_error_worst");
     median->of = worst->of = first;
-    median->n = worst->n = N_CONFIGS - 1;
+    median->n = worst->n = N_CONFIGS - 1 + unlike;
     median->scale = 0.5;
     worst->scale = 1;
 }
@@ -86,5 +100,5 @@ static void plan_errors(struct measure *measure, const struct bench_options *opt
 const struct bench_case predict_trace = {"trace", "what a traced run of the sheet takes longer",
                                          plan_trace, predict_sheet_runs, 0};
 const struct bench_case predict_errors = {
-    "errors", "the sheet predicted for other ranks, threads and policies, against runs",
+    "errors", "the sheet predicted for other ranks, threads, policies and hosts, against runs",
     plan_errors, predict_sheet_runs, 8};

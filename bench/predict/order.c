@@ -32,7 +32,7 @@ static void order_predict(size_t rounds)
     for (size_t round = 0; round < rounds; round++) {
         struct trace_run *run = predict_read_sheet(round);
         for (int i = 0; i < N_CONFIGS; i++)
-            predicted[i][round] = run ? predict_makespan(run, &CONFIGS[i]) : NAN;
+            predicted[i][round] = run ? predict_makespan(run, &CONFIGS[i], false) : NAN;
         trace_run_free(run);
     }
     for (int i = 0; i < N_CONFIGS; i++)

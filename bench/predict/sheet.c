@@ -44,14 +44,22 @@ struct measure_series *predict_series(struct measure *measure, const struct benc
         config->scheduler, config->mapping, config->balance, trace);
 }
 
-double predict_makespan(const struct trace_run *run, const struct predict_config *config)
+/* Two hosts, of which the second is half as fast if `slow`. */
+double predict_makespan(const struct trace_run *run, const struct predict_config *config, bool slow)
 {
+    struct predict_place place[] = {
+        {2, config->threads, 1, 0.5 * LATENCY, BANDWIDTH, INFINITY},
+        {2, config->threads, 0.5, 0.5 * LATENCY, BANDWIDTH, INFINITY},
+        {2, 0, 1, 0, INFINITY, INFINITY},
+    };
+    const struct predict_platform unlike = {place, 2, 3};
     const struct predict_cluster cluster = {.hosts = config->ranks,
                                             .cores = config->threads,
                                             .latency = LATENCY,
                                             .bandwidth = BANDWIDTH,
                                             .capacity = INFINITY,
                                             .core_speed = 1,
+                                            .platform = slow ? &unlike : NULL,
                                             .overhead = -1,
                                             .message = MESSAGE,
                                             .look = -1,
@@ -151,8 +159,13 @@ static int sheet_run(void *context, struct serve_request *request, double *value
     options.balance = duite_balancer_find(balance);
     options.trace = none ? NULL : path;
     options.trace_end = UINT64_MAX - 1; /* without what comes before the first step */
+    const bool slow = !strcmp(trace, "slow") && sheet_own_rank() == 1;
+    if (!code && slow)
+        code = predict_quota(true);
     if (!code)
         code = path ? run_flow(sheet, &options, value) : serve_no_memory();
+    if (slow && predict_quota(false) && !code)
+        code = 1;
     if (!code && !none && !wall)
         code = span_of(path, value);
     free(path);

@@ -86,6 +86,7 @@ module duite
         type(c_ptr) :: trace
         integer(c_int64_t) :: trace_first, trace_end
         integer(c_int) :: check, memo
+        type(c_ptr) :: report
     end type
 
     type, bind(C) :: duite_task_options

@@ -392,6 +392,9 @@ typedef struct duite_options {
     int memo;  /* 1: recognises repeated forks, see duite_fork; 0: does not; 2: even with long
                   bodies, for tests. Default 1, or 0 or 2 with DUITE_MEMO=0 or DUITE_MEMO=always in
                   the environment */
+    const char *report; /* a file in which rank 0 leaves flat JSON at duite_stop: settings,
+                           counters, seconds. Rank 0's value counts for all. NULL: none. Default:
+                           DUITE_REPORT, else NULL */
 } duite_options;
 
 /* Delegation: with the balancer `delegate` a rank that has nothing to do asks others for ready

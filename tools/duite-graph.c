@@ -294,7 +294,8 @@ static const struct argp_option OPTIONS[] = {
      "rounds of the graph that are measured, after two that are not (default: 10)", 3},
     {"forks", FORKS, NULL, 0, "fork the tasks in each round; else it is recorded and replayed", 3},
     {"timeout", TIMEOUT, "SECONDS", 0, "most that the run may take (default: any time)", 3},
-    {"report", REPORT, "FILE", 0, "where the figures go (default: standard output)", 3},
+    {"report", REPORT, "FILE", 0,
+     "where the figures go (default: DUITE_REPORT, else standard output)", 3},
     {0}};
 
 static double positive(struct argp_state *state, const char *text)
@@ -384,6 +385,8 @@ int main(int argc, char **argv)
                               .rounds = 10,
                               .graph_seed = 1,
                               .options = duite_options_default()};
+    command.report = command.options.report; /* ours has more */
+    command.options.report = NULL;
     const struct argp argp = {OPTIONS,
                               parse,
                               "KIND|FILE",

@@ -51,7 +51,8 @@ static const struct argp_option OPTIONS[] = {
      "publish frames for duite-view --connect, on this host alone, or at an ADDRESS of it (`*': "
      "all)",
      1},
-    {"report", REPORT, "FILE", 0, "write the figures of the run as flat JSON", 1},
+    {"report", REPORT, "FILE", 0,
+     "write the figures of the run as flat JSON (default: DUITE_REPORT, else none)", 1},
     {"save-system", SAVE_SYSTEM, "DIR", 0,
      "write the linear system of the last step, in Matrix Market form, into this folder, which is "
      "made",

@@ -97,7 +97,7 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
     if (!code && options->restart && run->flow)
         code = restart_resume(&run->restart, run->flow, error);
     if (!code && options->report)
-        code = simulate_begin_check_file(run, "--report", options->report, error);
+        code = simulate_begin_check_file(run, "--report (or DUITE_REPORT)", options->report, error);
     if (!code && options->runtime.trace)
         code = simulate_begin_check_file(run, "--trace (or DUITE_TRACE)", options->runtime.trace,
                                          error);

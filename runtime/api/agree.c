@@ -33,11 +33,13 @@ static uint64_t start_hash_kernels(const struct task_graph *graph)
     return hash;
 }
 
-/* Values that must be the same on all ranks, and two more that they report to one another. */
+/* Values that must be the same on all ranks, and more that they report to one another. */
 struct start_word {
     uint64_t kernels, laws, seed, scheduler, mapping, balance;
     uint64_t traced, first, end; /* hash of the trace's name, 0: there is none; its steps */
-    double lost_seconds;         /* rank 0's counts */
+    double lost_seconds;         /* rank 0's counts, as does: */
+    uint64_t reported;
+    unsigned workers;
     char host[64];
 };
 
@@ -105,7 +107,9 @@ static struct start_word start_own(const duite *rt, const duite_options *options
         .traced = options->trace ? XXH64(options->trace, strlen(options->trace), 1) : 0,
         .first = options->trace ? options->trace_first : 0,
         .end = options->trace ? options->trace_end : 0,
-        .lost_seconds = options->lost_seconds};
+        .lost_seconds = options->lost_seconds,
+        .reported = options->report != NULL,
+        .workers = rt->share.workers};
     if (gethostname(own.host, sizeof own.host - 1))
         strcpy(own.host, "(without a name)");
     return own;
@@ -125,6 +129,9 @@ int api_agree_at_start(duite *rt, const duite_options *options, int code)
         if (!code)
             code = start_compare(all, (int)n, rt->graph.rank);
     }
+    rt->report.wanted = !code && all[0].reported;
+    for (size_t r = 0; r < n && !code; r++)
+        rt->report.workers += all[r].workers;
     if (!code)
         comm_ring(rt->comm, all[0].lost_seconds, all[((size_t)rt->graph.rank + n - 1) % n].host);
     base_free(all);

@@ -11,6 +11,8 @@
 #include "runtime/workers/share.h"
 #include "runtime/workers/workers.h"
 
+#include <stdio.h>
+
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* A running runtime: its parts, and the error that the next get, wait or stop will return. Main
@@ -44,6 +46,14 @@ struct duite {
     struct api_turn *turns;       /* objects that the program has acquired, the last one first */
     struct plan_record *building; /* the one that build forks into, or NULL */
     uint64_t graphs_recorded;
+    struct api_report {
+        bool wanted;      /* by rank 0; the same on all ranks, as is: */
+        unsigned workers; /* of all ranks */
+        FILE *file;       /* of rank 0; NULL: not open */
+        char *path;
+        const duite_scheduler *scheduler;
+        double began; /* on the clock of this rank */
+    } report;
     struct instance_migration {
         uint64_t replays, due; /* so far; the number at which the homes are looked at next */
         uint64_t looked;       /* replays before the last look; */
@@ -143,6 +153,17 @@ int api_wait(duite *rt, const char *call);
 int api_trace_end(duite *rt, const char *call);
 /* Begins to record, if all steps are. All ranks have started. */
 void api_trace_begin(duite *rt, const duite_options *options);
+/* Sums over all ranks, as duite_count_all. */
+int api_count(duite *rt, duite_counters *counters);
+
+/* ---- report.c ---- */
+
+/* Opens the file, on rank 0. Local. Errors: memory, DUITE_E_SYSTEM. */
+int api_report_open(duite *rt, const duite_options *options);
+/* Writes and closes it, if a report is wanted; code: of the stop. A broken runtime has no counters.
+ * No task is left. Collective. Errors, of rank 0 alone: DUITE_E_SYSTEM. */
+int api_report_write(duite *rt, int code);
+void api_report_close(duite *rt);
 
 /* Copies the bytes to `values`, or the number of elements to `count`, if not NULL, on the ranks
  * that want it. */

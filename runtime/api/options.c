@@ -82,6 +82,7 @@ static duite_options options_defaults(void)
         .balance = duite_balancer_find(balance ? balance : duite_balancer_names()[0]),
         .seed = environment_seed(),
         .trace = getenv("DUITE_TRACE"),
+        .report = getenv("DUITE_REPORT"),
         .stuck_seconds = environment_seconds(getenv("DUITE_STUCK_SECONDS"), 60),
         .lost_seconds = environment_seconds(getenv("DUITE_LOST_SECONDS"), 8),
         .spin_seconds = 100e-6,
@@ -272,6 +273,10 @@ int api_check_options_rest(const duite_options *options)
         return base_error(
             DUITE_E_ARGUMENT,
             "duite_start: trace (or DUITE_TRACE in the environment) is an empty name");
+    if (options->report && !*options->report)
+        return base_error(
+            DUITE_E_ARGUMENT,
+            "duite_start: report (or DUITE_REPORT in the environment) is an empty name");
     if (options->trace && options->trace_first > options->trace_end)
         return base_error(DUITE_E_ARGUMENT, "duite_start: trace_first is after trace_end");
     return DUITE_OK;

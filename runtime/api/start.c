@@ -157,6 +157,8 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
                                                             .workers = rt->share.workers,
                                                             .graph = &rt->graph});
     if (!code)
+        code = api_report_open(rt, options);
+    if (!code)
         code = work_start(
             &rt->pool,
             &(struct work_setup){.graph = &rt->graph,
@@ -239,6 +241,7 @@ static void instance_end(duite *rt)
         atomic_fetch_sub(&alive, 1);
     task_graph_stop(&rt->graph);
     check_stop(rt->check);
+    api_report_close(rt);
     base_free(rt);
     base_pool_leave();
 }
@@ -284,6 +287,7 @@ int duite_start(duite **out, const duite_options *given)
         if (rt->comm && moves)
             comm_measure(rt->comm);
         api_trace_begin(rt, options);
+        rt->report.began = base_seconds();
         comm_open(rt->comm, options->balance->victim != NULL);
         *out = rt;
     }
@@ -325,6 +329,9 @@ int duite_stop(duite **out)
     const int traced = api_is_broken(rt) ? DUITE_OK : api_trace_end(rt, "duite_stop");
     if (!code)
         code = traced;
+    const int reported = api_report_write(rt, code);
+    if (!code)
+        code = reported;
     instance_end(rt);
     *out = NULL;
     return code;

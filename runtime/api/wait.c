@@ -298,21 +298,28 @@ static int counters_gather(duite *rt, duite_counters *counters)
     return code;
 }
 
+int api_count(duite *rt, duite_counters *all)
+{
+    *all = (duite_counters){0};
+    work_count(rt->pool, all);
+    if (rt->comm)
+        comm_count(rt->comm, &all->messages, &all->bytes);
+    const int code = counters_gather(rt, all);
+    all->graphs_recorded = rt->graphs_recorded;
+    all->migrated = rt->migration.objects;
+    if (rt->memo)
+        plan_memo_count(rt->memo, all);
+    return code;
+}
+
 int duite_count_sized(duite *rt, duite_counters *counters, size_t size)
 {
-    duite_counters all = {0};
+    duite_counters all;
     int code = api_enter(rt, "duite_count_all");
     if (code || !counters)
         return code ? code
                     : base_error(DUITE_E_ARGUMENT, "duite_count_all: nowhere to put the counters");
-    work_count(rt->pool, &all);
-    if (rt->comm)
-        comm_count(rt->comm, &all.messages, &all.bytes);
-    code = counters_gather(rt, &all);
-    all.graphs_recorded = rt->graphs_recorded;
-    all.migrated = rt->migration.objects;
-    if (rt->memo)
-        plan_memo_count(rt->memo, &all);
+    code = api_count(rt, &all);
     memset(counters, 0, size);
     memcpy(counters, &all, size < sizeof all ? size : sizeof all);
     return code;

@@ -1,7 +1,7 @@
 LEAK_TESTS += tests/runtime/random_programs
 TSAN_TESTS += tests/runtime/test_place
 LEAK_SH += tests/runtime/test_ranks.sh
-ASAN_SH += tests/runtime/test_random.sh tests/runtime/test_memcheck.sh tests/runtime/test_stuck.sh \
+ASAN_SH += tests/runtime/test_random.sh tests/runtime/test_report.sh tests/runtime/test_memcheck.sh tests/runtime/test_stuck.sh \
     tests/runtime/test_exit.sh tests/runtime/test_steals.sh tests/runtime/test_migrate.sh
 PLAIN_SH += tests/runtime/test_delegate.sh
 LONG_SH += tests/runtime/test_random_long.sh tests/runtime/test_memcheck_long.sh tests/runtime/test_threads_long.sh \

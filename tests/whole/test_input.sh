@@ -123,7 +123,7 @@ ok "more ranks than blocks, 2 ranks" says 2 \
     scene.yaml
 refused "a folder of frames that is a file" "cannot make the folder scene.yaml: Not a directory" scene.yaml --grain 20 \
     --output scene.yaml
-refused "a report without a folder" "--report none/x.json: cannot write in its folder: No such file or directory" scene.yaml \
+refused "a report without a folder" "--report (or DUITE_REPORT) none/x.json: cannot write in its folder: No such file or directory" scene.yaml \
     --grain 20 --report none/x.json
 cp scene.yaml kept.yaml
 ok "a report that is the scene" sh -c '
@@ -131,7 +131,7 @@ ok "a report that is the scene" sh -c '
     status=$?
     cat said.err
     test $status = 2 && cmp scene.yaml kept.yaml &&
-        grep -qx "duite-cloth: --report ./kept.yaml: this is the scene itself, which would be lost" said.err' "$DUITE_CLOTH"
+        grep -qx "duite-cloth: --report (or DUITE_REPORT) ./kept.yaml: this is the scene itself, which would be lost" said.err' "$DUITE_CLOTH"
 beyond() { # KEY=VALUE: forces beyond all numbers end the run soon, with a sentence
     status=0
     limited "$DUITE_CLOTH" scene.yaml --set "$1" > said.out 2> said.err || status=$?

@@ -8,7 +8,7 @@ static inline void environment_forget(void)
 {
     static const char *const names[] = {"DUITE_SCHEDULER", "DUITE_MAPPING", "DUITE_BALANCE",
                                         "DUITE_THREADS",   "DUITE_SEED",    "DUITE_TRACE",
-                                        "DUITE_CHECK",     "DUITE_MEMO"};
+                                        "DUITE_REPORT",    "DUITE_CHECK",   "DUITE_MEMO"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         unsetenv(names[i]);
 }

@@ -22,6 +22,8 @@ static const char *option_name_of(const char *variable, const char *const *names
 void environment_begin(struct simulate_options *run)
 {
     run->runtime = duite_options_default();
+    run->report = run->runtime.report; /* ours has more */
+    run->runtime.report = NULL;
     run->scheduler_name = option_name_of("DUITE_SCHEDULER", duite_scheduler_names());
     run->mapping_name = option_name_of("DUITE_MAPPING", duite_mapping_names());
     run->balance_name = option_name_of("DUITE_BALANCE", duite_balancer_names());
@@ -52,6 +54,8 @@ int environment_check(const struct simulate_options *run, struct cloth_error *er
                               "a whole number from 0 to 18446744073709551614 is expected");
     if (runtime->trace && !*runtime->trace)
         return wrong_variable(error, "DUITE_TRACE", "the name of a file is expected");
+    if (run->report && !*run->report)
+        return wrong_variable(error, "DUITE_REPORT", "the name of a file is expected");
     return CLOTH_OK;
 }
 

@@ -21,7 +21,7 @@ bench_libbench_a_SOURCES = bench/bench.h bench/instructions.c bench/instructions
 	bench/garments/bench.c bench/garments/correction.c bench/garments/scenes.c bench/garments/worn.c bench/garments/garments.h \
 	bench/output/bench.c bench/output/folder.h bench/output/output.h bench/output/run.c bench/output/viewer.c bench/output/viewer.h \
 	bench/physics/bench.c bench/physics/ours.c bench/physics/physics.h \
-	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/order.c bench/predict/predict.h bench/predict/quota.c \
+	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/order.c bench/predict/overhead.c bench/predict/predict.h bench/predict/quota.c \
 	bench/predict/sheet.c bench/scale/coarse.c bench/scale/messages.c bench/scale/predicted.c bench/scale/runs.c bench/scale/scale.c bench/scale/scale.h \
 	tests/support/trace_file.c tests/support/trace_file.h \
 	$(BENCH_STATE) $(BENCH_SHARED)

@@ -1,4 +1,4 @@
-/* The bench "compare": what traces cost, and what predictions are worth. */
+/* The bench "compare": what traces and comparisons cost, and what predictions are worth. */
 #include "bench/predict/predict.h"
 #include "bench/temporary.h"
 
@@ -6,16 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct bench_case *const CASES[] = {&predict_trace, &predict_many, &predict_errors,
-                                                 &predict_order, NULL};
+static const struct bench_case *const CASES[] = {&predict_trace, &predict_many,     &predict_errors,
+                                                 &predict_order, &predict_overhead, NULL};
 
-static const struct measure_target TARGETS[] = {{"trace_slowdown", 1.02, false},
-                                                {"predict_1e6_seconds", 1, false},
-                                                {"predict_1e6_bytes", 1073741824, false},
-                                                {"predict_error_median", 0.1, false},
-                                                {"predict_error_worst", 0.25, false},
-                                                {"rank_order_agrees", 0.95, true},
-                                                {0}};
+static const struct measure_target TARGETS[] = {
+    {"trace_slowdown", 1.02, false},          {"predict_1e6_seconds", 1, false},
+    {"predict_1e6_bytes", 1073741824, false}, {"predict_error_median", 0.1, false},
+    {"predict_error_worst", 0.25, false},     {"rank_order_agrees", 0.95, true},
+    {"compare_overhead", 1.01, false},        {0}};
 enum { TARGET_THREADS = 2, MANY = 1000000, FEW = 10000 };
 
 /* ---- The folder of the traces: the processes that are measured know it by the environment ---- */
@@ -58,12 +56,13 @@ static int prepare(const struct bench_options *options,
 static int serve_predict(const struct bench *bench)
 {
     static struct sheet sheet;
-    const struct serve_run *const runs[] = {bench->cases[0]->runs, bench->cases[1]->runs, NULL};
+    const struct serve_run *const runs[] = {bench->cases[0]->runs, bench->cases[1]->runs,
+                                            predict_overhead.runs, NULL};
     return serve("duite_options_default() but for threads, policies and trace", runs, &sheet);
 }
 
 const struct bench bench_compare = {
-    "compare",      "what a trace costs, and predictions against runs",
+    "compare",      "what a trace and duite-compare cost, and predictions against runs",
     CASES,          TARGETS,
     TARGET_THREADS, serve_predict,
     prepare,        finish};

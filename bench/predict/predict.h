@@ -41,6 +41,7 @@ bool predict_quota_is_there(void);
 int predict_quota(bool begins);
 void predict_quota_end(void);
 
-extern const struct bench_case predict_trace, predict_many, predict_errors, predict_order;
+extern const struct bench_case predict_trace, predict_many, predict_errors, predict_order,
+    predict_overhead;
 
 #endif

@@ -7,7 +7,7 @@ plan_later
 rows() { # each metric with a number
     limited bench/duite-bench compare --quick --repeats 1 > "$scratch/said" 2>&1 || { cat "$scratch/said"; return 1; }
     cat "$scratch/said"
-    for metric in trace_slowdown predict_1e6_seconds predict_1e6_bytes predict_error_median predict_error_worst rank_order_agrees rank_order_pairs; do
+    for metric in trace_slowdown predict_1e6_seconds predict_1e6_bytes predict_error_median predict_error_worst rank_order_agrees rank_order_pairs compare_overhead; do
         grep -q "^$metric: [0-9]" "$scratch/said" || return 1
     done
 }

@@ -1,5 +1,6 @@
 /* duite-compare: the command line of a comparison (tools/compare/compare.h). */
 #include "tools/compare/compare.h"
+#include "tools/compare/figure.h"
 #include "tools/compare/graph.h"
 #include "tools/compare/program.h"
 
@@ -27,6 +28,7 @@ enum {
     SET,
     VARY,
     FIGURE,
+    SAME,
     LIST
 };
 
@@ -54,10 +56,15 @@ static const struct argp_option OPTIONS[] = {
      "values of a variable of the environment, with commas between them; may be given several "
      "times",
      1},
-    {"figure", FIGURE, "REGEX", 0,
-     "what is compared of a program: the number that the first group of this extended regular "
-     "expression finds in its output, in the last line that has one; the least is the best "
-     "(default: the time of the run)",
+    {"figure", FIGURE, "key=KEY|REGEX", 0,
+     "what is compared: the number under this key of the report, which a program of duite leaves; "
+     "or the number that the first group of this extended regular expression finds in a program's "
+     "output, in the last line that has one; the least is the best (default: the time of a step, a "
+     "round, or a program's run)",
+     2},
+    {"same", SAME, "key=KEY|REGEX", 0,
+     "what has to be the same in all runs that differ in no grain and no --vary: a text, found as "
+     "--figure finds a number (default: the hash of a scene or graph; of a program nothing)",
      2},
     {"metg", METG, NULL, 0,
      "draw the efficiency of all cores over the granularity of tasks, and find the least "
@@ -174,7 +181,8 @@ static void complete_lists(struct compare *compare)
 static void check_program(struct argp_state *state, const struct compare *compare)
 {
     char wrong[500];
-    size_t letters = compare->figure ? strlen(compare->figure) : 0;
+    size_t letters = (compare->figure ? strlen(compare->figure) : 0) +
+                     (compare->same ? strlen(compare->same) : 0);
     for (char *const *word = compare->program; word && *word; word++)
         letters += strlen(*word) + 1;
     if (letters > COMPARE_COMMAND)
@@ -184,8 +192,6 @@ static void check_program(struct argp_state *state, const struct compare *compar
     if (compare->program && strpbrk(*compare->program, ",\n"))
         argp_error(state, "%s: a comma or line in a name cannot stand in the files",
                    *compare->program);
-    if (!compare->program && compare->figure)
-        argp_error(state, "--figure is for a program after --");
     for (char *const *word = compare->program; word && *word; word++)
         if (program_word_wrong(compare, *word, wrong, sizeof wrong))
             argp_error(state, "%s", wrong);
@@ -260,9 +266,10 @@ static error_t parse(int key, char *text, struct argp_state *state)
         take_variable(state, compare, text);
         return 0;
     case FIGURE:
-        if (program_figure_wrong(text, wrong, sizeof wrong))
-            argp_error(state, "--figure %s: %s", text, wrong);
-        compare->figure = text;
+    case SAME:
+        if (figure_wrong(compare, text, wrong, sizeof wrong))
+            argp_error(state, "--%s %s: %s", key == FIGURE ? "figure" : "same", text, wrong);
+        *(key == FIGURE ? &compare->figure : &compare->same) = text;
         return 0;
     case SET:
         if (!strchr(text, '='))
@@ -347,12 +354,10 @@ int main(int argc, char **argv)
         "gets the lists as DUITE_SCHEDULER, DUITE_MAPPING, DUITE_BALANCE, DUITE_THREADS, "
         "OMP_NUM_THREADS and STARPU_NCPU, runs under mpirun on more than one rank, and has a "
         "value wherever its arguments have the {name} of a list.\n\nA comparison that was "
-        "interrupted goes on where it "
-        "stopped when the same command is given again; longer lists and more --rounds are added to "
-        "it. Results are in the folder: compare.md has all, runs.csv every run, summary.csv the "
-        "medians. The "
-        "status is 1 if a run failed, a result was "
-        "wrong, or something could not be written.",
+        "interrupted goes on where it stopped when the same command is given again; longer lists "
+        "and more --rounds are added to it. Results are in the folder: compare.html has all, "
+        "summary.csv every run. The status is 1 if a run failed, a result was wrong, or something "
+        "could not be written.",
         NULL,
         NULL,
         NULL};

@@ -1,8 +1,8 @@
 """Files that duite's programs leave, as numpy arrays.
 
     import duite
-    report = duite.report('report.json')            # duite-cloth --report
-    runs = duite.table('comparison/runs.csv')       # duite-compare, probes: a dict of columns
+    report = duite.report('report.json')            # DUITE_REPORT=report.json, duite-cloth --report
+    runs = duite.table('comparison/summary.csv')    # duite-compare, probes: a dict of columns
     tables = duite.trace('run.trace')               # a dict of such dicts; duite-trace reads the files of all ranks
     x = duite.frames('frames/cloth.pc2')            # x[frame, vertex] is a position
     fields = duite.fields('frames/hdf5/frame-000000.vtkhdf')

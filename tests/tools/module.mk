@@ -1,6 +1,6 @@
 LEAK_SH += tests/tools/test_trace.sh
 ASAN_SH += tests/tools/test_vite.sh tests/tools/test_chart.sh
-PLAIN_SH += tests/tools/test_compare.sh tests/tools/test_python.sh tests/tools/test_simgrid.sh
+PLAIN_SH += tests/tools/test_compare.sh tests/tools/test_compare_any.sh tests/tools/test_python.sh tests/tools/test_simgrid.sh
 check_PROGRAMS += tests/tools/synthetic
 tests_tools_synthetic_SOURCES = tests/tools/synthetic.c tests/support/trace_file.c tests/support/trace_file.h
 EXTRA_DIST += tests/tools/simgrid.cpp

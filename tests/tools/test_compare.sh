@@ -7,58 +7,58 @@ bin=$PWD
 # What a user chose for programs of duite in general, even if it makes no sense, is not what is compared.
 tiny() {
     (export DUITE_SCHEDULER=nobody DUITE_MAPPING=nowhere DUITE_BALANCE=never DUITE_THREADS=none DUITE_SEED=no DUITE_TRACE=/no/such/folder/trace
-     cd "$scratch" && PATH=${tools:-$PATH} limited "$bin/duite-compare" "$@" --tasks 40 --cost 1e-6 --steps 2 --seed 3)
+     cd "$scratch" && DUITE_REPORT=/no/such/folder/report limited "$bin/duite-compare" "$@" --tasks 40 --cost 1e-6 --steps 2 --seed 3)
 }
 of_scenes() { if test -x "$DUITE_CLOTH"; then ok "$@"; else skip "$1" "configure --disable-cloth"; fi; }
 product="stencil irregular --scheduler steal,priority --mapping block,list --ranks 1,2 --threads 1"
 
 first() { # shellcheck disable=SC2086 # a list of options
     tiny $product --rounds 1 --output c > "$scratch/said" || { cat "$scratch/said" && return 1; }
-    test "$(grep -c ',fine$' "$scratch/c/runs.csv")" = 16 && test "$(wc -l < "$scratch/c/summary.csv")" -gt 16 &&
-        grep -q "^# build: duite" "$scratch/c/runs.csv" && grep -q "seed 3" "$scratch/said" &&
-        grep -q "^## irregular" "$scratch/c/compare.md"
+    test "$(grep -c ',fine$' "$scratch/c/summary.csv")" = 16 && test "$(wc -l < "$scratch/c/summary.csv")" = 17 &&
+        grep -q "^build: duite" "$scratch/c/about.txt" && grep -q "seed 3" "$scratch/said" &&
+        grep -q "<h2>irregular</h2>" "$scratch/c/compare.html"
 }
 # The last line is cut off in the middle, and another round asked for.
 again() { # shellcheck disable=SC2086
-    kept=$(head -n 20 "$scratch/c/runs.csv")
-    printf '%s\n0,stencil,0' "$kept" > "$scratch/c/runs.csv"
-    before=$(grep -c ',fine$' "$scratch/c/runs.csv")
+    kept=$(head -n 9 "$scratch/c/summary.csv")
+    printf '%s\n0,stencil,0' "$kept" > "$scratch/c/summary.csv"
+    before=$(grep -c ',fine$' "$scratch/c/summary.csv")
     tiny $product --rounds 2 --output c > "$scratch/said" || { cat "$scratch/said" && return 1; }
-    grep -qx "$before runs are there already" "$scratch/said" && test "$(grep -c ',fine$' "$scratch/c/runs.csv")" = 32
+    grep -qx "$before runs are there already" "$scratch/said" && test "$(grep -c ',fine$' "$scratch/c/summary.csv")" = 32
 }
 # Another scheduler: what ran is kept, and the page says that its runs were not in turns with the others'.
 grown() { # shellcheck disable=SC2086
     tiny $product --scheduler priority,locality,steal --rounds 2 --output c > "$scratch/said" 2>&1 || { cat "$scratch/said" && return 1; }
     cat "$scratch/said"
-    grep -qx "32 runs are there already" "$scratch/said" && test "$(grep -c ',fine$' "$scratch/c/runs.csv")" = 48 &&
-        grep '^[*][*]Warning:[*][*] .*, scheduler locality and 7 others joined later' "$scratch/c/compare.md" &&
+    grep -qx "32 runs are there already" "$scratch/said" && test "$(grep -c ',fine$' "$scratch/c/summary.csv")" = 48 &&
+        grep '^Warning: .*, scheduler locality and 7 others joined later' "$scratch/c/compare.html" &&
         tiny $product --scheduler priority,locality,steal --rounds 2 --output c > "$scratch/said" 2>&1 &&
-        grep -qx "48 runs are there already" "$scratch/said" && test "$(grep -c 'joined later' "$scratch/c/compare.md")" = 1
+        grep -qx "48 runs are there already" "$scratch/said" && test "$(grep -c 'joined later' "$scratch/c/compare.html")" = 1
 }
 # Two rounds tell nothing, whatever their ratios are. A second one has runs, and the page whose they are.
 told() {
-    cat "$scratch/c/compare.md"
-    ! grep -q '| within the noise |\|| slower  *|' "$scratch/c/compare.md" && test "$(grep -c '| too few rounds  *|' "$scratch/c/compare.md")" = 22 &&
-        grep -qx -- "- revision: $(git -C "$top" describe --always --dirty --abbrev=12 2> /dev/null || echo unknown)" "$scratch/c/compare.md" &&
-        grep -qx -- "- processor: ..*" "$scratch/c/compare.md" && grep -qx -- "- cores: [1-9][0-9]*" "$scratch/c/compare.md" &&
-        grep -qx -- "- mpi: .*[0-9].*" "$scratch/c/compare.md"
+    grep '^<tr>' "$scratch/c/compare.html"
+    ! grep -q '<td>within the noise\|<td>slower' "$scratch/c/compare.html" && test "$(grep -c '<td>too few rounds</td>' "$scratch/c/compare.html")" = 22 &&
+        grep -qx "revision: $(git -C "$top" describe --always --dirty --abbrev=12 2> /dev/null || echo unknown)" "$scratch/c/compare.html" &&
+        grep -qx "processor: ..*" "$scratch/c/compare.html" && grep -qx "cores: [1-9][0-9]*" "$scratch/c/compare.html" &&
+        grep -qx "mpi: .*[0-9].*" "$scratch/c/compare.html"
 }
 # With rounds enough: what is three times as long is slower, and what is as long is not.
 judged() {
     refused 0 "6 rounds" tree --threads 1 --mapping block,cyclic --grain 1 --rounds 6 --output j || return 1
-    cp "$scratch/j/runs.csv" "$scratch/six"
-    sed 's/^\([0-5],tree,1,1,1,none,\)\(block\|cyclic\),steal,[^,]*,/\1\2,steal,1e-3,/; s/,cyclic,steal,1e-3,/,cyclic,steal,3e-3,/' "$scratch/six" > "$scratch/j/runs.csv"
+    cp "$scratch/j/summary.csv" "$scratch/six"
+    sed 's/^\([0-5],tree,1,1,1,none,\)\(block\|cyclic\),steal,[^,]*,/\1\2,steal,1e-3,/; s/,cyclic,steal,1e-3,/,cyclic,steal,3e-3,/' "$scratch/six" > "$scratch/j/summary.csv"
     refused 0 "12 runs are there already" tree --threads 1 --mapping block,cyclic --grain 1 --rounds 6 --output j &&
-        grep '^| cyclic .* 3.000 .* slower ' "$scratch/j/compare.md" || return 1
-    sed -i 's/^0\(,.*,cyclic,steal,\)3e-3,/0\10.9e-3,/' "$scratch/j/runs.csv"
+        grep '^<tr><td>cyclic</td>.*>3.000 .*<td>slower</td>' "$scratch/j/compare.html" || return 1
+    sed -i 's/^0\(,.*,cyclic,steal,\)3e-3,/0\10.9e-3,/' "$scratch/j/summary.csv"
     refused 0 "12 runs are there already" tree --threads 1 --mapping block,cyclic --grain 1 --rounds 6 --output j &&
-        grep '^| cyclic .* 3.000 .* within the noise ' "$scratch/j/compare.md"
+        grep '^<tr><td>cyclic</td>.*>3.000 .*<td>within the noise</td>' "$scratch/j/compare.html"
 }
 # The runs of another build stay, with a warning that names it.
 other_build() { # shellcheck disable=SC2086
-    sed -i 's/^# revision: .*/# revision: 0123456789ab/' "$scratch/j/runs.csv"
+    sed -i 's/^revision: .*/revision: 0123456789ab/' "$scratch/j/about.txt"
     refused 0 "warning: runs that were there already are of another build: revision: 0123456789ab" tree --threads 1 --mapping block,cyclic \
-        --grain 1 --rounds 6 --output j && grep -q "another build: revision: 0123456789ab" "$scratch/j/compare.md"
+        --grain 1 --rounds 6 --output j && grep -q "another build: revision: 0123456789ab" "$scratch/j/compare.html"
 }
 refused() { # STATUS SENTENCE OPTIONS...
     wanted=$1 sentence=$2
@@ -69,18 +69,12 @@ refused() { # STATUS SENTENCE OPTIONS...
     test $status = "$wanted" && grep -q "$sentence" "$scratch/said"
 }
 wrong() { # shellcheck disable=SC2086
-    last=$(grep -n ',fine$' "$scratch/c/runs.csv" | tail -n 1 | cut -d : -f 1) # a warning may follow
-    sed -i "${last}s/,[0-9a-f]\{16\},/,0123456789abcdef,/" "$scratch/c/runs.csv"
+    last=$(grep -n ',fine$' "$scratch/c/summary.csv" | tail -n 1 | cut -d : -f 1) # a warning may follow
+    sed -i "${last}s/,[0-9a-f]\{16\},/,0123456789abcdef,/" "$scratch/c/summary.csv"
     refused 1 "WRONG: .* hash" $product --scheduler priority,locality,steal --rounds 3 --output c
 }
 full() {
-    mkdir "$scratch/full" && ln -s /dev/full "$scratch/full/runs.csv" && refused 1 "No space left" tree --output full
-}
-without_plots() {
-    mkdir "$scratch/bin"
-    for tool in timeout sed head cut sh; do ln -s "$(command -v $tool)" "$scratch/bin/"; done
-    tools=$scratch/bin refused 0 "no plots: gnuplot is missing" tree --rounds 1 --output p &&
-        grep -q "There are no plots" "$scratch/p/compare.md"
+    mkdir "$scratch/full" && ln -s /dev/full "$scratch/full/summary.csv" && refused 1 "No space left" tree --output full
 }
 hash_of() { (cd "$scratch" && "$bin/duite-graph" "$@" --tasks 40 --cost 1e-6 --rounds 1 --threads 1) | sed -n 's/.*hash": "\(.*\)"/\1/p'; }
 graph_file() {
@@ -101,7 +95,7 @@ bad_file() {
 }
 scene() {
     refused 0 "sheet.yaml" "$top/cloth/scenes/sheet.yaml" --set 'cloths[0].mesh.grid.nx=12' --set 'cloths[0].mesh.grid.ny=12' \
-        --set time.end=0.002 --grain 40,70 --rounds 1 --output s && test "$(grep -c ',fine$' "$scratch/s/runs.csv")" = 2
+        --set time.end=0.002 --grain 40,70 --rounds 1 --output s && test "$(grep -c ',fine$' "$scratch/s/summary.csv")" = 2
 }
 
 top=$(cd "$srcdir" && pwd)
@@ -119,14 +113,13 @@ ok "a graph from a file is the same" graph_file
 of_scenes "... and so is that of a trace, on any number of ranks" of_a_trace
 ok "a damaged one names its line" bad_file
 ok "a full disk" full
-ok "without gnuplot" without_plots
 ok "an unknown scheduler lists the known ones" refused 2 "known are steal, locality" tree --scheduler best
 # Every runtime leaves the same results, on every kind of rows: those of other runtimes that were built, forks and replays, two ranks.
 alike() {
     members=steal,forks:steal$others
     refused 0 "$((8 * (4 + n_others))) configurations" stencil nearest fft spread tree random cholesky irregular --scheduler "$members" --threads 2 --ranks 1,2 \
-        --rounds 1 --output alike && test "$(grep -c ',fine$' "$scratch/alike/runs.csv")" = $((8 * (4 + n_others))) &&
-        test "$(sed -n 's/.*,\([0-9a-f]\{16\}\),fine$/\1/p' "$scratch/alike/runs.csv" | sort -u | wc -l)" = 8
+        --rounds 1 --output alike && test "$(grep -c ',fine$' "$scratch/alike/summary.csv")" = $((8 * (4 + n_others))) &&
+        test "$(sed -n 's/.*,\([0-9a-f]\{16\}\),fine$/\1/p' "$scratch/alike/summary.csv" | sort -u | wc -l)" = 8
 }
 unknown_there() { # RUNTIME NAME
     refuses "there is no scheduler of this name; known are" limited "$bin/bench/rivals/$1-graph" irregular --scheduler nope &&
@@ -134,7 +127,7 @@ unknown_there() { # RUNTIME NAME
 }
 starpu_runs() {
     STARPU_SCHED=nope refused 0 "1 rounds" irregular --scheduler starpu:eager --rounds 1 --output e &&
-        test "$(grep -c '^0,irregular,.*,starpu:eager,.*,fine$' "$scratch/e/runs.csv")" = 1 && ! grep nope "$scratch/e/run.log"
+        test "$(grep -c '^0,irregular,.*,starpu:eager,.*,fine$' "$scratch/e/summary.csv")" = 1 && ! grep nope "$scratch/e/run.log"
 }
 others='' n_others=0
 for other in starpu:lws libgomp:tasks libomp:tasks mpi:isend; do
@@ -153,19 +146,19 @@ ok "duite-graph has none of StarPU's schedulers" refuses "bench/rivals/starpu-gr
 metg() {
     set -- tree random --metg --scheduler steal --threads 1 --grain 0.5,1,4 --rounds 1 --output m
     refused 0 "6 configurations, 1 rounds" "$@" || return 1
-    sed -i 's/^\(0,tree,0.5,.*,steal\),[^,]*,/\1,58.5e-6,/; s/^\(0,tree,1,.*,steal\),[^,]*,/\1,78e-6,/; s/^\(0,tree,4,.*,steal\),[^,]*,/\1,156e-6,/' "$scratch/m/runs.csv"
+    sed -i 's/^\(0,tree,0.5,.*,steal\),[^,]*,/\1,58.5e-6,/; s/^\(0,tree,1,.*,steal\),[^,]*,/\1,78e-6,/; s/^\(0,tree,4,.*,steal\),[^,]*,/\1,156e-6,/' "$scratch/m/summary.csv"
     refused 0 "^| tree | 2 |$" "$@" || return 1
-    cat "$scratch/m/metg.md" "$scratch/m/metg.csv"
-    grep -qx "| tree | 2 |" "$scratch/m/metg.md" && grep -qx "tree,1,1,none,metis,steal,1.5,0.3333" "$scratch/m/metg.csv" &&
+    cat "$scratch/m/metg.csv"
+    grep -qx "| tree | 2 |" "$scratch/m/compare.html" && grep -qx "tree,1,1,none,metis,steal,1.5,0.3333" "$scratch/m/metg.csv" &&
         grep -qx "tree,1,1,none,metis,steal,4,1.0000" "$scratch/m/metg.csv" && test "$(grep -c '^random,' "$scratch/m/metg.csv")" = 3 &&
-        grep -q "^set multiplot layout 1,2$" "$scratch/m/metg.gp"
+        test "$(grep -c '^<svg.*<title>tree: efficiency' "$scratch/m/compare.html")" = 1
 }
 metg_by_itself() { # six kinds, all that is there; what is not is named
     status=0
     (cd "$scratch" && limited alone/duite-compare --metg --tasks 40 --cost 1e-6 --grain 1,2 --steps 2 --rounds 1 --output a > said 2>&1) || status=$?
     cat "$scratch/said"
     test $status = 0 && grep -q "^without libomp:tasks: .*libomp-graph is not there" "$scratch/said" &&
-        grep -q "^24 configurations, 1 rounds" "$scratch/said" && test "$(grep -c '^| [a-z]* | [<>]* *[0-9.]* | [<>]* *[0-9.]* |$' "$scratch/a/metg.md")" = 6
+        grep -q "^24 configurations, 1 rounds" "$scratch/said" && test "$(grep -c '^| [a-z]* | [&lgt;]* *[0-9.]* | [&lgt;]* *[0-9.]* |$' "$scratch/a/compare.html")" = 6
 }
 ok "METG: the curves of two kinds" metg
 ok "... by one command" metg_by_itself
@@ -173,19 +166,18 @@ ok "... of a file" refused 2 "metg: ./g.graph: one of stencil, .* is expected" -
 ok "... of a grain that is none" refused 2 "grain 0: a number above 0" --metg tree --grain 0 --output u
 # A member that fails beside one that does not: the page names it and says why; no table and no file has a figure of it.
 failed() {
-    refused 1 "duite-compare: 2 runs failed: f/compare.md says which, and why" tree --threads 1,5000 --rounds 2 --output f || return 1
-    cat "$scratch/f/compare.md" "$scratch/f/summary.csv" "$scratch/f/runs.csv"
+    refused 1 "duite-compare: 2 runs failed: f/compare.html says which, and why" tree --threads 1,5000 --rounds 2 --output f || return 1
+    cat "$scratch/f/summary.csv"
     grep -q ": 5000: failed; exit status 1: duite-graph: .*5000 threads are more than 4096" "$scratch/said" &&
-        grep -q "^- tree, threads 5000: 2 of 2 runs; the first: exit status 1: duite-graph: .*5000 threads" "$scratch/f/compare.md" &&
-        grep -q "^| 5000  *|  *|  *|  *|  *| failed  *|$" "$scratch/f/compare.md" &&
-        grep -qx "tree,0,1,5000,none,metis,steal,0,,,,,,,,,failed" "$scratch/f/summary.csv" &&
-        test "$(grep -cx "[01],tree,0,1,5000,none,metis,steal,,,,,,,failed" "$scratch/f/runs.csv")" = 2 &&
-        grep -q "5000 threads" "$scratch/f/failed.log" && ! grep -i nan "$scratch/said" "$scratch/f/"*.csv "$scratch/f/compare.md"
+        grep -q "^- tree, threads 5000: 2 of 2 runs; the first: exit status 1: duite-graph: .*5000 threads" "$scratch/f/compare.html" &&
+        grep -qx '<tr><td>5000</td>\(<td[^>]*></td>\)\{6\}<td>failed</td></tr>' "$scratch/f/compare.html" &&
+        test "$(grep -cx "[01],tree,0,1,5000,none,metis,steal,,,,,,,failed" "$scratch/f/summary.csv")" = 2 &&
+        grep -q "5000 threads" "$scratch/f/failed.log" && ! grep -iw nan "$scratch/said" "$scratch/f/"*.csv "$scratch/f/compare.html"
 }
 all_failed() {
-    refused 1 "duite-compare: 1 run failed: u/compare.md" "$top/cloth/scenes/sheet.yaml" --set grain=0 --rounds 1 --output u &&
-        grep -q "^- .*sheet.yaml: 1 of 1 runs; exit status [1-9][0-9]*: duite-cloth: .*grain" "$scratch/u/compare.md" &&
-        ! grep "bars0.png" "$scratch/u/compare.md"
+    refused 1 "duite-compare: 1 run failed: u/compare.html" "$top/cloth/scenes/sheet.yaml" --set grain=0 --rounds 1 --output u &&
+        grep -q "^- .*sheet.yaml: 1 of 1 runs; exit status [1-9][0-9]*: duite-cloth: .*grain" "$scratch/u/compare.html" &&
+        ! grep "<svg" "$scratch/u/compare.html"
 }
 timed_out() {
     (cd "$scratch" && limited "$bin/duite-compare" tree --tasks 4000 --cost 1 --timeout 1 --rounds 1 --output late > said 2>&1) && return 1
@@ -196,15 +188,15 @@ timed_out() {
 hangs() { ${CC:-cc} -Wall -Wextra -Werror -shared -fPIC -I"$top/runtime" -o "$scratch/hangs.so" "$top/tests/support/hangs.c"; }
 stopped() { # RANKS...
     members=$#
-    refused 1 "duite-compare: $((3 * members)) runs failed: h/compare.md" tree --scheduler steal,./hangs.so --ranks "$(echo "$*" | tr ' ' ,)" \
+    refused 1 "duite-compare: $((3 * members)) runs failed: h/compare.html" tree --scheduler steal,./hangs.so --ranks "$(echo "$*" | tr ' ' ,)" \
         --timeout 10 --rounds 3 --output h || return 1
-    cat "$scratch/h/compare.md"
+    grep '^- ' "$scratch/h/compare.html"
     for n; do
         test "$members" = 1 || member="ranks $n, "
         grep -q "^- tree, ${member:-}scheduler ./hangs.so: 3 of 3 runs; the first: stopped after 10 s (--timeout): \
-duite: rank [01]: worker [01].* is in the place of scheduler hangs, which has not returned" "$scratch/h/compare.md" || return 1
+duite: rank [01]: worker [01].* is in the place of scheduler hangs, which has not returned" "$scratch/h/compare.html" || return 1
     done
-    test "$(grep -c ": failed; not tried again" "$scratch/said")" = $((2 * members)) && test "$(grep -c ',steal,.*,fine$' "$scratch/h/runs.csv")" = $((3 * members))
+    test "$(grep -c ": failed; not tried again" "$scratch/said")" = $((2 * members)) && test "$(grep -c ',steal,.*,fine$' "$scratch/h/summary.csv")" = $((3 * members))
 }
 stopped_alone() {
     status=0
@@ -225,9 +217,9 @@ busy() {
     kill $loops && wait $loops 2> /dev/null
     cat "$scratch/said"
     grep '^duite-compare: warning: in round 1 other programs took [0-9.]* of [0-9]* cores' "$scratch/said" > "$scratch/warned" && test $status = 0 &&
-        sed 's/^duite-compare: warning: \(.*\)$/**Warning:** \1./' "$scratch/warned" | grep -Fxcf - "$scratch/b/compare.md" || return 1
+        sed 's/^duite-compare: warning: \(.*\)$/Warning: \1./' "$scratch/warned" | grep -Fxcf - "$scratch/b/compare.html" || return 1
     (cd "$scratch" && limited "$bin/duite-compare" tree --threads 1 --tasks 40 --cost 0.01 --steps 1 --rounds 1 --output b) &&
-        sed 's/^duite-compare: warning: \(.*\)$/**Warning:** \1./' "$scratch/warned" | grep -Fxcf - "$scratch/b/compare.md"
+        sed 's/^duite-compare: warning: \(.*\)$/Warning: \1./' "$scratch/warned" | grep -Fxcf - "$scratch/b/compare.html"
 }
 ok "a member that fails is named with its reason, and has no figures" failed
 of_scenes "... also if all fail" all_failed
@@ -260,28 +252,29 @@ any() { # STATUS SENTENCE OPTIONS...
 program() { # the lists come by the environment and in arguments; $ and blanks keep braces
     any 0 "12 configurations, 2 rounds" --threads 1,2,3 --scheduler steal,priority --vary KIND=a,b --rounds 2 --output any \
         -- sh any.sh '{threads}' '{KIND}-{threads}' '${KIND}' '{ KIND }' --rounds 9 || return 1
-    sort "$scratch/all" | uniq -c && cat "$scratch/any/summary.csv" "$scratch/any/compare.md"
+    sort "$scratch/all" | uniq -c && cat "$scratch/any/summary.csv"
     test "$(sort "$scratch/all" | uniq -c | grep -c '^ *2 arguments \([123]\) [ab]-\1 ${KIND} { KIND } --rounds 9 threads \1 \1 \1 scheduler [sp]')" = 12 &&
-        test "$(grep -c '^sh,,,[123],,,[a-z]*,[ab],2,0[.0-9e-]*,.*,,,' "$scratch/any/summary.csv")" = 12 &&
-        grep -q '^subject,grain,ranks,threads,balance,mapping,scheduler,KIND,runs,seconds,' "$scratch/any/summary.csv" &&
-        grep -q '^    sh any.sh {threads} ' "$scratch/any/compare.md"
+        test "$(grep -c '^[01],sh,,,[123],,,[a-z]*,[ab],0[.0-9e-]*,,,,,,fine$' "$scratch/any/summary.csv")" = 24 &&
+        grep -q '^round,subject,grain,ranks,threads,balance,mapping,scheduler,KIND,seconds,.*,result,status$' "$scratch/any/summary.csv" &&
+        grep -q '^<pre>sh any.sh {threads} ' "$scratch/any/compare.html" && test "$(grep -c '^<svg' "$scratch/any/compare.html")" = 4
 }
 program_again() { # longer lists and more rounds; another variable, argument or list is another comparison
     set -- --threads 1,2,3 --scheduler steal,priority --rounds 3 --output any
     any 0 "24 runs are there already" "$@" --vary KIND=a,b,c -- sh any.sh '{threads}' '{KIND}-{threads}' '${KIND}' '{ KIND }' --rounds 9 &&
-        test "$(grep -c ',fine$' "$scratch/any/runs.csv")" = 54 &&
+        test "$(grep -c ',fine$' "$scratch/any/summary.csv")" = 54 &&
         any 1 "another comparison" "$@" --vary KIND=a,b,c -- sh any.sh 7 '{KIND}-{threads}' '${KIND}' '{ KIND }' --rounds 9 &&
         any 1 "another comparison" "$@" --vary KIND=a,b,c --vary MORE=1 -- sh any.sh '{threads}' '{KIND}-{threads}' '${KIND}' '{ KIND }' --rounds 9 &&
-        test "$(grep -c ',fine$' "$scratch/any/runs.csv")" = 54
+        test "$(grep -c ',fine$' "$scratch/any/summary.csv")" = 54
 }
 figure() { # the last line that matches; the least is first
     any 0 ": 10.5 figure" --threads 2,1 --figure 'took ([0-9.]+) s of' --rounds 1 --output figure -- sh any.sh '{threads}' &&
-        grep -q '^sh,,,1,,,,1,10.5,10.5,10.5,,,1,1,1,fastest$' "$scratch/figure/summary.csv" &&
-        grep -q '^sh,,,2,,,,1,20.5,' "$scratch/figure/summary.csv" && grep -q ',threads,.*,runs,figure,low' "$scratch/figure/summary.csv"
+        grep -qx '0,sh,,,1,,,,10.5,,,,,,fine' "$scratch/figure/summary.csv" && grep -qx '0,sh,,,2,,,,20.5,,,,,,fine' "$scratch/figure/summary.csv" &&
+        grep -q '^round,.*,threads,.*,figure,' "$scratch/figure/summary.csv" &&
+        grep -q '^<tr><td>1</td><td>10.5 .*<td>fastest</td></tr>$' "$scratch/figure/compare.html"
 }
 of_ranks() {
     any 0 "2 configurations" --ranks 1,2 --figure 'took .*of ([0-9]+)' --rounds 1 --output ranks -- sh any.sh '{ranks}' &&
-        grep -q '^0,sh,,1,,,,,1,' "$scratch/ranks/runs.csv" && grep -q '^0,sh,,2,,,,,2,' "$scratch/ranks/runs.csv"
+        grep -q '^0,sh,,1,,,,,1,' "$scratch/ranks/summary.csv" && grep -q '^0,sh,,2,,,,,2,' "$scratch/ranks/summary.csv"
 }
 # Each beside members that are fine, whose figures stay.
 program_fails() {
@@ -289,18 +282,47 @@ program_fails() {
     any 1 "6 runs failed" --threads 1,2,3,4 --timeout 1 --figure 'took ([0-9.]+) s of' --rounds 2 --output fails -- sh any.sh '{threads}'
     failed=$?
     unset FAIL SLEEP SILENT
-    cat "$scratch/fails/compare.md"
-    test $failed = 0 && grep -q "threads 2: 2 of 2 runs; the first: exit status 3: any: no such thing" "$scratch/fails/compare.md" &&
-        grep -q "threads 3: 2 of 2 runs; the first: stopped after 1 s (--timeout)" "$scratch/fails/compare.md" &&
-        grep -q "threads 4: 2 of 2 runs; the first: exit status 0, but --figure finds no number above 0: bye" "$scratch/fails/compare.md" &&
-        test "$(grep -c ',1,.*,10.5,.*,fine$' "$scratch/fails/runs.csv")" = 2
+    grep '^- ' "$scratch/fails/compare.html"
+    test $failed = 0 && grep -q "threads 2: 2 of 2 runs; the first: exit status 3: any: no such thing" "$scratch/fails/compare.html" &&
+        grep -q "threads 3: 2 of 2 runs; the first: stopped after 1 s (--timeout)" "$scratch/fails/compare.html" &&
+        grep -q "threads 4: 2 of 2 runs; the first: exit status 0, but --figure finds no number above 0: bye" "$scratch/fails/compare.html" &&
+        test "$(grep -c ',1,.*,10.5,.*,fine$' "$scratch/fails/summary.csv")" = 2
 }
 rank_fails() { # mpirun's words behind the program's are not its last
     FAIL=2 any 1 "exit status 3: any: no such thing" --threads 2 --ranks 2 --rounds 1 --output rank -- sh any.sh 1
 }
+# A program of duite leaves a report, and the best and the worst leave traces for the page.
+reported() {
+    any 0 ": 39 figure" --threads 1,2 --figure key=tasks --same key=ranks --rounds 2 --output reported -- "$bin/tests/examples/dot" || return 1
+    cat "$scratch/reported/summary.csv"
+    test "$(grep -c ',39,,[0-9]*,0,0,1,fine$' "$scratch/reported/summary.csv")" = 4 && test "$(ls "$scratch/reported/"*.trace | wc -l)" = 2 &&
+        grep -q "^<h3>The best: .*dot, threads [12]</h3>" "$scratch/reported/compare.html" &&
+        grep -q "^<p>A run with a trace.*Lower bound: no schedule of its bodies on [12] workers takes less" "$scratch/reported/compare.html" &&
+        grep -q "How long bodies took, by kernel: area the best" "$scratch/reported/compare.html" &&
+        test "$(grep -c "critical path" "$scratch/reported/compare.html")" -ge 2 && ! grep -q 'href=\|src=' "$scratch/reported/compare.html"
+}
+reported_time() { # its time is in bodies and outside of them; what ran with another list keeps its own trace
+    any 0 "4 configurations" --threads 1,2 --vary DUITE_SEED=1,2 --rounds 1 --output time -- "$bin/tests/examples/dot" &&
+        test "$(grep -c '^0,[^,]*dot,,,[12],,,,[12],0[.0-9]*,[0-9.e-]*,[0-9]*,0,0,,fine$' "$scratch/time/summary.csv")" = 4
+}
+graph_key() { refused 0 "figure" tree --figure key=tasks --threads 1 --rounds 1 --output k && grep -q '^0,tree,.*,[1-9][0-9]*,,.*,[0-9a-f]\{16\},fine$' "$scratch/k/summary.csv"; }
+differs() { # round 2 of one member; what --vary changes may differ
+    any 0 "2 configurations" --vary KIND=a,b --same 'is ([a-z]+)' --rounds 2 --output same -- sh -c 'echo it is $KIND' || return 1
+    any 1 "WRONG: round 2 of sh has the result [0-9]*, not [0-9]* as round 1 of sh" --vary KIND=a \
+        --same 'ran ([0-9]+)' --rounds 2 --output differs -- sh -c 'echo >> count; echo ran $(wc -l < count)' || return 1
+    grep -q '^Warning: WRONG: ' "$scratch/differs/compare.html" && test "$(grep -c ',fine$' "$scratch/differs/summary.csv")" = 2
+}
 ok "any program: lists by the environment and in its arguments" program
 ok "... it goes on, and grows" program_again
 ok "... its figure is a number in its output" figure
+ok "... or a key of its report, and the page has its traces" reported
+ok "... whose time in bodies it tells" reported_time
+ok "... as does that of a graph" graph_key
+ok "... a key that the report has not" any 1 "its report has no number above 0 of the key cost" --figure key=cost --rounds 1 --output cost \
+    -- "$bin/tests/examples/dot"
+ok "... and no report" any 1 "it left no report, which has the key tasks: it is no program of duite" --figure key=tasks --rounds 1 --output no -- true
+ok "... results that differ from run to run" differs
+ok "... or are not found" any 1 "exit status 0, but --same finds nothing" --same 'sum ([0-9]+)' --rounds 1 --output not -- true
 ok "... ranks by mpirun" of_ranks
 ok "... one that fails, hangs, or prints no figure" program_fails
 ok "... on a rank of two" rank_fails
@@ -311,8 +333,9 @@ ok "a variable without values" any 2 "vary KIND: NAME=VALUE,VALUE,... is expecte
 ok "a name that no variable has" any 2 "vary a b: a name has letters, digits and _ only" --vary 'a b=1' -- sh any.sh
 ok "a variable twice" any 2 "vary KIND: there is a list of this name already" --vary KIND=1 --vary KIND=2 -- sh any.sh
 ok "a figure that is no regular expression" any 2 "figure (: " --figure '(' -- sh any.sh
-ok "a figure without a group" any 2 "a group in parentheses is expected around the number" --figure 'took' -- sh any.sh
-ok "a figure without a program" any 2 "figure is for a program after --" tree --figure '(.)'
+ok "a figure without a group" any 2 "a group in parentheses is expected around what is looked for" --figure 'took' -- sh any.sh
+ok "a figure without a program" any 2 "a regular expression is for a program after --; key=KEY is for all" tree --figure '(.)'
+ok "a key that none can have" any 2 "figure key=a b: a key has letters, digits and _ only" --figure 'key=a b' -- sh any.sh
 ok "METG of a program" any 2 "metg is for graphs, not for a program after --" --metg -- sh any.sh
 ok "a scene's setting for a program" any 2 "are for scenes and graphs, not for a program" --steps 3 -- sh any.sh
 ok "a graph beside a program" any 2 "tree: a scene or graph beside a program" tree -- sh any.sh

@@ -32,4 +32,7 @@ bool chart_size_parse(const char *text, struct chart_options *options);
 int chart_write_svg(const struct trace_run *run, const struct chart_options *options, FILE *file);
 int chart_write_png(const struct trace_run *run, const struct chart_options *options, FILE *file);
 
+/* Writes text as HTML and SVG have it between tags. */
+void chart_escape(FILE *file, const char *text);
+
 #endif

@@ -67,9 +67,9 @@ static void svg_line(void *context, const double from[2], const double to[2], do
     fprintf(((struct svg *)context)->file, "M%.1f %.1fL%.1f %.1f", from[0], from[1], to[0], to[1]);
 }
 
-static void svg_escape(FILE *file, const char *text)
+void chart_escape(FILE *file, const char *text)
 {
-    for (; *text; text++) {
+    for (; *text; text++)
         if (*text == '&')
             fputs("&amp;", file);
         else if (*text == '<')
@@ -78,7 +78,6 @@ static void svg_escape(FILE *file, const char *text)
             fputs("&gt;", file);
         else
             fputc(*text, file);
-    }
 }
 
 static void svg_text(void *context, double x, double y, enum chart_anchor anchor, int size,
@@ -89,7 +88,7 @@ static void svg_text(void *context, double x, double y, enum chart_anchor anchor
     svg_close(svg);
     fprintf(svg->file, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" font-size=\"%d\">", x, y,
             anchors[anchor], size);
-    svg_escape(svg->file, text);
+    chart_escape(svg->file, text);
     fputs("</text>\n", svg->file);
 }
 
@@ -106,7 +105,7 @@ int chart_write_svg(const struct trace_run *run, const struct chart_options *opt
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" width=\"%d\" "
             "height=\"%d\" font-family=\"Helvetica, Arial, sans-serif\" role=\"img\">\n<title>",
             width, height, width, height);
-    svg_escape(file, chart_title(chart));
+    chart_escape(file, chart_title(chart));
     fputs("</title>\n", file);
     code = chart_draw(chart, &canvas);
     svg_close(&svg);

@@ -1,6 +1,6 @@
-/* runs.csv: comments that say what is compared, where and by which build; a line of names; and a
- * line for each run, written and synchronised when it is over. A last line that was cut off is
- * dropped, and the run made again. */
+/* summary.csv: a line of names, and a line for each run, written and synchronised when it is over.
+ * A last line that was cut off is dropped, and the run made again. about.txt beside it says what is
+ * compared, where and by which build. */
 #include "tools/compare/compare.h"
 #include "tools/compare/program.h"
 
@@ -58,11 +58,13 @@ void compare_describe(FILE *out, const char *before)
 /* The settings that all runs of a comparison share; lists and rounds may grow. */
 static void print_specification(const struct compare *compare, FILE *out)
 {
-    fprintf(out, "# compares:");
+    fprintf(out, "compares:");
     for (int d = COMPARE_DIMENSIONS; d < compare->dimensions; d++)
         fprintf(out, " --vary %s", compare->name[d]);
     if (compare->figure)
         fprintf(out, " --figure %s", compare->figure);
+    if (compare->same)
+        fprintf(out, " --same %s", compare->same);
     if (compare->program) {
         fprintf(out, " seed=%" PRIu64 " -- ", compare->seed);
         program_print(compare, out);
@@ -76,9 +78,22 @@ static void print_specification(const struct compare *compare, FILE *out)
             compare->steps, compare->seed);
 }
 
-static void path_of(const struct compare *compare, char *path, size_t size)
+/* Opens a file of the folder; NULL: said on stderr, unless it need not be there (mode "r"). */
+static FILE *open_file(const struct compare *compare, const char *name, const char *mode)
 {
-    snprintf(path, size, "%s/runs.csv", compare->folder);
+    char path[LINE];
+    snprintf(path, sizeof path, "%s/%s", compare->folder, name);
+    FILE *file = fopen(path, mode);
+    if (!file && *mode != 'r')
+        fprintf(stderr, "duite-compare: %s: %s\n", path, strerror(errno));
+    return file;
+}
+
+static int cannot_keep(const struct compare *compare)
+{
+    fprintf(stderr, "duite-compare: %s/summary.csv: %s; what was written before is kept\n",
+            compare->folder, strerror(errno));
+    return 1;
 }
 
 static struct compare_config *find(struct compare *compare, char *const *field)
@@ -91,6 +106,11 @@ static struct compare_config *find(struct compare *compare, char *const *field)
             return &compare->config[i];
     }
     return NULL;
+}
+
+static double number_of(const char *field)
+{
+    return *field ? strtod(field, NULL) : NAN;
 }
 
 /* A run that failed is made again. False: the run is none of this comparison. */
@@ -113,18 +133,18 @@ static bool take_line(struct compare *compare, char *line)
     if (round >= compare->rounds || strcmp(figure[6], "fine") != 0)
         return true;
     struct compare_run *run = &config->run[round];
-    *run = (struct compare_run){.seconds = strtod(figure[0], NULL),
-                                .bodies = *figure[1] ? strtod(figure[1], NULL) : NAN,
-                                .stolen = strtod(figure[2], NULL),
-                                .messages = strtod(figure[3], NULL),
-                                .bytes = strtod(figure[4], NULL),
+    *run = (struct compare_run){.seconds = number_of(figure[0]),
+                                .bodies = number_of(figure[1]),
+                                .stolen = number_of(figure[2]),
+                                .messages = number_of(figure[3]),
+                                .bytes = number_of(figure[4]),
                                 .done = true,
                                 .fine = true};
-    snprintf(run->hash, sizeof run->hash, "%s", figure[5]);
+    snprintf(run->result, sizeof run->result, "%s", figure[5]);
     return true;
 }
 
-#define WARNING "# warning: "
+#define WARNING "warning: "
 
 static void keep_warning(struct compare *compare, const char *warning)
 {
@@ -146,40 +166,53 @@ static bool begins(const char *line, const char *with)
     return !strncmp(line, with, strlen(with));
 }
 
-/* ours: what begin() would write. */
+/* A line of about.txt. ours: what begin() would write. */
 static void look_at(struct compare *compare, const char *ours, char *line, struct found *found)
 {
-    if (begins(line, "# compares:"))
+    if (begins(line, "compares:"))
         found->same = strstr(ours, line);
     const bool other =
-        (begins(line, "# build: ") || begins(line, "# revision: ")) && !strstr(ours, line);
+        (begins(line, "build: ") || begins(line, "revision: ")) && !strstr(ours, line);
     line[strcspn(line, "\n")] = 0;
     if (other)
-        snprintf(found->other, sizeof found->other, "%.*s", LINE - 1, line + strlen("# "));
+        snprintf(found->other, sizeof found->other, "%.*s", LINE - 1, line);
     if (begins(line, WARNING))
         keep_warning(compare, line + strlen(WARNING));
-    if (*line >= '0' && *line <= '9' && strtoul(line, NULL, 10) >= found->rounds)
-        found->rounds = strtoul(line, NULL, 10) + 1;
-    if (!take_line(compare, line))
-        found->same = false;
+}
+
+static int look_at_about(struct compare *compare, struct found *found)
+{
+    char line[LINE + COMPARE_COMMAND], *ours = NULL;
+    size_t size;
+    FILE *memory = open_memstream(&ours, &size), *in = open_file(compare, "about.txt", "r");
+    if (memory) {
+        print_specification(compare, memory);
+        compare_describe(memory, "");
+        fclose(memory);
+    }
+    while (memory && in && fgets(line, sizeof line, in))
+        look_at(compare, ours, line, found);
+    if (in)
+        fclose(in);
+    free(ours);
+    return !memory;
 }
 
 /* Takes over whole lines. */
 static int take_over(struct compare *compare, FILE *in, struct found *found)
 {
-    char line[LINE + COMPARE_COMMAND], *ours = NULL;
-    size_t size, taken = 0;
-    FILE *memory = open_memstream(&ours, &size);
-    if (!memory)
+    char line[LINE + COMPARE_COMMAND];
+    size_t taken = 0;
+    if (look_at_about(compare, found))
         return 1;
-    print_specification(compare, memory);
-    compare_describe(memory, "# ");
-    fclose(memory);
     while (fgets(line, sizeof line, in) && strchr(line, '\n')) {
         found->whole = ftell(in);
-        look_at(compare, ours, line, found);
+        if (*line >= '0' && *line <= '9' && strtoul(line, NULL, 10) >= found->rounds)
+            found->rounds = strtoul(line, NULL, 10) + 1;
+        line[strcspn(line, "\n")] = 0;
+        if (!take_line(compare, line))
+            found->same = false;
     }
-    free(ours);
     for (size_t i = 0; i < compare->n; i++)
         for (size_t r = 0; r < compare->rounds; r++)
             taken += compare->config[i].run[r].done;
@@ -224,37 +257,37 @@ static void begin(struct compare *compare)
     char date[40];
     time_t now = time(NULL);
     strftime(date, sizeof date, "%Y-%m-%d %H:%M:%S UTC", gmtime(&now));
-    print_specification(compare, compare->journal);
-    fprintf(compare->journal, "# date: %s\n", date);
-    compare_describe(compare->journal, "# ");
+    print_specification(compare, compare->about);
+    fprintf(compare->about, "date: %s\n", date);
+    compare_describe(compare->about, "");
     fprintf(compare->journal, "round");
     for (int d = 0; d < compare->dimensions; d++)
         fprintf(compare->journal, ",%s", compare->name[d]);
-    fprintf(compare->journal, ",%s,seconds_in_bodies,stolen,messages,bytes,hash,status\n",
+    fprintf(compare->journal, ",%s,seconds_in_bodies,stolen,messages,bytes,result,status\n",
             compare->figure ? "figure" : "seconds");
 }
 
 int compare_journal_open(struct compare *compare)
 {
-    char path[LINE], text[LINE + 60];
+    char text[LINE + 60];
     struct found found = {.whole = 0};
-    path_of(compare, path, sizeof path);
-    FILE *in = fopen(path, "r");
-    int failed = in ? take_over(compare, in, &found) : 0;
+    FILE *in = open_file(compare, "summary.csv", "r");
+    const int failed = in ? take_over(compare, in, &found) : 0;
     if (in)
         fclose(in);
     if (failed)
         return 1;
-    compare->journal = fopen(path, found.whole ? "r+" : "w");
-    if (compare->journal && found.whole &&
-        (ftruncate(fileno(compare->journal), found.whole) || fseek(compare->journal, 0, SEEK_END)))
-        failed = 1;
-    if (compare->journal && !found.whole)
-        begin(compare);
-    if (!compare->journal || failed || fflush(compare->journal)) {
-        fprintf(stderr, "duite-compare: %s: %s\n", path, strerror(errno));
+    compare->about = open_file(compare, "about.txt", found.whole ? "a" : "w");
+    compare->journal =
+        compare->about ? open_file(compare, "summary.csv", found.whole ? "a" : "w") : NULL;
+    if (!compare->journal)
         return 1;
-    }
+    if (found.whole && ftruncate(fileno(compare->journal), found.whole))
+        return cannot_keep(compare);
+    if (!found.whole)
+        begin(compare);
+    if (fflush(compare->about) || fflush(compare->journal))
+        return cannot_keep(compare);
     warn_of_later(compare, &found);
     if (*found.other) {
         snprintf(text, sizeof text, "runs that were there already are of another build: %s",
@@ -264,25 +297,25 @@ int compare_journal_open(struct compare *compare)
     return 0;
 }
 
+static void put_number(FILE *out, double number)
+{
+    fputc(',', out);
+    if (isfinite(number))
+        fprintf(out, "%.12g", number);
+}
+
 int compare_journal_add(struct compare *compare, const struct compare_config *config, size_t round)
 {
     const struct compare_run *run = &config->run[round];
+    const double number[] = {run->seconds, run->bodies, run->stolen, run->messages, run->bytes};
     FILE *out = compare->journal;
     fprintf(out, "%zu", round);
     for (int d = 0; d < compare->dimensions; d++)
         fprintf(out, ",%s", config->value[d]);
-    if (run->fine && compare->program)
-        fprintf(out, ",%.9g,,,,,,fine\n", run->seconds);
-    else if (run->fine)
-        fprintf(out, ",%.9g,%.9g,%.0f,%.0f,%.0f,%s,fine\n", run->seconds, run->bodies, run->stolen,
-                run->messages, run->bytes, run->hash);
-    else
-        fputs(",,,,,,,failed\n", out);
-    if (!fflush(out) && !fsync(fileno(out)))
-        return 0;
-    fprintf(stderr, "duite-compare: %s/runs.csv: %s; what was written before is kept\n",
-            compare->folder, strerror(errno));
-    return 1;
+    for (size_t i = 0; i < sizeof number / sizeof *number; i++)
+        put_number(out, run->fine ? number[i] : NAN);
+    fprintf(out, ",%s,%s\n", run->fine ? run->result : "", run->fine ? "fine" : "failed");
+    return fflush(out) || fsync(fileno(out)) ? cannot_keep(compare) : 0;
 }
 
 void compare_journal_warn(struct compare *compare, const char *warning)
@@ -291,11 +324,14 @@ void compare_journal_warn(struct compare *compare, const char *warning)
         return;
     fprintf(stderr, "duite-compare: warning: %s\n", warning);
     keep_warning(compare, warning);
-    fprintf(compare->journal, WARNING "%s\n", warning);
+    fprintf(compare->about, WARNING "%s\n", warning);
+    fflush(compare->about);
 }
 
 void compare_journal_close(struct compare *compare)
 {
+    if (compare->about)
+        fclose(compare->about);
     if (compare->journal)
         fclose(compare->journal);
 }

@@ -2,8 +2,10 @@
  * may be for a runtime to use half of the machine. A task's granularity is the time of all cores
  * for it, overhead included; efficiency is the work that cores do in a second, as a part of the
  * most that any member does on this subject at any grain. */
+#include "tools/chart/chart.h"
 #include "tools/compare/compare.h"
 #include "tools/compare/graph.h"
+#include "tools/compare/plot.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -168,6 +170,19 @@ static void print_name(const struct compare *compare, const struct compare_confi
             fprintf(out, " %s %s", compare->name[d], member->value[d]);
 }
 
+/* To be freed; NULL without memory. */
+static char *name_of(const struct compare *compare, const struct compare_config *member)
+{
+    char *name = NULL;
+    size_t size;
+    FILE *memory = open_memstream(&name, &size);
+    if (!memory)
+        return NULL;
+    print_name(compare, member, memory);
+    fclose(memory);
+    return name;
+}
+
 static void print_points(const struct compare *compare, const struct curve *curve, FILE *out)
 {
     for (size_t k = 0; k < curve->n; k++) {
@@ -178,36 +193,34 @@ static void print_points(const struct compare *compare, const struct curve *curv
     }
 }
 
-static void plot(const struct compare *compare, size_t subject, const struct curve *curve, size_t n,
-                 FILE *out)
+/* 1 without memory. */
+static int plot(const struct compare *compare, size_t subject, const struct curve *curve, size_t n,
+                FILE *out)
 {
-    for (size_t i = 0; i < n; i++) {
-        fprintf(out, "$curve%zu << EOD\n", i);
-        for (size_t k = 0; k < curve[i].n; k++)
-            fprintf(out, "%g %g\n", 1e6 * curve[i].point[k].granularity,
-                    curve[i].point[k].efficiency);
-        fputs("EOD\n", out);
+    char title[100];
+    struct plot_line *line = calloc(n, sizeof *line);
+    struct plot_point *point = calloc(n * COMPARE_MOST, sizeof *point);
+    const struct plot plot = {
+        title, "microseconds of a core a task", "efficiency", true, false, line, n};
+    int failed = !line || !point;
+    snprintf(title, sizeof title, "%s: efficiency over the granularity of tasks",
+             compare->list[SUBJECT].item[subject]);
+    for (size_t i = 0; i < n && !failed; i++) {
+        struct plot_point *to = point + i * COMPARE_MOST;
+        line[i] = (struct plot_line){name_of(compare, curve[i].member), to, curve[i].n};
+        failed = !line[i].name;
+        for (size_t k = 0; k < curve[i].n; k++) {
+            const double y = curve[i].point[k].efficiency;
+            to[k] = (struct plot_point){1e6 * curve[i].point[k].granularity, y, y, y};
+        }
     }
-    fprintf(out, "set title '%s'\nplot 0.5 lc 'gray' notitle",
-            compare->list[SUBJECT].item[subject]);
-    for (size_t i = 0; i < n; i++) {
-        fprintf(out, ", $curve%zu using 1:2 with linespoints lw 2 title '", i);
-        print_name(compare, curve[i].member, out);
-        fputc('\'', out);
-    }
-    fputc('\n', out);
-}
-
-static void begin_plots(const struct compare *compare, FILE *out)
-{
-    enum { COLUMNS = 3, WIDTH = 480, HEIGHT = 400 };
-    const size_t n = compare->list[SUBJECT].n, rows = (n + COLUMNS - 1) / COLUMNS;
-    const size_t columns = n < COLUMNS ? n : COLUMNS;
-    fprintf(out,
-            "set terminal pngcairo size %zu,%zu\nset output 'metg.png'\nset multiplot layout "
-            "%zu,%zu\nset logscale x\nset yrange [0:1.1]\nset key bottom right noenhanced\nset "
-            "xlabel 'microseconds of a core a task'\nset ylabel 'efficiency'\n",
-            columns * WIDTH, rows * HEIGHT, rows, columns);
+    if (!failed)
+        plot_lines(&plot, out);
+    for (size_t i = 0; i < n && line; i++)
+        free((char *)line[i].name);
+    free(line);
+    free(point);
+    return failed;
 }
 
 static void print_row(const struct compare *compare, size_t subject, const struct curve *curve,
@@ -232,43 +245,52 @@ static void print_row(const struct compare *compare, size_t subject, const struc
     fputc('\n', out);
 }
 
-static void print_all(const struct compare *compare, struct curve *curve, FILE *page, FILE *csv,
-                      FILE *plots)
+static int print_all(const struct compare *compare, struct curve *curve, FILE *table, FILE *plots,
+                     FILE *csv)
 {
-    fputs("# How short tasks may be\n\nThe granularity of tasks (microseconds of a core, overhead "
-          "included) with which all cores do half of the most work that any member does; between "
-          "two grains, on a line of logarithms. compare.md has the runs and where they ran.\n\n",
-          page);
+    int failed = 0;
     for (int d = 0; d < compare->dimensions; d++)
         if (d != GRAIN)
             fprintf(csv, "%s,", compare->name[d]);
     fputs("granularity_us,efficiency\n", csv);
-    begin_plots(compare, plots);
-    putchar('\n');
-    for (size_t s = 0; s < compare->list[SUBJECT].n; s++) {
+    for (size_t s = 0; s < compare->list[SUBJECT].n && !failed; s++) {
         const size_t n = make_curves(compare, compare->list[SUBJECT].item[s], curve);
         for (size_t i = 0; i < n; i++)
             print_points(compare, &curve[i], csv);
-        plot(compare, s, curve, n, plots);
-        print_row(compare, s, curve, n, page);
-        print_row(compare, s, curve, n, stdout);
+        print_row(compare, s, curve, n, table);
+        failed = plot(compare, s, curve, n, plots);
     }
-    fputs("unset multiplot\n", plots);
+    return failed;
 }
 
-int compare_metg(const struct compare *compare)
+static void print_section(const char *table, const char *plots, FILE *page)
+{
+    fputs("<h2>How short tasks may be</h2>\n<p>The granularity of tasks (microseconds of a core, "
+          "overhead included) with which all cores do half of the most work that any member does; "
+          "between two grains, on a line of logarithms.</p>\n<pre>\n",
+          page);
+    chart_escape(page, table);
+    fprintf(page, "</pre>\n%s", plots);
+    printf("\n%s", table);
+}
+
+int compare_metg(const struct compare *compare, FILE *page)
 {
     struct curve *curve = calloc(compare->n, sizeof *curve);
-    FILE *page = curve ? compare_open(compare, "metg.md") : NULL;
-    FILE *csv = page ? compare_open(compare, "metg.csv") : NULL;
-    FILE *plots = csv ? compare_open(compare, "metg.gp") : NULL;
-    if (plots)
-        print_all(compare, curve, page, csv, plots);
-    int failed = !plots || compare_close(compare, "metg.gp", plots);
-    if (!failed && compare_draw(compare, "metg.gp"))
-        fputs("\n![efficiency over granularity](metg.png)\n", page);
+    char *text[2] = {NULL, NULL}; /* the table, the plots */
+    size_t size;
+    FILE *table = open_memstream(&text[0], &size), *plots = open_memstream(&text[1], &size);
+    FILE *csv = curve && table && plots ? compare_open(compare, "metg.csv") : NULL;
+    int failed = !csv || print_all(compare, curve, table, plots, csv);
     failed = (csv && compare_close(compare, "metg.csv", csv)) || failed;
-    failed = (page && compare_close(compare, "metg.md", page)) || failed;
+    if (table)
+        fclose(table);
+    if (plots)
+        fclose(plots);
+    if (!failed)
+        print_section(text[0], text[1], page);
+    free(text[0]);
+    free(text[1]);
     free(curve);
     return failed;
 }

@@ -1,8 +1,6 @@
 /* Braces around anything but a name, or behind a $, are the program's own. */
 #include "tools/compare/program.h"
 
-#include <math.h>
-#include <regex.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,50 +88,6 @@ void program_environment(const struct compare *compare, const struct compare_con
             setenv(variables[i].variable, config->value[variables[i].dimension], 1);
     for (int d = COMPARE_DIMENSIONS; d < compare->dimensions; d++)
         setenv(compare->name[d], config->value[d], 1);
-}
-
-/* ---- The figure ---- */
-
-const char *program_figure_wrong(const char *figure, char *text, size_t size)
-{
-    regex_t regex;
-    const int error = regcomp(&regex, figure, REG_EXTENDED);
-    if (error) {
-        regerror(error, &regex, text, size);
-        return text;
-    }
-    const size_t groups = regex.re_nsub;
-    regfree(&regex);
-    if (groups)
-        return NULL;
-    snprintf(text, size, "a group in parentheses is expected around the number");
-    return text;
-}
-
-double program_figure(const char *figure, const char *log)
-{
-    regex_t regex;
-    regmatch_t match[2];
-    char *line = NULL, *end;
-    size_t room = 0;
-    double found = NAN;
-    FILE *in = fopen(log, "r");
-    if (in && !regcomp(&regex, figure, REG_EXTENDED)) {
-        while (getline(&line, &room, in) > 0) {
-            line[strcspn(line, "\n")] = 0;
-            if (regexec(&regex, line, 2, match, 0) || match[1].rm_so < 0)
-                continue;
-            const char *text = line + match[1].rm_so;
-            const double number = strtod(text, &end);
-            if (end == line + match[1].rm_eo && end > text && isfinite(number))
-                found = number;
-        }
-        regfree(&regex);
-    }
-    free(line);
-    if (in)
-        fclose(in);
-    return found;
 }
 
 /* ---- The command ---- */

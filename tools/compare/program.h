@@ -4,7 +4,7 @@
 #include "tools/compare/compare.h"
 
 /* A program of the user's, behind --: lists reach it through the environment and as {names} in its
- * words, and its figure is its time or a number in its output. */
+ * words. */
 
 /* The letters of names. */
 #define PROGRAM_NAME "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_"
@@ -19,11 +19,6 @@ char *program_fill(const struct compare *compare, const struct compare_config *c
                    const char *word);
 /* Sets the variables of --vary and, for a program of the user's, those of the lists. */
 void program_environment(const struct compare *compare, const struct compare_config *config);
-
-/* NULL if --figure can be this, else the reason, written to text. */
-const char *program_figure_wrong(const char *figure, char *text, size_t size);
-/* The number in the last line of the log that has one; NAN: none has. */
-double program_figure(const char *figure, const char *log);
 
 /* The program and its arguments, in one line. */
 void program_print(const struct compare *compare, FILE *out);

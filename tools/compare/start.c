@@ -4,13 +4,16 @@
  * that failed to failed.log. */
 #include "tools/compare/compare.h"
 #include "tools/compare/environment.h"
+#include "tools/compare/figure.h"
 #include "tools/compare/program.h"
 
 #include <libgen.h>
 #include <limits.h>
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -197,14 +200,30 @@ static void settle_openmp(bool alone)
     setenv("OMP_WAIT_POLICY", alone ? "active" : "passive", 0);
 }
 
+/* The program may run in another folder. */
+static void set_path(const char *variable, const char *path)
+{
+    char folder[PATH_MAX], whole[2 * PATH_MAX];
+    const bool relative = *path != '/' && getcwd(folder, sizeof folder);
+    snprintf(whole, sizeof whole, "%s%s%s", relative ? folder : "", relative ? "/" : "", path);
+    setenv(variable, whole, 1);
+}
+
+/* A trace is a chart's: one that gets too long ends early, and the run goes on. */
+static void limit_trace(const char *trace)
+{
+    const struct rlimit most = {256 << 20, 256 << 20}; /* bytes: six million tasks */
+    set_path("DUITE_TRACE", trace);
+    setrlimit(RLIMIT_FSIZE, &most);
+    signal(SIGXFSZ, SIG_IGN);
+}
+
 /* Returns the status of waitpid; *seconds from the start to the end. */
 static int execute(const struct compare *compare, const struct compare_config *config,
-                   struct line *line, double *seconds)
+                   struct line *line, const char *report, const char *log, double *seconds)
 {
-    char log[PATH_MAX];
     struct timespec start, end;
     int status = 1;
-    snprintf(log, sizeof log, "%s/run.log", compare->folder);
     fflush(NULL);
     unlink(log); /* the last run's: one that cannot be started says nothing */
     clock_gettime(CLOCK_MONOTONIC, &start);
@@ -214,6 +233,10 @@ static int execute(const struct compare *compare, const struct compare_config *c
         program_environment(compare, config);
         if (!strncmp(config->value[SCHEDULER], "lib", 3))
             settle_openmp(strtod(config->value[THREADS], NULL) <= compare->load.cores);
+        if (compare->program)
+            set_path("DUITE_REPORT", report);
+        if (compare->trace)
+            limit_trace(compare->trace);
         report_standstills_by(compare->timeout);
         const bool closed = freopen("/dev/null", "r", stdin); /* a question would have no answer */
         if (closed && freopen(log, "w", stdout))
@@ -226,41 +249,6 @@ static int execute(const struct compare *compare, const struct compare_config *c
     clock_gettime(CLOCK_MONOTONIC, &end);
     *seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
     return status;
-}
-
-/* The value behind "key": in a flat object; NULL: it is not there. */
-static const char *value_of(const char *text, const char *key)
-{
-    char quoted[60];
-    snprintf(quoted, sizeof quoted, "\"%s\":", key);
-    const char *found = strstr(text, quoted);
-    return found ? found + strlen(quoted) : NULL;
-}
-
-static double number_of(const char *text, const char *key)
-{
-    const char *value = value_of(text, key);
-    return value ? strtod(value, NULL) : 0;
-}
-
-static void read_report(const char *file, struct compare_run *run)
-{
-    char text[20000] = "";
-    FILE *in = fopen(file, "r");
-    size_t n = in ? fread(text, 1, sizeof text - 1, in) : 0;
-    if (in)
-        fclose(in);
-    text[n] = 0;
-    run->seconds = number_of(text, "seconds_per_step");
-    const bool says_busy = value_of(text, "busy_fraction");
-    run->bodies = says_busy ? run->seconds * number_of(text, "busy_fraction") : NAN;
-    run->stolen = number_of(text, "tasks_stolen");
-    run->messages = number_of(text, "messages");
-    run->bytes = number_of(text, "bytes_moved");
-    const char *hash = value_of(text, "state_hash");
-    if (hash)
-        sscanf(hash, " \"%17[0-9a-f]", run->hash);
-    run->fine = run->seconds > 0 && hash;
 }
 
 /* ---- Failures ---- */
@@ -308,25 +296,25 @@ static void find_last_error(const char *log, char *last, size_t size)
         fclose(in);
 }
 
-/* status: of waitpid. `timeout` ends with 124 where it had to stop what it started. */
-static void note_failure(const struct compare *compare, int status, struct compare_run *run)
+/* status: of waitpid. `timeout` ends with 124 where it had to stop what it started. missing: what a
+ * run that ended well has not left. */
+static void note_failure(const struct compare *compare, int status, const char *missing,
+                         struct compare_run *run)
 {
     enum { TIMED_OUT = 124 };
-    char log[PATH_MAX], kept[PATH_MAX], last[1000] = "it said nothing", how[60];
+    char log[PATH_MAX], kept[PATH_MAX], last[1000] = "it said nothing", how[200];
     snprintf(log, sizeof log, "%s/run.log", compare->folder);
     snprintf(kept, sizeof kept, "%s/failed.log", compare->folder);
     find_last_error(log, last, sizeof last);
-    rename(log, kept);
+    if (!compare->trace)
+        rename(log, kept);
     if (WIFSIGNALED(status))
         snprintf(how, sizeof how, "signal %d", WTERMSIG(status));
     else if ((run->stopped = WEXITSTATUS(status) == TIMED_OUT))
         snprintf(how, sizeof how, "stopped after %u s (--timeout)", compare->timeout);
-    else if (!status && compare->figure)
-        snprintf(how, sizeof how, "exit status 0, but --figure finds no number above 0");
-    else if (!status)
-        snprintf(how, sizeof how, "exit status 0, but no figures in its report");
     else
-        snprintf(how, sizeof how, "exit status %d", WEXITSTATUS(status));
+        snprintf(how, sizeof how, "exit status %d%s%s", WEXITSTATUS(status),
+                 missing ? ", but " : "", missing ? missing : "");
     if (asprintf(&run->why, "%s: %s", how, last) < 0)
         run->why = NULL;
 }
@@ -347,23 +335,19 @@ void compare_start(const struct compare *compare, const struct compare_config *c
                    struct compare_run *run)
 {
     struct line line = {0};
-    char report[PATH_MAX], log[PATH_MAX];
+    char report[PATH_MAX], log[PATH_MAX], text[200];
+    const char *missing = NULL;
     double seconds;
     snprintf(report, sizeof report, "%s/run.json", compare->folder);
+    snprintf(log, sizeof log, "%s/run.log", compare->folder);
     unlink(report);
     *run = (struct compare_run){.done = true};
     make_line(compare, config, report, &line);
-    const int status = execute(compare, config, &line, &seconds);
-    if (!status && compare->program) {
-        snprintf(log, sizeof log, "%s/run.log", compare->folder);
-        run->seconds = compare->figure ? program_figure(compare->figure, log) : seconds;
-        run->bodies = NAN;
-        run->fine = run->seconds > 0;
-    } else if (!status) {
-        read_report(report, run);
-    }
+    const int status = execute(compare, config, &line, report, log, &seconds);
+    if (!status)
+        missing = figure_read(compare, report, log, seconds, run, text, sizeof text);
     if (!run->fine)
-        note_failure(compare, status, run);
+        note_failure(compare, status, missing, run);
     for (int i = 0; i < line.n; i++)
         free(line.word[i]);
 }

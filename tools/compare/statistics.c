@@ -3,12 +3,51 @@
 #include "tools/compare/compare.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* ---- Speed-up ---- */
+
+/* A list that a program does not get counts as one. */
+static double count_of(const char *value)
+{
+    return *value ? strtod(value, NULL) : 1;
+}
+
+static bool differ_in_cores_alone(const struct compare *compare, const struct compare_config *a,
+                                  const struct compare_config *b)
+{
+    for (int d = 0; d < compare->dimensions; d++)
+        if (d != RANKS && d != THREADS && a->value[d] != b->value[d])
+            return false;
+    return true;
+}
+
+static void judge_speedup(const struct compare *compare, struct compare_config *config)
+{
+    const struct compare_config *least = config, *most = config;
+    config->speedup = config->efficiency = NAN;
+    for (size_t i = 0; i < compare->n; i++) {
+        const struct compare_config *other = &compare->config[i];
+        if (!other->n || !differ_in_cores_alone(compare, config, other))
+            continue;
+        if (other->cores < least->cores ||
+            (other->cores <= least->cores && other->median < least->median))
+            least = other;
+        if (other->cores > most->cores)
+            most = other;
+    }
+    if (!config->n || !(most->cores > least->cores))
+        return;
+    config->speedup = least->median / config->median;
+    config->efficiency = config->speedup * least->cores / config->cores;
+}
 
 static void judge_alone(const struct compare *compare, struct compare_config *config)
 {
     double seconds[COMPARE_ROUNDS], bodies[COMPARE_ROUNDS], outside[COMPARE_ROUNDS], unused[2];
     config->n = 0;
+    config->cores = count_of(config->value[RANKS]) * count_of(config->value[THREADS]);
     for (size_t r = 0; r < compare->rounds; r++) {
         const struct compare_run *run = &config->run[r];
         if (!run->fine)
@@ -40,6 +79,8 @@ void compare_judge(struct compare *compare)
 {
     for (size_t i = 0; i < compare->n; i++)
         judge_alone(compare, &compare->config[i]);
+    for (size_t i = 0; i < compare->n; i++)
+        judge_speedup(compare, &compare->config[i]);
     for (size_t i = 0; i < compare->n; i++) {
         const struct compare_config *fastest = NULL;
         for (size_t j = 0; j < compare->n; j++) {

@@ -20,6 +20,7 @@ void flow_contact_take(struct flow_state *state)
     contact->root = cloth_alloc(n_blocks + n_obstacles, FLOW_ROOT * sizeof *contact->root, trouble);
     contact->solid = cloth_alloc(n_obstacles, sizeof *contact->solid, trouble);
     contact->found = cloth_alloc(n_blocks, sizeof *contact->found, trouble);
+    contact->failing = cloth_alloc(n_blocks, sizeof *contact->failing, trouble);
     contact->mark = cloth_alloc(n_blocks + n_obstacles, sizeof *contact->mark, trouble);
     contact->said = cloth_alloc(flow_field_numbers(state, FLOW_FIELD_tie_said, 0), 1, trouble);
 }
@@ -31,6 +32,7 @@ void flow_contact_free(struct flow_state *state)
     free(contact->root);
     free(contact->solid);
     free(contact->found);
+    free(contact->failing);
     free(contact->mark);
     free(contact->said);
     free(contact->refs);
@@ -68,15 +70,22 @@ int flow_contact_room(struct flow_state *state, uint32_t n)
 
 /* ---- Lists of contacts ---- */
 
+/* Room for n contacts with an eighth to spare, in whole classes: lists grow from step to step. */
+static uint32_t contact_room_for(uint32_t n)
+{
+    return (n + n / 8) / FLOW_TIE_CLASS * FLOW_TIE_CLASS + FLOW_TIE_CLASS;
+}
+
 void flow_contact_keep(struct flow_state *state, uint32_t block, enum flow_field_id contacts,
                        uint32_t n)
 {
+    enum { TOO_MUCH = 4 }; /* times what is needed: more room goes back */
     struct flow_kept_list *list = flow_kept_list(state, block, contacts);
+    const uint32_t room = contact_room_for(n);
     list->n = n;
-    if (list->room >= n)
+    if (list->room >= n && list->room <= TOO_MUCH * room)
         return;
-    while (list->room < n)
-        list->room = list->room ? 2 * list->room : FLOW_TIE_CLASS;
+    list->room = room;
     flow_object_again(state, contacts, block);
 }
 

@@ -339,19 +339,29 @@ static bool make_longer(struct flow_state *state)
     return any;
 }
 
+/* Adds a meeting's contacts of a side to those of its block. */
+static void pairs_add_found(struct flow_state *state, uint32_t side, double n, double fails)
+{
+    if (!(n > 0))
+        return;
+    state->contact.found[side] += (uint32_t)n;
+    state->contact.failing[side] += (uint32_t)(fails < n ? fails : n);
+}
+
 /* Sums the counts of all meetings, and how many contacts each block is to keep. */
 static void pairs_sum_up(struct flow_state *state, struct flow_seen *seen)
 {
     const struct flow_meetings *meetings = &state->contact.meetings;
-    uint32_t *found = state->contact.found;
-    memset(found, 0, state->flow->tables.n_blocks * sizeof *found);
+    const size_t bytes = state->flow->tables.n_blocks * sizeof(uint32_t);
+    memset(state->contact.found, 0, bytes);
+    memset(state->contact.failing, 0, bytes);
     for (uint32_t i = 0; i < meetings->n; i++) {
         const double *count = meetings->count + FLOW_COUNTS * (size_t)i;
-        seen->fails += (uint64_t)count[FLOW_COUNT_FAILS];
+        const double fails = count[FLOW_COUNT_FAILS];
+        seen->fails += (uint64_t)fails;
         seen->contacts += (uint64_t)count[FLOW_COUNT_ALL];
-        found[meetings->all[i].side[0]] += (uint32_t)count[FLOW_COUNT_FIRST];
-        if (count[FLOW_COUNT_SECOND] > 0)
-            found[meetings->all[i].side[1]] += (uint32_t)count[FLOW_COUNT_SECOND];
+        pairs_add_found(state, meetings->all[i].side[0], count[FLOW_COUNT_FIRST], fails);
+        pairs_add_found(state, meetings->all[i].side[1], count[FLOW_COUNT_SECOND], fails);
     }
 }
 

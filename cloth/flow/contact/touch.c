@@ -396,15 +396,17 @@ static size_t list_others(const struct flow_state *state, uint32_t block, duite_
 
 static int fork_touch(struct flow_state *state, struct touch_args *args)
 {
-    const uint32_t block = args->block, found = state->contact.found[block];
-    const uint32_t before = args->accept ? 0 : flow_kept_list(state, block, FLOW_FIELD_contacts)->n;
-    flow_contact_keep(state, block, FLOW_FIELD_contacts_next, before + found);
+    const uint32_t block = args->block;
+    const uint32_t n = args->accept ? state->contact.found[block]
+                                    : flow_kept_list(state, block, FLOW_FIELD_contacts)->n +
+                                          state->contact.failing[block];
+    flow_contact_keep(state, block, FLOW_FIELD_contacts_next, n);
     args->room = flow_kept_list(state, block, FLOW_FIELD_contacts_next)->room;
     duite_object *rest = flow_contact_rest(state);
-    const size_t n = list_meetings(state, block, rest);
+    const size_t n_meetings = list_meetings(state, block, rest);
     args->n_others =
-        args->accept && state->flow->may_pinch ? list_others(state, block, rest + n) : 0;
-    const struct flow_with with = {.n = n + args->n_others, .rest = rest};
+        args->accept && state->flow->may_pinch ? list_others(state, block, rest + n_meetings) : 0;
+    const struct flow_with with = {.n = n_meetings + args->n_others, .rest = rest};
     return flow_fork_with(state, &flow_kernel_touch, args, &with);
 }
 

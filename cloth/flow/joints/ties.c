@@ -31,7 +31,7 @@ static size_t lay_ties(size_t n_rows, const struct flow_tie_room *room, void *me
     return rest.used;
 }
 
-/* What is needed while it is made: counts of groups, a bit for each row, keys. */
+/* Needed while it is made: counts of groups, a bit for each row, keys. */
 struct sorting {
     uint32_t *count;
     uint64_t *marks, *keys;

@@ -218,9 +218,10 @@ struct flow_contact_state {
     bool kept_begin; /* kept_contacts are those where the step began; else `contacts` are */
     struct contact_solid *solid; /* an obstacle that is no body: where it is over the step */
     struct flow_bodies_now bodies;
-    double *root;    /* a block, then an obstacle that is a body: the box around its skin over the
-                      * step, low and high, m */
-    uint32_t *found; /* a block: contacts that the last look found */
+    double *root; /* a block, then an obstacle that is a body: the box around its skin over the
+                   * step, low and high, m */
+    /* a block: contacts that the last look found; at most so many of them fail */
+    uint32_t *found, *failing;
     unsigned char *mark; /* a side: room */
     unsigned char *said; /* the records of all blocks' ties */
     duite_object *refs;  /* room for the lists of meetings of any task */

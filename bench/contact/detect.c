@@ -5,7 +5,7 @@
 #include "bench/contact/shapes.h"
 
 #include "cloth/contact/body.h"
-#include "cloth/contact/pair.h"
+#include "cloth/contact/certificate.h"
 #include "cloth/flow/contact/skin.h"
 #include "cloth/flow/state/flow.h"
 
@@ -16,6 +16,7 @@
 #include <string.h>
 
 enum { GRAIN = 1000, MOST_THREADS = 64 };
+static const double THICKNESS = 1e-3; /* m */
 
 struct block {
     void *table, *boxes;
@@ -84,19 +85,20 @@ static int make_flow(struct sheet *sheet, unsigned side)
     sheet->material =
         (struct model_material){.name = "cloth", .density = 0.2, .stretch = 50, .shear = 25};
     sheet->cloth = (struct model_cloth){.name = "sheet"};
-    sheet->model = (struct model){.name = "sheet",
-                                  .n_materials = 1,
-                                  .n_cloths = 1,
-                                  .materials = &sheet->material,
-                                  .cloths = &sheet->cloth,
-                                  .h = 0.001,
-                                  .end = 0.001,
-                                  .fps = 1,
-                                  .integrator = MODEL_IMPLICIT_EULER,
-                                  .tolerance = 1e-3,
-                                  .max_iterations = 1,
-                                  .grain = GRAIN,
-                                  .contact = {.mode = MODEL_CONTACT_CERTIFIED, .thickness = 1e-3}};
+    sheet->model =
+        (struct model){.name = "sheet",
+                       .n_materials = 1,
+                       .n_cloths = 1,
+                       .materials = &sheet->material,
+                       .cloths = &sheet->cloth,
+                       .h = 0.001,
+                       .end = 0.001,
+                       .fps = 1,
+                       .integrator = MODEL_IMPLICIT_EULER,
+                       .tolerance = 1e-3,
+                       .max_iterations = 1,
+                       .grain = GRAIN,
+                       .contact = {.mode = MODEL_CONTACT_CERTIFIED, .thickness = THICKNESS}};
     struct cloth_error error = {0};
     int code = mesh_grid(&sheet->cloth.mesh, 1, 1, side, side, MESH_SAME, &error);
     if (!code)
@@ -170,6 +172,8 @@ static void meet(struct sheet *sheet, const uint32_t pair[2])
                                         .x = block->x,
                                         .y = block->x + block->skin.n_points};
     }
+    side[0].parts = contact_enough(THICKNESS);
+    side[0].ridges = true;
     contact_query(side, side + 1, SHAPES_REACH, visit, &meeting);
     atomic_fetch_add(&sheet->near, meeting.near);
     atomic_fetch_add(&sheet->visited, meeting.visited);

@@ -1,13 +1,10 @@
-/* Only the two comparisons with their bound on rounding, here and in certificate_four.c, make a
- * pair certain. The choice of direction and plane changes how many pairs are certain, never
- * correctness. */
+/* The cut of a pair. Only the comparisons of certificate_four.c make a pair certain: the choice of
+ * direction and plane changes how many pairs are certain, never correctness. */
 #include "cloth/contact/certificate.h"
 
 #include "cloth/contact/direction.h"
 
 #include <math.h>
-
-/* ---- Certainty ---- */
 
 PHYS_INLINE double lanes_size(const struct contact_lanes *x, const struct contact_lanes *y)
 {
@@ -19,124 +16,12 @@ PHYS_INLINE double lanes_size(const struct contact_lanes *x, const struct contac
     return phys_lanes(&sum);
 }
 
-/* The corners at both ends, against the first. */
-struct ends {
-    struct contact_lanes x, y;
-};
-
 /* The least f(1), m. */
 PHYS_INLINE double least_after(double before, double thickness)
 {
     const double half = 0.5 * before, part = 0.1 * thickness;
     return half < part ? half : part;
 }
-
-/* A direction: f(0) and f(1) along it, all times its length. */
-struct along {
-    double length, before, after;
-};
-
-PHYS_INLINE void along_measure(enum contact_pair pair, const struct ends *ends, const phys_vec *n,
-                               struct along *to)
-{
-    phys_vec before, after;
-    contact_along(&ends->x, n, &before);
-    contact_along(&ends->y, n, &after);
-    to->before = contact_apart(pair, &before);
-    to->after = contact_apart(pair, &after);
-    to->length = sqrt(phys_dot(n, n));
-}
-
-PHYS_INLINE double along_gap(const struct along *a)
-{
-    return a->length > CONTACT_TINY ? a->before / a->length : 0;
-}
-
-PHYS_INLINE double along_wider(const struct along *a, double gap)
-{
-    const double own = along_gap(a);
-    return own > gap ? own : gap;
-}
-
-/* True if the pair is proven, and f(1) is enough after a gap, m. NaN fails. */
-PHYS_INLINE bool along_enough(const struct along *a, double gap, double thickness, double off)
-{
-    const double least = least_after(gap, thickness), margin = CONTACT_MARGIN + off;
-    const double certain = a->length * (CONTACT_LEAST + off),
-                 asked = least > margin ? least : margin;
-    const bool is_proof = (a->length > CONTACT_TINY) & (a->before > certain) & (a->after > certain);
-    return is_proof & (a->after >= a->length * (asked < gap ? asked : gap));
-}
-
-/* True if both are above `far`, m. */
-PHYS_INLINE bool along_beyond(const struct along *a, double far)
-{
-    const double least = a->before < a->after ? a->before : a->after;
-    return (a->length > CONTACT_TINY) & (least > a->length * far);
-}
-
-/* ---- Certify ---- */
-
-/* The two directions that features may be closest in, of their corners p, which `at` are against
- * the first. Returns true if the features are so near that the directions may be only rounding. */
-PHYS_INLINE bool find_directions(enum contact_pair pair, const phys_vec p[4],
-                                 const struct contact_lanes *at, phys_vec n[2])
-{
-    contact_across(pair, p, at, n);
-    const double square = contact_between(pair, at, n + 1);
-    return !(square > CONTACT_NEAR * CONTACT_NEAR * contact_square(at));
-}
-
-/* The closest directions at the start and at the end; then the best ones of features that are very
- * near. */
-PHYS_INLINE enum contact_passing pass_closely(enum contact_pair pair, const phys_vec x[4],
-                                              const phys_vec y[4], double thickness, double reach)
-{
-    struct ends ends;
-    struct along along[6];
-    phys_vec n[6];
-    double gap = 0;
-    bool enough = false, by = false;
-    contact_lanes_of(x, x, &ends.x);
-    contact_lanes_of(y, y, &ends.y);
-    const double off = CONTACT_ROUNDING * lanes_size(&ends.x, &ends.y),
-                 far = contact_far_of(reach) + off;
-    const bool near_x = find_directions(pair, x, &ends.x, n);
-    const bool near_y = find_directions(pair, y, &ends.y, n + 2);
-    PHYS_UNROLL
-    for (int i = 0; i < 4; i++)
-        along_measure(pair, &ends, n + i, along + i);
-    gap = along_wider(along, along_wider(along + 1, 0));
-    if (near_x) {
-        contact_direction_best(pair, x, n + 4);
-        along_measure(pair, &ends, n + 4, along + 4);
-        gap = along_wider(along + 4, gap);
-        enough = along_enough(along + 4, gap, thickness, off);
-    }
-    if (near_y) {
-        contact_direction_best(pair, y, n + 5);
-        along_measure(pair, &ends, n + 5, along + 5);
-        enough |= along_enough(along + 5, gap, thickness, off);
-    }
-    PHYS_UNROLL
-    for (int i = 0; i < 4; i++) {
-        enough |= along_enough(along + i, gap, thickness, off);
-        by |= along_beyond(along + i, far);
-    }
-    return enough ? (by ? CONTACT_PASSES_BY : CONTACT_PASSES) : CONTACT_MAY_TOUCH;
-}
-
-PHYS_KERNEL_OF(enum contact_passing, contact_pass_closely,
-               (enum contact_pair pair, const phys_vec x[4], const phys_vec y[4], double thickness,
-                double reach),
-               (pair, x, y, thickness, reach))
-{
-    if (pair == CONTACT_VT)
-        return pass_closely(CONTACT_VT, x, y, thickness, reach);
-    return pass_closely(CONTACT_EE, x, y, thickness, reach);
-}
-
-/* ---- Cut ---- */
 
 /* A cut along a unit direction. Heights are above corner 0 at x; those at the end lack the motion
  * that all corners share. A plane divides the features at the end. */
@@ -250,21 +135,24 @@ static bool cut_all(const struct cut *cut, const phys_vec x[4], const phys_vec y
  * how much, m. */
 static double cut_direction(enum contact_pair pair, const phys_vec x[4], phys_vec *best)
 {
-    struct ends ends;
-    struct along along;
+    struct contact_lanes at;
     phys_vec n[3];
     double gap = 0;
-    contact_lanes_of(x, x, &ends.x);
-    ends.y = ends.x;
-    const bool is_near = find_directions(pair, x, &ends.x, n);
+    contact_lanes_of(x, x, &at);
+    contact_across(pair, x, &at, n);
+    const double square = contact_between(pair, &at, n + 1);
+    const bool is_near = !(square > CONTACT_NEAR * CONTACT_NEAR * contact_square(&at));
     if (is_near)
         contact_direction_best(pair, x, n + 2);
     for (int i = 0; i < 2 + is_near; i++) {
-        along_measure(pair, &ends, n + i, &along);
-        if (!(along_gap(&along) > gap))
+        const double length = sqrt(phys_dot(n + i, n + i));
+        phys_vec along;
+        contact_along(&at, n + i, &along);
+        const double own = length > CONTACT_TINY ? contact_apart(pair, &along) / length : 0;
+        if (!(own > gap))
             continue;
-        gap = along_gap(&along);
-        *best = n[i] / along.length;
+        gap = own;
+        *best = n[i] / length;
     }
     return gap;
 }

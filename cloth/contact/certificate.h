@@ -28,6 +28,12 @@
 bool contact_certify(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
                      double thickness);
 
+/* The f at both ends, m, that is enough whatever f(0) was, but for rounding. */
+PHYS_INLINE double contact_enough(double thickness)
+{
+    return 0.1 * thickness > CONTACT_MARGIN ? 0.1 * thickness : CONTACT_MARGIN;
+}
+
 /* The same; CONTACT_PASSES_BY: the features are farther apart than reach (m, >= 0) at all times of
  * the step. Most such pairs are found at no extra cost. */
 enum contact_passing { CONTACT_PASSES_BY, CONTACT_PASSES, CONTACT_MAY_TOUCH };

@@ -131,11 +131,30 @@ PHYS_INLINE double contact_square(const struct contact_lanes *x)
     return phys_lanes(&square);
 }
 
-PHYS_INLINE void contact_ends_of(enum contact_pair pair, const struct contact_lanes *x,
-                                 struct contact_ends *to)
+/* Finds the rest, from edges and from the ways from their begins to the vertices. sign: -1 where
+ * the vertex is of the second feature. */
+PHYS_INLINE void contact_ends_solve(const phys_vec *sign, struct contact_ends *to)
 {
     const phys_vec nothing = {0}, one = {1, 1, 1, 1}, tiny = {1e-300, 1e-300, 1e-300, 1e-300};
     phys_vec ahead;
+    contact_lanes_dot(&to->way, &to->edge, &to->dot);
+    contact_lanes_dot(&to->edge, &to->edge, &to->length);
+    const contact_mask is_ahead = to->dot > nothing;
+    contact_choose(&is_ahead, &to->dot, &nothing, &ahead);
+    to->part = ahead / (to->length + tiny);
+    const contact_mask on = to->part < one;
+    contact_choose(&on, &to->part, &one, &to->part);
+    PHYS_UNROLL
+    for (int c = 0; c < 3; c++)
+        to->way.c[c] = *sign * (to->way.c[c] - to->part * to->edge.c[c]);
+    contact_lanes_dot(&to->way, &to->way, &to->square);
+}
+
+PHYS_INLINE void contact_ends_of(enum contact_pair pair, const struct contact_lanes *x,
+                                 struct contact_ends *to)
+{
+    const phys_vec nothing = {0}, one = {1, 1, 1, 1};
+    const phys_vec sign = pair == CONTACT_VT ? one : (phys_vec){1, 1, -1, -1};
     PHYS_UNROLL
     for (int c = 0; c < 3; c++) {
         const phys_vec v = x->c[c];
@@ -146,18 +165,7 @@ PHYS_INLINE void contact_ends_of(enum contact_pair pair, const struct contact_la
         to->edge.c[c] = end - begin;
         to->way.c[c] = (pair == CONTACT_VT ? nothing : v) - begin;
     }
-    contact_lanes_dot(&to->way, &to->edge, &to->dot);
-    contact_lanes_dot(&to->edge, &to->edge, &to->length);
-    const contact_mask is_ahead = to->dot > nothing;
-    contact_choose(&is_ahead, &to->dot, &nothing, &ahead);
-    to->part = ahead / (to->length + tiny);
-    const contact_mask on = to->part < one;
-    contact_choose(&on, &to->part, &one, &to->part);
-    const phys_vec sign = pair == CONTACT_VT ? one : (phys_vec){1, 1, -1, -1};
-    PHYS_UNROLL
-    for (int c = 0; c < 3; c++)
-        to->way.c[c] = sign * (to->way.c[c] - to->part * to->edge.c[c]);
-    contact_lanes_dot(&to->way, &to->way, &to->square);
+    contact_ends_solve(&sign, to);
 }
 
 /* The lane with the shortest way, of equal ones the first. */
@@ -209,9 +217,8 @@ PHYS_INLINE double contact_far_of(double reach)
     return reach * (1 + 1e-9) + 1e-9;
 }
 
-/* contact_pass by the closest directions alone: a function of its own, so that the code of most
- * calls is small. */
-enum contact_passing contact_pass_closely(enum contact_pair pair, const phys_vec x[4],
-                                          const phys_vec y[4], double thickness, double reach);
+/* contact_pass_all of those that have not passed yet, by the closest directions. */
+void contact_pass_rest(size_t n, const struct contact_moving *moving, double thickness,
+                       double reach, enum contact_passing *passing);
 
 #endif

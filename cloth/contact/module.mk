@@ -27,7 +27,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/contact/skin_make.c \
 	cloth/contact/skin_moved.c \
 	cloth/contact/skin_query.c \
-	cloth/contact/skin_refit.c \
+	cloth/contact/skin_refit.c cloth/contact/skin_ridge.c \
 	cloth/contact/skin_bunch.c cloth/contact/skin_leaves.c cloth/contact/skin_lanes.h \
 	cloth/contact/solid.c cloth/contact/solid.h cloth/contact/solid_core.h \
 	cloth/contact/solid_cut.c cloth/contact/solid_divide.h \

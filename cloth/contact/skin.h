@@ -112,6 +112,8 @@ void contact_bunch_box(const struct contact_bunch *bunch, const phys_vec *x, con
 enum { CONTACT_TV = CONTACT_EE + 1 };
 struct contact_candidate {
     uint32_t kind, of[2];
+    bool parted;  /* they surely stay apart by more than struct contact_side says */
+    bool presses; /* false: two edges of which one has no ridge; struct contact_side asks for it */
 };
 
 /* One of two skins that are met, its positions by point. */
@@ -119,9 +121,20 @@ struct contact_side {
     const struct contact_skin *skin;
     const void *boxes; /* of x and y */
     const phys_vec *x, *y;
-    double flat; /* m, of the first side: features of one flat part of both skins need to be visited
-                  * only if they are nearer than this; 0: than the reach */
+    /* Of the first side: */
+    double flat;  /* m: features of one flat part of both skins need to be visited only if they are
+                   * nearer than this; 0: than the reach */
+    bool ridges;  /* edges that are parted need to be visited only if both have a ridge */
+    double parts; /* m: pairs that surely stay farther apart, along the direction in which they are
+                   * closest when the step begins, may count as parted; -INFINITY: all do; 0: none
+                   * does */
 };
+
+/* True if a surface has a ridge at an edge, towards where the unit normal points: it goes down on
+ * both sides, at a border of the cloth on one. An edge between two skins is judged by one side. y:
+ * by point, m. (skin_ridge.c) */
+bool contact_is_ridge(const struct contact_skin *skin, const phys_vec *y, uint32_t edge,
+                      const phys_vec *normal);
 
 /* Takes n candidates, at most CONTACT_BATCH of them. */
 enum { CONTACT_BATCH = 256 };

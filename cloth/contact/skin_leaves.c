@@ -2,7 +2,8 @@
  * boxes of slanted triangles are large. Heights along one direction change evenly, so both ends of
  * a step bound the whole step. Only heights at the same end are compared, so no frame is needed.
  * Features of leaves that are not apart are compared by their boxes, where they are near to the box
- * of the other leaf and within reach along the normals. */
+ * of the other leaf and within reach along the normals. No pair of leaves that a plane across the
+ * normals parts by enough needs a certificate of its own. */
 #include "cloth/contact/direction.h"
 #include "cloth/contact/skin_lanes.h"
 
@@ -92,17 +93,20 @@ PHYS_INLINE void slab_begin(const struct contact_side *side, struct contact_part
         find_heights(side, leaf, &slab->n, &slab->of[0]);
 }
 
-/* True if a second leaf is out of reach of the first in the whole step. */
-PHYS_INLINE bool slab_parts(const struct contact_side *side, const struct contact_leaf *leaf,
-                            struct contact_slab *slab)
+/* Finds how far a second leaf is from the first in the whole step. */
+PHYS_INLINE void slab_measure(const struct contact_side *side, const struct contact_leaf *leaf,
+                              struct contact_slab *slab)
 {
+    slab->apart = slab->begin = -INFINITY;
     if (!slab->is)
-        return false;
+        return;
     find_heights(side, leaf, &slab->n, &slab->of[1]);
     const double above = least_between(slab->of[0].low, slab->of[1].high);
     const double below = least_between(slab->of[1].low, slab->of[0].high);
     slab->above = above > below;
-    return above > slab->most || below > slab->most;
+    slab->apart = above > below ? above : below;
+    slab->begin =
+        fmax(slab->of[0].low[0] - slab->of[1].high[0], slab->of[1].low[0] - slab->of[0].high[0]);
 }
 
 /* The points of leaf k that come near to the end of the other leaf, a bit each; lanes behind them
@@ -208,13 +212,44 @@ PHYS_INLINE void meet_features(const struct contact_leaves *leaves, const struct
     }
 }
 
+/* The most, m, that a point of one leaf goes otherwise than one of the other. */
+PHYS_INLINE double way_between(const struct contact_leaves *leaves, const struct contact_leaf *a,
+                               const struct contact_leaf *b)
+{
+    const struct contact_point_box *own =
+        contact_boxes_ways(leaves->side[0]->boxes) + (a - leaves->side[0]->skin->leaf);
+    const struct contact_point_box *other =
+        contact_boxes_ways(leaves->side[1]->boxes) + (b - leaves->side[1]->skin->leaf);
+    double square = 0;
+    PHYS_UNROLL
+    for (int c = 0; c < 3; c++) {
+        const double more = (double)own->high[c] - (double)other->low[c];
+        const double less = (double)other->high[c] - (double)own->low[c];
+        const double most = more > less ? more : less;
+        square += most * most;
+    }
+    return sqrt(square);
+}
+
+/* True if a plane parts the leaves when the step begins, by so much that no pair of them comes too
+ * near. For their gap is at least that, and along the direction in which they are closest then it
+ * shrinks by no more than the ways differ: so their certificates hold, which try that direction. */
+PHYS_INLINE bool leaves_are_parted(const struct contact_leaves *leaves,
+                                   const struct contact_leaf *a, const struct contact_leaf *b)
+{
+    return leaves->parts == -INFINITY ||
+           (leaves->slab.begin > leaves->parts &&
+            leaves->slab.begin - way_between(leaves, a, b) > leaves->parts);
+}
+
 PHYS_INLINE const struct contact_leaf *leaf_at(const struct contact_side *side,
                                                struct contact_part part)
 {
     return side->skin->leaf + (side->skin->child[part.node][part.lane] & ~CONTACT_IS_LEAF);
 }
 
-/* Leaves of one skin that meet mostly share a border: heights cost more than they save there. */
+/* True if the leaves are out of reach. Those of one skin that meet mostly share a border: heights
+ * cost more than they save there. */
 PHYS_INLINE bool leaves_part(struct contact_leaves *leaves, struct contact_part a,
                              const struct contact_leaf *other)
 {
@@ -223,7 +258,29 @@ PHYS_INLINE bool leaves_part(struct contact_leaves *leaves, struct contact_part 
         return false;
     if (slab->node != a.node || slab->lane != a.lane)
         slab_begin(leaves->side[0], a, slab);
-    return slab_parts(leaves->side[1], other, slab);
+    slab_measure(leaves->side[1], other, slab);
+    return slab->apart > slab->most;
+}
+
+/* Finds the edges of two leaves that may have a ridge, of those that are near. Leaves out all
+ * others where the leaves are parted. A leaf meets many others, one after the other. */
+PHYS_INLINE void find_ridges(struct contact_leaves *leaves, struct leaf_near near[2],
+                             struct contact_met_leaf *to)
+{
+    const struct contact_side *const *side = leaves->side;
+    to->ridges[0] = to->ridges[1] = UINT32_MAX;
+    if (!side[0]->ridges || !near[0].is.edges || !near[1].is.edges)
+        return;
+    if (leaves->ridged != near[0].leaf) {
+        leaves->ridged = near[0].leaf;
+        leaves->ridges = contact_ridges_of(side[0]->skin, near[0].leaf, side[0]->y, UINT32_MAX);
+    }
+    to->ridges[0] = near[0].is.edges & leaves->ridges;
+    to->ridges[1] =
+        to->ridges[0] ? contact_ridges_of(side[1]->skin, near[1].leaf, side[1]->y, near[1].is.edges)
+                      : 0;
+    for (int k = 0; k < 2 && to->parted; k++)
+        near[k].is.edges = to->ridges[k];
 }
 
 PHYS_KERNEL_OF(bool, contact_leaves_meet,
@@ -241,10 +298,12 @@ PHYS_KERNEL_OF(bool, contact_leaves_meet,
     contact_boxes_widen(&leaves->back, leaves->node[1] + b.node, b.lane, wide + 1);
     open_leaf(leaves, 0, of, near);
     open_leaf(leaves, 1, other, near + 1);
+    to->parted = leaves_are_parted(leaves, of, other);
     near_to_box(wide + 1, near);
     near_to_box(wide, near + 1);
     for (int k = 0; k < 2 && leaves->slab.is; k++)
         slab_keep(&leaves->slab, k, leaves->side[k], near[k].leaf, &near[k].is);
+    find_ridges(leaves, near, to);
     meet_features(leaves, near[0].vertices, near[0].is.vertices, near[1].triangles,
                   near[1].is.triangles, &to->vertices);
     meet_features(leaves, near[0].triangles, near[0].is.triangles, near[1].vertices,
@@ -255,16 +314,18 @@ PHYS_KERNEL_OF(bool, contact_leaves_meet,
 }
 
 PHYS_KERNEL(contact_leaf_meets_itself,
-            (const struct contact_leaves *leaves, struct contact_part part,
-             struct contact_met_leaf *to),
+            (struct contact_leaves * leaves, struct contact_part part, struct contact_met_leaf *to),
             (leaves, part, to))
 {
-    struct leaf_near near;
-    open_leaf(leaves, 0, leaf_at(leaves->side[0], part), &near);
+    struct leaf_near near[2];
+    open_leaf(leaves, 0, leaf_at(leaves->side[0], part), near);
+    near[1] = near[0];
     to->triangles.is = 0;
-    meet_features(leaves, near.vertices, near.is.vertices, near.triangles, near.is.triangles,
+    to->parted = leaves->parts == -INFINITY;
+    find_ridges(leaves, near, to);
+    meet_features(leaves, near->vertices, near->is.vertices, near->triangles, near->is.triangles,
                   &to->vertices);
-    meet_features(leaves, near.edges, near.is.edges, near.edges, near.is.edges, &to->edges);
-    for (uint32_t i = 0; i < near.leaf->n_edges; i++)
+    meet_features(leaves, near->edges, near->is.edges, near->edges, near->is.edges, &to->edges);
+    for (uint32_t i = 0; i < near->leaf->n_edges; i++)
         to->edges.bits[i] &= ~first_bits(i + 1);
 }

@@ -89,7 +89,8 @@ void contact_boxes_lay(const struct contact_skin *skin, struct contact_boxes_hea
     head->slopes = head->nodes + n_nodes * sizeof(struct contact_boxes);
     head->groups = head->slopes + n_nodes * sizeof(struct contact_slopes);
     head->points = head->groups + n_groups * sizeof(struct contact_boxes);
-    head->moved = head->points + skin->n_points * sizeof(struct contact_point_box);
+    head->ways = head->points + skin->n_points * sizeof(struct contact_point_box);
+    head->moved = head->ways + leaves_of(n_nodes) * sizeof(struct contact_point_box);
     head->bytes = skin_make_whole_lines(head->moved + n_nodes + skin->n_points);
 }
 

@@ -19,6 +19,7 @@ struct query {
     bool shares;                   /* the skins may have points in common */
     bool again;                    /* only pairs of parts of which one moved */
     const unsigned char *moved[2]; /* then by node: bit k: child k did; NULL: none did */
+    bool parted;                   /* the leaves that are met */
     contact_visit *visit;
     void *to;
     uint32_t n;
@@ -83,13 +84,13 @@ static bool parts_are_flat(const struct query *query, struct contact_part a, str
 
 /* ---- Features ---- */
 
-static void skin_query_add(struct query *query, uint32_t kind, uint32_t a, uint32_t b)
+static void skin_query_add(struct query *query, uint32_t kind, bool presses, uint32_t a, uint32_t b)
 {
     if (query->n == CONTACT_BATCH) {
         query->visit(query->to, query->n, query->candidate);
         query->n = 0;
     }
-    query->candidate[query->n++] = (struct contact_candidate){kind, {a, b}};
+    query->candidate[query->n++] = (struct contact_candidate){kind, {a, b}, query->parted, presses};
 }
 
 /* A vertex of skin k with a triangle of the other. */
@@ -101,19 +102,19 @@ static void add_vertex(struct query *query, int k, uint32_t vertex, uint32_t tri
     if (query->shares && (is == with[corner[0]] || is == with[corner[1]] || is == with[corner[2]]))
         return;
     if (k && !query->leaves.self)
-        skin_query_add(query, CONTACT_TV, triangle, vertex);
+        skin_query_add(query, CONTACT_TV, true, triangle, vertex);
     else
-        skin_query_add(query, CONTACT_VT, vertex, triangle);
+        skin_query_add(query, CONTACT_VT, true, vertex, triangle);
 }
 
-static void skin_query_add_edges(struct query *query, uint32_t a, uint32_t b)
+static void skin_query_add_edges(struct query *query, bool press, uint32_t a, uint32_t b)
 {
     const uint32_t *first = query->skin[0]->joined, *second = query->skin[1]->joined;
     const uint32_t *of = query->skin[0]->edge[a], *with = query->skin[1]->edge[b];
     const uint32_t a0 = first[of[0]], a1 = first[of[1]];
     const uint32_t b0 = second[with[0]], b1 = second[with[1]];
     if (!query->shares || (a0 != b0 && a0 != b1 && a1 != b0 && a1 != b1))
-        skin_query_add(query, CONTACT_EE, a, b);
+        skin_query_add(query, CONTACT_EE, press, a, b);
 }
 
 /* Adds what met of two leaves: vertices of the first, its triangles, and edges. */
@@ -137,13 +138,17 @@ static void meet_triangles(struct query *query, const struct contact_met *met,
     }
 }
 
-static void meet_edges(struct query *query, const struct contact_met *met,
+static void meet_edges(struct query *query, const struct contact_met_leaf *leaves,
                        const struct contact_leaf *of, const struct contact_leaf *other)
 {
+    const struct contact_met *met = &leaves->edges;
     for (uint32_t left = met->is; left; left &= left - 1) {
         const uint32_t i = (uint32_t)__builtin_ctz(left);
-        for (uint32_t bits = met->bits[i]; bits; bits &= bits - 1)
-            skin_query_add_edges(query, of->edge + i, other->edge + (uint32_t)__builtin_ctz(bits));
+        const uint32_t press = leaves->ridges[0] >> i & 1 ? leaves->ridges[1] : 0;
+        for (uint32_t bits = met->bits[i]; bits; bits &= bits - 1) {
+            const uint32_t k = (uint32_t)__builtin_ctz(bits);
+            skin_query_add_edges(query, press >> k & 1, of->edge + i, other->edge + k);
+        }
     }
 }
 
@@ -167,9 +172,10 @@ static void meet_leaves(struct query *query, struct contact_part a, struct conta
     struct contact_met_leaf met;
     if (!contact_leaves_meet(&query->leaves, a, b, &met))
         return;
+    query->parted = met.parted;
     meet_vertices(query, &met.vertices, of, other);
     meet_triangles(query, &met.triangles, of, other);
-    meet_edges(query, &met.edges, of, other);
+    meet_edges(query, &met, of, other);
 }
 
 static void meet_leaf_self(struct query *query, struct contact_part part)
@@ -177,8 +183,9 @@ static void meet_leaf_self(struct query *query, struct contact_part part)
     const struct contact_leaf *leaf = leaf_of(query, 0, part);
     struct contact_met_leaf met;
     contact_leaf_meets_itself(&query->leaves, part, &met);
+    query->parted = met.parted;
     meet_vertices(query, &met.vertices, leaf, leaf);
-    meet_edges(query, &met.edges, leaf, leaf);
+    meet_edges(query, &met, leaf, leaf);
 }
 
 /* Two parts whose boxes meet. */
@@ -280,9 +287,13 @@ static void query_run(struct query *query, const struct contact_side *a,
     query->visit = visit;
     query->to = to;
     query->n = 0;
+    query->leaves.ridged = NULL;
     query->leaves.slab.node = CONTACT_ALL;
     query->leaves.slab.is = false;
+    query->leaves.slab.apart = query->leaves.slab.begin = -INFINITY;
     query->leaves.slab.most = contact_slab_most(a, b, reach);
+    query->leaves.parts =
+        a->parts > 0 || a->parts < 0 ? contact_slab_most(a, b, a->parts) : INFINITY;
     set_reach(query, a, b, reach);
     if (query->leaves.self && !part_is_flat(query, whole))
         meet_self(query, 0);

@@ -265,8 +265,24 @@ struct refit {
     const phys_vec *x, *y;
     const struct contact_point_box *of; /* points */
     struct contact_boxes *nodes, *groups;
+    struct contact_point_box *ways; /* by leaf */
     struct contact_slopes *slopes;
 };
+
+/* The box around the ways of a leaf's points. */
+PHYS_INLINE void refit_ways(const struct refit *refit, const struct contact_leaf *leaf,
+                            struct contact_point_box *to)
+{
+    const uint32_t *point = refit->skin->around + leaf->point;
+    *to = (struct contact_point_box){NOTHING, -NOTHING};
+    for (uint32_t i = 0; i < leaf->n_points; i++) {
+        const phys_vec way = refit->y[point[i]] - refit->x[point[i]];
+        const contact_lanes at = __builtin_convertvector(way, contact_lanes);
+        lower(&at, &to->low);
+        upper(&at, &to->high);
+    }
+    round_out(to);
+}
 
 PHYS_INLINE void refit_leaf(const struct refit *refit, const struct contact_leaf *leaf,
                             struct contact_point_box *whole)
@@ -274,6 +290,7 @@ PHYS_INLINE void refit_leaf(const struct refit *refit, const struct contact_leaf
     const struct contact_skin *skin = refit->skin;
     struct contact_boxes *groups = refit->groups;
     *whole = (struct contact_point_box){NOTHING, -NOTHING};
+    refit_ways(refit, leaf, refit->ways + (leaf - skin->leaf));
     put_features(leaf->n_triangles, 3, skin->corner[leaf->triangle], refit->of,
                  groups + leaf->group);
     put_features(leaf->n_vertices, 1, skin->vertex + leaf->vertex, refit->of,
@@ -367,6 +384,7 @@ PHYS_KERNEL(contact_refit,
                                 .of = of,
                                 .nodes = (void *)(at + head.nodes),
                                 .groups = (void *)(at + head.groups),
+                                .ways = (void *)(at + head.ways),
                                 .slopes = (void *)(at + head.slopes)};
     refit_points(&refit, way, &head, of);
     memset(boxes, 0, head.nodes);

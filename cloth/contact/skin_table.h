@@ -72,6 +72,7 @@ struct contact_boxes_head {
     double low[3], high[3]; /* m, in the room */
     double way[3];          /* m, of the frame */
     uint64_t bytes, nodes, slopes, groups, points;
+    uint64_t ways; /* by leaf: a box around the ways of its points */
     uint64_t
         moved; /* n_nodes bytes: bit k: child k has a feature that moved; then those of points */
     uint32_t n_moved;
@@ -107,6 +108,12 @@ PHYS_INLINE const struct contact_boxes *contact_boxes_groups(const void *boxes)
     return (const void *)((const char *)boxes + head->groups);
 }
 
+PHYS_INLINE const struct contact_point_box *contact_boxes_ways(const void *boxes)
+{
+    const struct contact_boxes_head *head = boxes;
+    return (const void *)((const char *)boxes + head->ways);
+}
+
 /* Fills loops and points along them of a table whose nodes, leaves and corners are there. Error:
  * CLOTH_E_MEMORY. */
 int contact_loops_make(const struct contact_skin *skin, uint64_t room, struct contact_loop *loop,
@@ -136,6 +143,8 @@ struct contact_slab {
     bool above;          /* the first leaf is above the second */
     phys_vec n;          /* of length 1 */
     double most;         /* m: features farther away are out of reach */
+    double apart;        /* m: how far the second leaf is at least, in the whole step */
+    double begin;        /* m: the same where it begins */
     struct contact_heights of[2];
 };
 /* The distance, m, beyond which features are surely out of a reach (m). */
@@ -150,9 +159,12 @@ struct contact_widening {
 struct contact_leaves {
     const struct contact_side *side[2];
     const struct contact_boxes *node[2], *group[2];
-    struct contact_widening by, back; /* of boxes of the first, of the second */
-    bool self;                        /* both are one */
-    struct contact_slab slab;         /* of the first leaf that was met last */
+    struct contact_widening by, back;  /* of boxes of the first, of the second */
+    bool self;                         /* both are one */
+    struct contact_slab slab;          /* of the first leaf that was met last */
+    const struct contact_leaf *ridged; /* the first leaf that was asked for its ridges last, */
+    uint32_t ridges;                   /* and these */
+    double parts; /* m: leaves that stay farther apart are parted; -INFINITY: all are */
 };
 
 /* Features of a first leaf that meet some of a second: a bit each, and those by each. */
@@ -162,13 +174,20 @@ struct contact_met {
 /* Vertices meet triangles, and triangles vertices. */
 struct contact_met_leaf {
     struct contact_met vertices, triangles, edges;
+    bool parted;
+    uint32_t ridges[2]; /* edges of each that may press others, a bit each */
 };
+/* Those of some edges of a leaf, a bit each, that may have a ridge in some direction. y: by point,
+ * m. (skin_ridge.c) */
+uint32_t contact_ridges_of(const struct contact_skin *skin, const struct contact_leaf *leaf,
+                           const phys_vec *y, uint32_t bits);
+
 /* Finds the features of two leaves that may be near to each other. False: the leaves are out of
  * reach in the whole step. The second is for a leaf with itself: its vertices, and each two edges
  * once. (skin_leaves.c) */
 bool contact_leaves_meet(struct contact_leaves *leaves, struct contact_part a,
                          struct contact_part b, struct contact_met_leaf *to);
-void contact_leaf_meets_itself(const struct contact_leaves *leaves, struct contact_part part,
+void contact_leaf_meets_itself(struct contact_leaves *leaves, struct contact_part part,
                                struct contact_met_leaf *to);
 
 /* A part of a skin in a step. */

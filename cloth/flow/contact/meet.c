@@ -6,6 +6,10 @@
 #include "cloth/flow/contact/meeting.h"
 #include "cloth/flow/contact/mode.h"
 
+#include "cloth/contact/certificate.h"
+
+#include <math.h>
+
 /* Side k is a block of that skin. */
 static void open_side(struct meeting *m, int k, const struct flow_skin *skin,
                       const phys_vec *points, const unsigned char *boxes)
@@ -30,13 +34,16 @@ static void begin_meeting(const duite_call *call, size_t near, struct flow_list 
     *m = (struct meeting){.flow = flow,
                           .model = flow->model,
                           .args = args,
-                          .sweeps = flow_contact_mode(flow->model)->sweeps,
                           .reach = flow_contact_reach(flow->model),
                           .leaves_out =
                               flow_leaves_out(flow->model, args->side[1] >= flow->tables.n_blocks),
                           .attached = own.attached};
     flow_findings_open(call, near, list, args, counts, &m->findings);
     open_side(m, 0, &own, points, boxes);
+    m->side[0].parts = flow_contact_mode(flow->model)->sweeps
+                           ? contact_enough(flow->model->contact.thickness)
+                           : -INFINITY;
+    m->side[0].ridges = args->side[1] < flow->tables.n_blocks;
 }
 
 /* Keeps items of the list that did not move, in their order. */

@@ -11,10 +11,6 @@
 
 #include <math.h>
 
-/* A surface that goes down by more from an edge has a ridge there: sine of 3 degrees. Cloth that
- * slides over less has vertices and triangles that are nearer. */
-static const double RIDGE = 0.05;
-
 /* Part of the distance at rest to the nearest edge: kin that are nearer push. Cloth on its plane
  * does not contract by as much. */
 static const double CLEAR = 0.5;
@@ -177,33 +173,11 @@ static void contact_meet_describe_pair(const struct meeting *m, const struct cor
     to->row.hard = m->model->contact.pressure * contact_meet_area(m, corners, to);
 }
 
-/* True if a surface has a ridge at an edge, towards the other feature. On a flat or hollow surface
- * vertices and triangles are nearer than the edge, and their contacts are enough. A flat triangle
- * counts at a border of the cloth. One triangle decides for an edge between two skins. sign: 1 if
- * the normal points away from the other feature, else -1. */
-static bool is_ridge(const struct meeting *m, int side, uint32_t edge, const phys_vec *normal,
-                     double sign)
-{
-    const struct contact_skin *skin = m->skin + side;
-    const phys_vec *y = m->side[side].y, *from = y + skin->edge[edge][0];
-    const phys_vec along = y[skin->edge[edge][1]] - *from;
-    const double square = phys_dot(&along, &along);
-    const bool border = skin->beside[edge][1] == CONTACT_NO_POINT;
-    bool ridge = true;
-    for (int k = 0; k < 2 && skin->beside[edge][k] < CONTACT_FAR_POINT; k++) {
-        const phys_vec to = y[skin->beside[edge][k]] - *from;
-        const phys_vec across = to - phys_dot(&to, &along) / square * along;
-        const double up = sign * phys_dot(&across, normal);
-        ridge = ridge && up > (border ? -RIDGE : RIDGE) * sqrt(phys_dot(&across, &across));
-    }
-    return ridge;
-}
-
-/* The same of a feature of the block and one of a body, whose surface goes on all around. It is one
- * if the nearest point is inside the block's feature, and the direction there is in the cone that
- * the body leaves open. Other pairs are those of a neighbour, seen aslant: they would hold up cloth
- * that slides over an edge. Where the body is flat, vertices of the cloth are nearer to it than its
- * edges and triangles are. */
+/* True if a feature of the block and one of a body, whose surface goes on all around, press. They
+ * do if the nearest point is inside the block's feature, and the direction there is in the cone
+ * that the body leaves open. Other pairs are those of a neighbour, seen aslant: they would hold up
+ * cloth that slides over an edge. Where the body is flat, vertices of the cloth are nearer to it
+ * than its edges and triangles are. */
 static bool presses_body(const struct meeting *m, const struct corners *corners,
                          const struct contact_nearest *nearest)
 {
@@ -250,9 +224,11 @@ static bool presses(const struct meeting *m, const struct corners *corners,
         return presses_body(m, corners, nearest);
     if (corners->pair != CONTACT_EE)
         return contact_meet_is_inside(nearest) || nearest->gap < corners->thickness;
+    const uint32_t *edge = corners->candidate->of;
+    const phys_vec normal = nearest->normal, back = -normal;
     return contact_meet_is_inside(nearest) &&
-           is_ridge(m, 0, corners->candidate->of[0], &nearest->normal, 1) &&
-           is_ridge(m, 1, corners->candidate->of[1], &nearest->normal, -1);
+           contact_is_ridge(m->skin, m->side[0].y, edge[0], &normal) &&
+           contact_is_ridge(m->skin + 1, m->side[1].y, edge[1], &back);
 }
 
 /* Appends a pair that is near at the end of the step. */
@@ -315,7 +291,7 @@ static void look_at_pair(struct meeting *m, struct corners *corners, enum contac
         return;
     }
     m->passes++;
-    if (passing == CONTACT_PASSES_BY)
+    if (passing == CONTACT_PASSES_BY || !corners->candidate->presses)
         return;
     contact_nearest_of(corners->pair, corners->y, &nearest);
     if (presses(m, corners, &nearest))
@@ -364,12 +340,13 @@ void flow_meeting_visit(void *to, uint32_t n, const struct contact_candidate *ca
     struct contact_moving moving[AT_ONCE];
     enum contact_passing passing[AT_ONCE];
     for (uint32_t i = 0; i < n;) {
+        const bool parted = candidate[i].parted;
         uint32_t some = 0;
-        for (; i < n && some < AT_ONCE; i++)
+        for (; i < n && some < AT_ONCE && candidate[i].parted == parted; i++)
             some += bring_corners(m, candidate + i, corners + some, moving + some);
-        for (uint32_t k = 0; k < some && !m->sweeps; k++)
+        for (uint32_t k = 0; k < some && parted; k++)
             passing[k] = CONTACT_PASSES;
-        if (m->sweeps)
+        if (!parted)
             contact_pass_all(some, moving, m->model->contact.thickness, m->reach, passing);
         for (uint32_t k = 0; k < some; k++)
             look_at_pair(m, corners + k, passing[k]);

@@ -17,8 +17,7 @@ struct meeting {
     const double *area[2];           /* by point of each skin; of a body NULL */
     struct flow_skin_kin kin[2];
     bool leaves_out;               /* see flow_leaves_out */
-    bool sweeps;                   /* as the mode does (mode.h), */
-    double reach;                  /* m: and reaches */
+    double reach;                  /* m: as the mode has it (mode.h) */
     const unsigned char *moved[2]; /* by point of each skin; NULL: it rests */
     struct contact_skin skin[2];
     struct contact_side side[2]; /* of a block that meets itself: both */

@@ -244,7 +244,8 @@ static inline void end(void)
 static inline void must(bool is)
 {
     if (!is)
-        ck_abort_msg("a pair twice, or of features that share a vertex, or a batch too large");
+        ck_abort_msg("a pair twice, or of features that share a vertex, or one that is left out or "
+                     "parted and should not be, or a batch too large");
 }
 
 #endif

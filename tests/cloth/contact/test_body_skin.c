@@ -180,7 +180,7 @@ static uint32_t check_kind(const struct contact_side side[2], uint32_t kind, uin
     uint32_t n = 0;
     for (uint32_t a = 0; a < na; a++)
         for (uint32_t b = 0; b < nb; b++) {
-            const struct contact_candidate candidate = {kind, {a, b}};
+            const struct contact_candidate candidate = {.kind = kind, .of = {a, b}};
             if (!is_near(side, &candidate))
                 continue;
             n++;

@@ -8,8 +8,11 @@
 
 static unsigned char vertices_seen[N][TRIANGLES], edges_seen[EDGES][EDGES];
 static uint32_t n_seen;
-static bool again; /* only what moved is met */
+static bool again;      /* only what moved is met */
+static bool leaves_out; /* edges without ridges are left out where they are parted */
+static uint32_t n_parted;
 static uint64_t order;
+static const double PARTED = 1e-4; /* m */
 
 struct meeting {
     const struct skin *a, *b;
@@ -30,6 +33,24 @@ static uint32_t find_edge(const uint32_t v[2])
     return edge_of[v[0] < v[1] ? v[0] : v[1]][v[0] < v[1] ? v[1] : v[0]];
 }
 
+static void at_time(uint32_t vertex, double s, phys_vec *at)
+{
+    *at = x[vertex] + s * (y[vertex] - x[vertex]);
+}
+
+/* True if two features are apart by this much (m) at times of the step. */
+static bool are_apart(enum contact_pair pair, const uint32_t v[4], double by)
+{
+    bool apart = true;
+    for (int i = 0; i <= TIMES; i++) {
+        phys_vec p[4];
+        for (int k = 0; k < 4; k++)
+            at_time(v[k], (double)i / TIMES, p + k);
+        apart = apart && (pair == CONTACT_VT ? vertex_distance(p) : edge_distance(p)) > by;
+    }
+    return apart;
+}
+
 static void see(void *to, uint32_t n, const struct contact_candidate *candidate)
 {
     const struct meeting *meeting = to;
@@ -44,6 +65,9 @@ static void see(void *to, uint32_t n, const struct contact_candidate *candidate)
         order = (order ^ (v[0] + 1000 * (uint64_t)v[3] + 1000000 * (uint64_t)pair)) *
                 UINT64_C(1099511628211);
         n_seen++;
+        n_parted += candidate[i].parted;
+        must(!candidate[i].parted || (leaves_out && are_apart(pair, v, PARTED)));
+        must(leaves_out || candidate[i].presses);
         if (pair == CONTACT_VT) {
             vertices_seen[v[0]][find_triangle(v + 1)]++;
         } else {
@@ -57,7 +81,7 @@ static void query_all(double reach)
 {
     memset(vertices_seen, 0, sizeof vertices_seen);
     memset(edges_seen, 0, sizeof edges_seen);
-    n_seen = 0;
+    n_seen = n_parted = 0;
     order = 0;
     for (uint32_t p = 0; p < PARTS; p++)
         for (uint32_t q = 0; q <= p; q++) {
@@ -65,7 +89,9 @@ static void query_all(double reach)
             const struct contact_side a = {.skin = &meeting.a->skin,
                                            .boxes = meeting.a->boxes,
                                            .x = meeting.a->x,
-                                           .y = meeting.a->y};
+                                           .y = meeting.a->y,
+                                           .ridges = leaves_out,
+                                           .parts = leaves_out ? PARTED : 0};
             const struct contact_side b = {.skin = &meeting.b->skin,
                                            .boxes = meeting.b->boxes,
                                            .x = meeting.b->x,
@@ -78,11 +104,6 @@ static void query_all(double reach)
 }
 
 /* ---- What brute force finds ---- */
-
-static void at_time(uint32_t vertex, double s, phys_vec *at)
-{
-    *at = x[vertex] + s * (y[vertex] - x[vertex]);
-}
 
 static bool are_near(const uint32_t v[4], double (*distance)(const phys_vec[4]), double reach)
 {
@@ -170,6 +191,79 @@ UNIT_LOOP(meets_all, 0, 3 * SHAPES)
         if (shape == 2 || shape == 3 || shape >= 5)
             ck_assert_uint_gt(near, N / 4);
     }
+}
+
+/* Each edge as a feature of a skin. */
+struct feature {
+    const struct skin *skin;
+    uint32_t number;
+};
+
+static void find_features(struct feature of[EDGES])
+{
+    for (uint32_t p = 0; p < PARTS; p++)
+        for (uint32_t i = 0; i < skins[p].skin.n_edges; i++) {
+            const uint32_t *at = skins[p].skin.edge[i];
+            const uint32_t v[2] = {skins[p].point[at[0]], skins[p].point[at[1]]};
+            of[find_edge(v)] = (struct feature){skins + p, i};
+        }
+}
+
+static bool has_ridge(const struct feature *of, const phys_vec *normal)
+{
+    return contact_is_ridge(&of->skin->skin, of->skin->y, of->number, normal);
+}
+
+/* True if two edges press each other at the end of the step. */
+static bool edges_press(const struct feature *a, const struct feature *b, const uint32_t v[4])
+{
+    const phys_vec at[4] = {y[v[0]], y[v[1]], y[v[2]], y[v[3]]};
+    struct contact_nearest nearest;
+    contact_nearest_of(CONTACT_EE, at, &nearest);
+    const phys_vec normal = nearest.normal, back = -normal;
+    const double *w = nearest.weight;
+    return w[0] > 0 && w[1] > 0 && w[2] < 0 && w[3] < 0 && has_ridge(a, &normal) &&
+           has_ridge(b, &back);
+}
+
+/* Cloth that goes so far in a step is not parted: it shall go a twentieth of that. */
+static void go_slowly(void)
+{
+    for (uint32_t v = 0; v < N; v++)
+        y[v] = x[v] + 0.05 * (y[v] - x[v]);
+    for (uint32_t p = 0; p < PARTS; p++)
+        refit(skins + p);
+}
+
+/* Edges that are left out are parted, and do not press. All others are seen, as all vertices are.
+ */
+UNIT_LOOP(ridges, 0, SHAPES)
+{
+    static unsigned char vertices[N][TRIANGLES], edges[EDGES][EDGES];
+    static struct feature feature[EDGES];
+    uint32_t n = 0;
+    random_seed = 8;
+    make((int)_i, PARTS);
+    go_slowly();
+    find_features(feature);
+    query_all(2e-3);
+    memcpy(vertices, vertices_seen, sizeof vertices);
+    memcpy(edges, edges_seen, sizeof edges);
+    leaves_out = true;
+    query_all(2e-3);
+    leaves_out = false;
+    ck_assert_mem_eq(vertices, vertices_seen, sizeof vertices);
+    for (uint32_t e = 0; e < n_edges; e++)
+        for (uint32_t f = e; f < n_edges; f++) {
+            const uint32_t v[4] = {edge[e][0], edge[e][1], edge[f][0], edge[f][1]};
+            if (edges[e][f] == edges_seen[e][f])
+                continue;
+            must(edges[e][f] && are_apart(CONTACT_EE, v, PARTED));
+            must(!edges_press(feature + e, feature + f, v));
+            n++;
+        }
+    if (_i == 7)
+        ck_assert(n > N && n_parted > N);
 }
 
 /* Marks what moved and, where it is known, the vertices beside. */

@@ -141,7 +141,6 @@ static void fib(unsigned n, int64_t *result)
     }
 #pragma omp task shared(first)
     fib(n - 1, &first);
-#pragma omp task shared(second)
     fib(n - 2, &second);
 #pragma omp taskwait
     *result = first + second;

@@ -1,6 +1,7 @@
-/* Tasks that fork tasks: Fibonacci numbers by the book. Once as OpenMP does it, a task waits for
- * the two it forked and adds what they left in two shared objects; once by handing on the right to
- * write the result, without any waiting ("flow"). A figure is the time of a core for a call. */
+/* Tasks that fork tasks: Fibonacci numbers by the book. Once as OpenMP does it, a call forks a
+ * task, calls itself, and waits for the number that the task leaves in an object; once by handing
+ * on the right to write the result, without any waiting ("flow"). A figure is the time of a core
+ * for a call. */
 #include "bench/tasks/fib.h"
 #include "bench/tasks/tasks.h"
 

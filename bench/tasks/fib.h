@@ -3,27 +3,30 @@
 
 #include <duite.h>
 
-/* The body of a task that writes a Fibonacci number by the book: it forks two of its kind and waits
- * for what they leave. args: n, unsigned; parameter 0: the number, int64_t, w. */
-static inline int fib_wait(const duite_call *call, const duite_kernel *kernel)
+/* A Fibonacci number by the book: forks a task for the first of two and calls itself for the other,
+ * as programs do that fork and join. */
+static inline int fib_number(duite *rt, const duite_kernel *kernel, unsigned n, int64_t *number)
 {
-    const unsigned n = *(const unsigned *)call->args;
-    int64_t first, second;
-    duite_object a, b;
+    int64_t first;
+    duite_object object;
     if (n < 2) {
-        *duite_out(call, 0, int64_t) = n;
+        *number = n;
         return 0;
     }
-    duite_new(call->rt, DUITE_I64, 1, &a);
-    duite_new(call->rt, DUITE_I64, 1, &b);
-    DUITE_FORK(call->rt, kernel, DUITE_ARGS(unsigned, n - 1), a);
-    DUITE_FORK(call->rt, kernel, DUITE_ARGS(unsigned, n - 2), b);
-    int code = duite_get(call->rt, a, &first);
+    duite_new(rt, DUITE_I64, 1, &object);
+    DUITE_FORK(rt, kernel, DUITE_ARGS(unsigned, n - 1), object);
+    int code = fib_number(rt, kernel, n - 2, number);
     if (!code)
-        code = duite_get(call->rt, b, &second);
+        code = duite_get(rt, object, &first);
     if (!code)
-        *duite_out(call, 0, int64_t) = first + second;
+        *number += first;
     return code;
+}
+
+/* The body of a task that writes it. args: n, unsigned; parameter 0: the number, int64_t, w. */
+static inline int fib_wait(const duite_call *call, const duite_kernel *kernel)
+{
+    return fib_number(call->rt, kernel, *(const unsigned *)call->args, duite_out(call, 0, int64_t));
 }
 
 #endif

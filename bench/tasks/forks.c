@@ -1,6 +1,7 @@
-/* Tasks that fork tasks and wait for them, in the sizes of others who measure that (bench/forks.h).
- * Skynet and queens return their results in objects; matrices are no objects but memory that all
- * tasks know, and a task waits for its children. Figures are the time of a core for a call. */
+/* Tasks that fork tasks and wait for them, in the sizes of others who measure that (bench/forks.h):
+ * the last child is a plain call. Skynet and queens return their results in objects; matrices are
+ * no objects but memory that all tasks know, and a task waits for its children. Figures are the
+ * time of a core for a call. */
 #include "bench/forks.h"
 #include "bench/tasks/tasks.h"
 
@@ -44,16 +45,15 @@ static void plan_matmul(struct measure *measure, const struct bench_options *opt
 
 /* ---- Tasks ---- */
 
-/* The task's result is the sum of its children's. */
-static int add_up(const duite_call *call, size_t n, const duite_object *part)
+/* Adds what n children leave. */
+static int add_up(duite *rt, size_t n, const duite_object *part, uint64_t *sum)
 {
-    uint64_t sum = 0, one = 0;
+    uint64_t one = 0;
     int code = 0;
     for (size_t i = 0; i < n && !code; i++) {
-        code = duite_get(call->rt, part[i], &one);
-        sum += one;
+        code = duite_get(rt, part[i], &one);
+        *sum += one;
     }
-    *duite_out(call, 0, uint64_t) = sum;
     return code;
 }
 
@@ -61,38 +61,45 @@ struct numbers {
     uint64_t first, n;
 };
 
+static int add_numbers(duite *rt, uint64_t first, uint64_t n, uint64_t *sum)
+{
+    const uint64_t tenth = n / FORKS_TEN;
+    duite_object part[FORKS_TEN - 1];
+    *sum = first;
+    if (!tenth)
+        return 0;
+    for (uint64_t i = 0; i < FORKS_TEN - 1; i++) {
+        duite_new(rt, DUITE_U64, 1, &part[i]);
+        DUITE_FORK(rt, &tasks_forks_kernels[TASKS_SKYNET],
+                   DUITE_ARGS(struct numbers, first + i * tenth, tenth), part[i]);
+    }
+    const int code = add_numbers(rt, first + (FORKS_TEN - 1) * tenth, tenth, sum);
+    return code ? code : add_up(rt, FORKS_TEN - 1, part, sum);
+}
+
 static int skynet(const duite_call *call)
 {
     const struct numbers *numbers = call->args;
-    const uint64_t tenth = numbers->n / FORKS_TEN;
-    duite_object part[FORKS_TEN];
-    if (!tenth) {
-        *duite_out(call, 0, uint64_t) = numbers->first;
-        return 0;
+    return add_numbers(call->rt, numbers->first, numbers->n, duite_out(call, 0, uint64_t));
+}
+
+static int add_boards(duite *rt, const struct forks_board *board, uint64_t *sum)
+{
+    struct forks_board next[FORKS_QUEENS];
+    duite_object part[FORKS_QUEENS];
+    *sum = board->row == board->n;
+    const unsigned n = *sum ? 0 : forks_next(board, next);
+    for (unsigned i = 0; i + 1 < n; i++) {
+        duite_new(rt, DUITE_U64, 1, &part[i]);
+        DUITE_FORK(rt, &tasks_forks_kernels[TASKS_QUEENS], &next[i], part[i]);
     }
-    for (uint64_t i = 0; i < FORKS_TEN; i++) {
-        duite_new(call->rt, DUITE_U64, 1, &part[i]);
-        DUITE_FORK(call->rt, &tasks_forks_kernels[TASKS_SKYNET],
-                   DUITE_ARGS(struct numbers, numbers->first + i * tenth, tenth), part[i]);
-    }
-    return add_up(call, FORKS_TEN, part);
+    const int code = n ? add_boards(rt, &next[n - 1], sum) : 0;
+    return code || !n ? code : add_up(rt, n - 1, part, sum);
 }
 
 static int queens(const duite_call *call)
 {
-    const struct forks_board *board = call->args;
-    struct forks_board next[FORKS_QUEENS];
-    duite_object part[FORKS_QUEENS];
-    if (board->row == board->n) {
-        *duite_out(call, 0, uint64_t) = 1;
-        return 0;
-    }
-    const unsigned n = forks_next(board, next);
-    for (unsigned i = 0; i < n; i++) {
-        duite_new(call->rt, DUITE_U64, 1, &part[i]);
-        DUITE_FORK(call->rt, &tasks_forks_kernels[TASKS_QUEENS], &next[i], part[i]);
-    }
-    return add_up(call, n, part);
+    return add_boards(call->rt, call->args, duite_out(call, 0, uint64_t));
 }
 
 static int matmul(const duite_call *call)

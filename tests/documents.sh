@@ -186,7 +186,7 @@ tours() { # DOCUMENT
     while read -r file names; do
         test -e "$srcdir/$file" || file=runtime/$file
         for name in $names; do
-            grep -q "^[a-z].*[ *]$name(\|^PHYS_KERNEL($name,\|^FLOW_KERNEL[A-Z_]*(${name%_body}," "$srcdir/$file" || { echo "$file has no $name" && return 1; }
+            grep -q "^[A-Za-z].*[ *]$name(\|^PHYS_KERNEL($name,\|^FLOW_KERNEL[A-Z_]*(${name%_body}," "$srcdir/$file" || { echo "$file has no $name" && return 1; }
         done
     done < "$scratch/stops"
     grep -o '`[a-z_/]*/[a-z_]*\.[ch]`' "$1" | tr -d '`' | sort -u > "$scratch/files"

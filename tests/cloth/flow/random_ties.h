@@ -17,6 +17,7 @@ enum { BLOCKS = 6, ROWS = 40, TIES = 300, ALL = 3 * BLOCKS * ROWS };
 static const uint32_t n_rows[BLOCKS] = {7, 40, 1, 12, 33, 20};
 static struct flow_tie joints[3];
 static struct flow_tie_corners ties[TIES];
+static const struct flow_tie_corners *listed[TIES]; /* those, as a list takes them */
 static struct flow_tie_list list;
 static phys_vec values[3 + TIES], p[BLOCKS][ROWS];
 static double diagonal[BLOCKS][ROWS], dense[ALL][ALL];
@@ -90,9 +91,11 @@ static inline void draw_all(unsigned seed)
     memset(dense, 0, sizeof dense);
     for (uint32_t i = 0; i < 3; i++)
         joints[i] = (struct flow_tie){.at = draw_corners(2), .begin = 10 * i, .end = 10 * i + 15};
-    for (uint32_t i = 0; i < TIES; i++)
+    for (uint32_t i = 0; i < TIES; i++) {
         ties[i] = draw_corners(below(SOLVE_TIE_CORNERS + 1));
-    list = (struct flow_tie_list){3, TIES, joints, 12, ties};
+        listed[i] = ties + i;
+    }
+    list = (struct flow_tie_list){3, TIES, joints, 12, listed};
     for (uint32_t i = 0; i < 3 + TIES; i++) {
         values[i] = i % 3 ? (phys_vec){draw(), draw(), draw(), 1 + draw()} : (phys_vec){0};
         if (is_listed(i))

@@ -93,7 +93,7 @@ static duite_options options_defaults(void)
 /* ---- Sizes ---- */
 
 /* Options as the first version had them: shorter ones have never been. */
-static const size_t LEAST_OPTIONS = offsetof(duite_options, memo) + sizeof(int);
+static const size_t LEAST_OPTIONS = offsetof(duite_options, report) + sizeof(char *);
 
 /* calls: the call that takes the options. */
 static int options_check_size(const char *calls, size_t size)

@@ -198,7 +198,7 @@ static int csv_write_file(const struct csv_tables *t, const char *folder, size_t
     int code = file ? DUITE_OK : csv_failed(path);
     if (file) {
         FILES[i].put(t, file);
-        const bool fine = !ferror(file) & !fflush(file);
+        const bool fine = !fflush(file) && !ferror(file);
         if ((fclose(file) || !fine) && !code)
             code = csv_failed(path);
     }

@@ -172,9 +172,9 @@ static void name_kernels(void)
         snprintf(names[1][i], sizeof names[1][i], "child %s", MODE[i]);
         parents[i] = (duite_kernel){.name = names[0][i],
                                     .body = parent,
-                                    .access = {(duite_mode)i},
+                                    .access = {(uint8_t)i},
                                     .args_size = sizeof(struct args)};
-        children[i] = (duite_kernel){.name = names[1][i], .body = child, .access = {(duite_mode)i}};
+        children[i] = (duite_kernel){.name = names[1][i], .body = child, .access = {(uint8_t)i}};
     }
 }
 

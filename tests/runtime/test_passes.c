@@ -59,7 +59,7 @@ static void made_own(struct rounds_made *made)
     uint8_t mode[DUITE_MAX_ACCESS] = {DUITE_NONE};
     ck_assert_uint_lt(fork->n, DUITE_MAX_ACCESS);
     for (uint32_t k = 0; k < fork->n; k++)
-        mode[k] = made->access[fork->first + k].mode;
+        mode[k] = (uint8_t)made->access[fork->first + k].mode;
     const uint32_t own = task_owner(mode, DUITE_NONE, fork->n);
     fork->owner = own == TASK_NOBODY ? PLAN_NONE : made->access[fork->first + own].object;
 }

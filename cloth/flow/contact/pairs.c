@@ -365,17 +365,38 @@ static void pairs_sum_up(struct flow_state *state, struct flow_seen *seen)
     }
 }
 
-/* True if more pairs fail than their vertices can hold; those of a body count, too. */
+/* The vertices of a block, or of a body; of other obstacles 0. */
+static uint32_t pairs_count_vertices(const struct flow_state *state, uint32_t side)
+{
+    const uint32_t n_blocks = state->flow->tables.n_blocks;
+    const struct model *model = state->flow->model;
+    if (side < n_blocks)
+        return state->flow->tables.block[side].skin.n_vertices;
+    const struct contact_body *body =
+        contact_bodies_at(&model->bodies, model->obstacles[side - n_blocks].body);
+    return body ? body->n_vertices : 0;
+}
+
+/* True if more pairs fail than their vertices can hold; those of a body count, too, since one that
+ * is finer than the cloth on it has many pairs a vertex of the cloth. A vertex that fails in
+ * several meetings counts in each, so all vertices of the sides bound how many there are. */
 static bool pairs_is_hopeless(const struct flow_state *state)
 {
     const struct flow_meetings *meetings = &state->contact.meetings;
-    double n_fails = 0, n_failing = 0;
+    const uint32_t n_sides = pairs_count_sides(state);
+    unsigned char *fails = state->contact.mark;
+    double n_fails = 0, n_failing = 0, n_vertices = 0;
+    memset(fails, 0, n_sides);
     for (uint32_t i = 0; i < meetings->n; i++) {
         const double *count = meetings->count + FLOW_COUNTS * (size_t)i;
         n_fails += count[FLOW_COUNT_FAILS];
         n_failing += count[FLOW_COUNT_FAILING];
+        for (int k = 0; k < 2 && count[FLOW_COUNT_FAILS] > 0; k++)
+            fails[meetings->all[i].side[k]] = 1;
     }
-    return n_fails > MOST_FAILING * n_failing;
+    for (uint32_t side = 0; side < n_sides; side++)
+        n_vertices += fails[side] ? pairs_count_vertices(state, side) : 0;
+    return n_fails > MOST_FAILING * fmin(n_failing, n_vertices);
 }
 
 /* Places the shapes over the step. */

@@ -244,9 +244,38 @@ static const char **text_of(struct compare *compare, int key)
     return NULL;
 }
 
-static error_t parse(int key, char *text, struct argp_state *state)
+static void take_subject(struct argp_state *state, struct compare *compare, char *text)
 {
     char wrong[500];
+    if (compare->program)
+        argp_error(state, "%s: a scene or graph beside a program after --", text);
+    if (compare_graph_wrong(text, wrong, sizeof wrong))
+        argp_error(state, "%s", wrong);
+    add(state, &compare->list[SUBJECT], text);
+}
+
+static void take_figure(struct argp_state *state, struct compare *compare, char *text, bool figure)
+{
+    char wrong[500];
+    if (figure_wrong(compare, text, wrong, sizeof wrong))
+        argp_error(state, "--%s %s: %s", figure ? "figure" : "same", text, wrong);
+    *(figure ? &compare->figure : &compare->same) = text;
+}
+
+static void complete(struct argp_state *state, struct compare *compare)
+{
+    enum { ROUNDS_OF_METG = 3, ROUNDS_ELSE = 10 };
+    if (compare->metg && !compare->program)
+        compare_metg_lists(compare);
+    check_metg(state, compare);
+    if (!compare->rounds)
+        compare->rounds = compare->metg ? ROUNDS_OF_METG : ROUNDS_ELSE;
+    complete_lists(compare);
+    check_program(state, compare);
+}
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
     struct compare *compare = state->input;
     if (key >= LIST && key < LIST + COMPARE_DIMENSIONS) {
         take_list(state, compare, key - LIST, text);
@@ -267,9 +296,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         return 0;
     case FIGURE:
     case SAME:
-        if (figure_wrong(compare, text, wrong, sizeof wrong))
-            argp_error(state, "--%s %s: %s", key == FIGURE ? "figure" : "same", text, wrong);
-        *(key == FIGURE ? &compare->figure : &compare->same) = text;
+        take_figure(state, compare, text, key == FIGURE);
         return 0;
     case SET:
         if (!strchr(text, '='))
@@ -289,11 +316,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         compare->timeout = (unsigned)number(state, text, 1, 1000000);
         return 0;
     case ARGP_KEY_ARG:
-        if (compare->program)
-            argp_error(state, "%s: a scene or graph beside a program after --", text);
-        if (compare_graph_wrong(text, wrong, sizeof wrong))
-            argp_error(state, "%s", wrong);
-        add(state, &compare->list[SUBJECT], text);
+        take_subject(state, compare, text);
         return 0;
     case ARGP_KEY_NO_ARGS:
         if (compare->program)
@@ -304,13 +327,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
                        ", or -- and a program");
         return 0;
     case ARGP_KEY_END:
-        if (compare->metg && !compare->program)
-            compare_metg_lists(compare);
-        check_metg(state, compare);
-        if (!compare->rounds)
-            compare->rounds = compare->metg ? 3 : 10;
-        complete_lists(compare);
-        check_program(state, compare);
+        complete(state, compare);
         return 0;
     }
     return ARGP_ERR_UNKNOWN;

@@ -1,8 +1,7 @@
 /* duite-graph: schedules a graph of tasks, synthetic or from a file, and says in the words of
- * duite-cloth's report how long a round took. Every task works for its cost, counted in turns of a
- * loop (so that a loaded machine does not shorten it), goes through what it reads and writes, and
- * leaves a number that depends on all it read: the hash at the end is the same whatever schedules.
- */
+ * duite-cloth's report how long a round took. A task goes through the values that it reads, works
+ * for its cost, and leaves a number that depends on them: the hash at the end is the same under
+ * every schedule. Costs are turns of a loop, which a loaded machine does not shorten. */
 #include "tools/compare/body.h"
 #include "tools/compare/graph.h"
 

@@ -4,8 +4,8 @@
 #include "bench/bench.h"
 #include "cloth/model/model.h"
 
-/* The bench "contact": what finding and certifying contacts costs, and what runs of scenes do with
- * it. bench.c and plans.c have the plans; the other files have what our process runs for them. */
+/* The bench "contact": the cost of finding and certifying contacts, and of runs of scenes. bench.c
+ * and plans.c have the plans; the other files have what our process runs for them. */
 
 /* certify pairs=: seconds a pair of contact_pass_all. uncut pairs=: the share of them that passes.
  * Pairs are drawn: half of each kind, mixed; corners in a cube of 10 mm; they move by up to 2 mm
@@ -69,10 +69,9 @@ const struct measure_series *contact_plan_scene(struct measure *measure,
                                                 const struct bench_options *options,
                                                 const char *name, const char *what);
 
+enum { CONTACT_PEERS = 7 }; /* scenes that others published */
 extern const struct bench_case contact_self, contact_frames_sphere, contact_frames_stack,
     contact_part, contact_iterations, contact_twist, contact_instructions, contact_intersections,
-    contact_maps, contact_peers_drape, contact_peers_curtain, contact_peers_twist,
-    contact_peers_needle, contact_peers_stack, contact_peers_ribbon, contact_peers_layers,
-    contact_ring, contact_pinch, contact_memory;
+    contact_maps, contact_peers[CONTACT_PEERS], contact_ring, contact_pinch, contact_memory;
 
 #endif

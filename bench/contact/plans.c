@@ -116,40 +116,43 @@ const struct bench_case contact_frames_stack = {
 
 /* ---- Scenes that others published ---- */
 
-/* s: what they state, of a frame or a step. A case each: the large ones take minutes. */
+/* s: what their authors state of the whole scene, of a frame or a step. */
 static const struct {
     const char *name, *what;
     double published;
-} PEERS[] = {{"peers_drape", "frame", 2.1},  {"peers_curtain", "frame", 3.9},
-             {"peers_twist", "frame", 6.6},  {"peers_needle", "frame", 9.2},
-             {"peers_stack", "frame", 18.1}, {"peers_ribbon", "frame", 1.7},
-             {"peers_layers", "step", 0.21}};
+} PEERS[CONTACT_PEERS] = {{"peers_drape", "frame", 2.1},  {"peers_curtain", "frame", 3.9},
+                          {"peers_twist", "frame", 6.6},  {"peers_needle", "frame", 9.2},
+                          {"peers_stack", "frame", 18.1}, {"peers_ribbon", "frame", 1.7},
+                          {"peers_layers", "step", 0.21}};
 
 static void plan_peer(struct measure *measure, const struct bench_options *options)
 {
-    const size_t n = sizeof PEERS / sizeof *PEERS;
-    for (size_t i = 0; i < n; i++) {
-        if (strcmp(PEERS[i].name, measure->name))
-            continue;
-        const struct measure_series *time =
-            contact_plan_scene(measure, options, PEERS[i].name, PEERS[i].what);
-        measure->cold = true;
-        measure_value(measure, time, 1, "s", "%s", PEERS[i].name);
-        measure_value(measure, time, 1 / PEERS[i].published, "x", "%s_vs_published", PEERS[i].name);
-    }
+    int i = 0;
+    while (strcmp(PEERS[i].name, measure->name))
+        i++;
+    const struct measure_series *time =
+        contact_plan_scene(measure, options, PEERS[i].name, PEERS[i].what);
+    measure->cold = true;
+    measure_value(measure, time, 1, "s", "%s", PEERS[i].name);
+    measure_value(measure, time, 1 / PEERS[i].published, "x", "%s_vs_published", PEERS[i].name);
 }
 
-#define PEER(of, about)                                                                            \
-    const struct bench_case contact_peers_##of = {"peers_" #of,                                    \
-                                                  "bench/contact/peers/" #of ".yaml until " about, \
-                                                  plan_peer, contact_scene_runs, 1}
-PEER(drape, "1 s: seconds for each 1/60 s; published 2.1 on an NVIDIA L4, of the whole scene");
-PEER(curtain, "1 s: seconds for each 1/60 s; published 3.9 on an NVIDIA L4");
-PEER(twist, "0.4 s: seconds for each 1/60 s; published 6.6 on an NVIDIA L4");
-PEER(needle, "0.5 s: seconds for each 1/60 s; published 9.2 on an NVIDIA L4");
-PEER(stack, "0.2 s: seconds for each 1/60 s; published 18.1 on an NVIDIA L4");
-PEER(ribbon, "0.5 s: seconds for each 1/60 s; published 1.7 on an NVIDIA L4");
-PEER(layers, "0.1 s: seconds a step; published 0.21 on a processor that is not named");
+/* A case each, since the large ones take minutes. */
+const struct bench_case contact_peers[CONTACT_PEERS] = {
+    {"peers_drape", "until 1 s: seconds for each 1/60 s; published 2.1 on an NVIDIA L4", plan_peer,
+     contact_scene_runs, 1},
+    {"peers_curtain", "until 1 s: seconds for each 1/60 s; published 3.9 on an NVIDIA L4",
+     plan_peer, contact_scene_runs, 1},
+    {"peers_twist", "until 0.4 s: seconds for each 1/60 s; published 6.6 on an NVIDIA L4",
+     plan_peer, contact_scene_runs, 1},
+    {"peers_needle", "until 0.5 s: seconds for each 1/60 s; published 9.2 on an NVIDIA L4",
+     plan_peer, contact_scene_runs, 1},
+    {"peers_stack", "until 0.2 s: seconds for each 1/60 s; published 18.1 on an NVIDIA L4",
+     plan_peer, contact_scene_runs, 1},
+    {"peers_ribbon", "until 0.5 s: seconds for each 1/60 s; published 1.7 on an NVIDIA L4",
+     plan_peer, contact_scene_runs, 1},
+    {"peers_layers", "until 0.1 s: seconds a step; published 0.21 on a processor not named",
+     plan_peer, contact_scene_runs, 1}};
 
 static void plan_ring(struct measure *measure, const struct bench_options *options)
 {

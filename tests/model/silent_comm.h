@@ -1,8 +1,8 @@
 #ifndef TESTS_MODEL_SILENT_COMM_H
 #define TESTS_MODEL_SILENT_COMM_H
 
-/* What workers call of runtime/comm, where nothing travels but what the model itself polls for
- * (comm_poll is its own). Included once in a program. */
+/* The calls of workers to runtime/comm, silent: nothing travels but messages that the model itself
+ * polls for (comm_poll is its own). Included once in a program. */
 #include "runtime/workers/workers.h"
 
 bool comm_has_posts(struct comm *comm)

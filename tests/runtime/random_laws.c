@@ -1,6 +1,6 @@
-/* The laws of random programs, element by element: what sum, min and max mean, and two laws of the
- * program's own that show every swap and every other shape of the tree, since they are neither
- * associative nor commutative and what a leaf begins with is not neutral at all. */
+/* The laws of random programs, element by element: sum, min, max, and two laws of the program's
+ * own. Those show every swap and every other shape of the tree: they are neither associative nor
+ * commutative, and a leaf begins with a value that is not neutral. */
 
 #include "tests/runtime/random_program.h"
 

@@ -159,6 +159,50 @@ static void ask_home(struct run *run, unsigned number)
     run->home[number] = home;
 }
 
+static void split(struct run *run, const struct prog_op *op)
+{
+    ask_home(run, op->object);
+    prog_expect_code(run, "split", prog_call_split(&run->main, op), DUITE_OK);
+    for (unsigned i = 0; i < op->n; i++)
+        ask_home(run, op->objects[i]);
+}
+
+static void free_object(struct run *run, const struct prog_op *op)
+{
+    ask_home(run, op->object);
+    run->memory[op->object].freed = run->at + 1;
+    prog_expect_code(run, "free", duite_free(run->main.rt, run->main.name[op->object]), DUITE_OK);
+}
+
+/* Kernels, hints and homes of a program; and its graphs. */
+static void steering(struct run *run, const struct prog_op *op, const struct prog_expect *answer)
+{
+    duite_object *object = &run->main.name[op->object];
+
+    switch (op->kind) {
+    case PROG_KERNEL:
+        prog_expect_code(run, "kernel_add",
+                         duite_kernel_add(run->main.rt, &run->prog->kernel[op->kernel]), DUITE_OK);
+        break;
+    case PROG_HINT:
+        hint(run, op);
+        break;
+    case PROG_FOLLOW:
+        prog_expect_code(run, "follow",
+                         duite_colocate(run->main.rt, *object, run->main.name[op->objects[0]]),
+                         DUITE_OK);
+        break;
+    case PROG_HOME:
+        ask_home(run, op->object);
+        break;
+    case PROG_WRONG:
+        wrong_fork(run, op, answer->code);
+        break;
+    default:
+        prog_call_graph(run, op, answer);
+    }
+}
+
 static void operation(struct run *run, const struct prog_op *op, const struct prog_expect *answer)
 {
     duite_object *object = &run->main.name[op->object];
@@ -170,9 +214,7 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
                          DUITE_OK);
         break;
     case PROG_FREE:
-        ask_home(run, op->object);
-        run->memory[op->object].freed = run->at + 1;
-        prog_expect_code(run, "free", duite_free(run->main.rt, *object), DUITE_OK);
+        free_object(run, op);
         break;
     case PROG_ACQUIRE:
         prog_call_acquire(run, op, answer);
@@ -181,10 +223,7 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
         prog_call_release(run, op);
         break;
     case PROG_SPLIT:
-        ask_home(run, op->object);
-        prog_expect_code(run, "split", prog_call_split(&run->main, op), DUITE_OK);
-        for (unsigned i = 0; i < op->n; i++)
-            ask_home(run, op->objects[i]);
+        split(run, op);
         break;
     case PROG_JOIN:
         prog_expect_code(run, "join", duite_join(run->main.rt, *object), DUITE_OK);
@@ -214,31 +253,13 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
     case PROG_GET_END:
         get_later(run, op, answer);
         break;
-    case PROG_KERNEL:
-        prog_expect_code(run, "kernel_add",
-                         duite_kernel_add(run->main.rt, &run->prog->kernel[op->kernel]), DUITE_OK);
-        break;
-    case PROG_HINT:
-        hint(run, op);
-        break;
-    case PROG_FOLLOW:
-        prog_expect_code(run, "follow",
-                         duite_colocate(run->main.rt, *object, run->main.name[op->objects[0]]),
-                         DUITE_OK);
-        break;
-    case PROG_HOME:
-        ask_home(run, op->object);
-        break;
-    case PROG_WRONG:
-        wrong_fork(run, op, answer->code);
-        break;
     case PROG_SKIP:
     case PROG_CONTRIBUTE:
     case PROG_GRAPH_FORK:
     case PROG_GRAPH_SET:
         break;
     default:
-        prog_call_graph(run, op, answer);
+        steering(run, op, answer);
     }
 }
 

@@ -1,4 +1,4 @@
-/* What changes between replays (arguments, objects, what build names), and what fails in them. The
+/* Changes between replays (arguments, objects, names of build), and failures in them. The
  * tasks append digits to numbers, so that their order can be read. */
 #include "tests/runtime/graphs_fixture.h"
 

@@ -44,8 +44,8 @@ static struct predict_result on(const char *text, struct trace_file *file)
     return result;
 }
 
-/* Of four hosts, two on each of two switches, one on the left sends to one on the right, and so
- * does the other: 1 MB and `more` MB, whose readers take so many seconds. */
+/* Four hosts stand two on each of two switches. Both on the left send to one each on the right: 1
+ * MB and `more` MB, whose readers take so many seconds. */
 static struct trace_file two_flows(uint32_t more, double one_takes, double more_takes)
 {
     struct trace_file file = {0};

@@ -83,8 +83,8 @@ UNIT_TEST(readers)
     is(predicted(&file, &two).makespan, 6 * MS);
 }
 
-/* What limits is what holds up most: of 2 + 8 ms the long task, which waited for a core, has 8;
- * that the longest chain of tasks is 8 ms, too, is nothing that held it up. */
+/* The largest delay limits: the long task, which waited for a core, has 8 of 2 + 8 ms. The longest
+ * chain of tasks is 8 ms, too, but held nothing up. */
 UNIT_TEST(the_largest_share_limits)
 {
     struct trace_file file = predicted_trace(3, 8);

@@ -4,8 +4,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What a task of a graph does, for duite-graph and its twins in bench/rivals: it begins with its
- * number, goes through all that it reads, works, and leaves values that depend on all of it. */
+/* The body of a graph's task, for duite-graph and its twins in bench/rivals. It begins with the
+ * task's number, goes through all values read, works, and leaves values that depend on all. */
 
 #define BODY_TURNS_A_SECOND 1e9 /* about; the same on every machine */
 

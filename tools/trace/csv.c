@@ -1,6 +1,6 @@
-/* A folder of tables, whose names and columns are those that phase 1 of StarVZ reads (packed by
- * gzip): spans of workers, what happens at a moment, messages, and who the workers are. Times are
- * milliseconds. Behind StarVZ's columns of spans stand those of duite. */
+/* A folder of tables with the names and columns that phase 1 of StarVZ reads (packed by gzip):
+ * spans of workers, moments, messages, and a table of the workers. Times are milliseconds. Behind
+ * StarVZ's columns of spans stand those of duite. */
 #include "tools/trace/export.h"
 
 #include "runtime/base/error.h"

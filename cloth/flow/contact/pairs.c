@@ -13,6 +13,8 @@
 
 #include "cloth/contact/solid.h"
 
+#include <math.h>
+
 /* Thicknesses: boxes still meet if they are this much farther apart than a contact reaches. That is
  * the way of some steps, so the set of meetings changes seldom; more of it costs queries that find
  * nothing. */

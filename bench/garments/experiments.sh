@@ -15,7 +15,7 @@ loops_ms() { # THREADS STEPS on|off SCENE KEY=VALUE...: medians of what vassilev
 ours_ms() { # THREADS on|off SCENE: median of milliseconds a step
     ours_threads=$1 ours_self=$2 ours_scene=$3
     set -- --set 'materials.cloth.velocity_correction={at: 0.1, rounds: 1}' --set "time.end=$(awk -v n="$steps" 'BEGIN { print n * 1e-4 }')"
-    test "$ours_self" = off || set -- "$@" --set 'contact={mode: repulsion, thickness: 0.003}' --set 'obstacles[0].body.meet=bvh'
+    test "$ours_self" = off || set -- "$@" --set 'contact={mode: repulsion, self: off, thickness: 0.003}' --set 'obstacles[0].body.meet=bvh'
     : > "$scratch/rows"
     for _ in $(seq $runs); do
         run 1 "$ours_threads" "$ours_scene" "$@"

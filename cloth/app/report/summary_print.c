@@ -68,7 +68,9 @@ static void print_intersections(FILE *file, const struct intersections_found *fo
 
 static void print_contact(FILE *file, const struct model *model, const struct flow_report *report)
 {
-    fprintf(file, "  contacts         %" PRIu64 " at most", report->contacts);
+    fprintf(file, "  contacts         %" PRIu64 " at most, %s", report->contacts,
+            model->contact.self ? "also of a cloth with itself"
+                                : "none of a cloth with itself (contact.self)");
     if (model_promise(model).apart)
         fprintf(file, "; %.2f solves a step, %" PRIu64 " pairs certified",
                 summary_solves_mean(report), report->contact_pairs);

@@ -41,11 +41,12 @@ static bool wants_certificate(const struct model *model)
 int scene_build_contact(struct scene_tree *tree)
 {
     struct model *model = tree->model;
-    if (scene_tree_at(tree, 1, "contact.mode"))
-        return CLOTH_OK;
-    model->contact.assumed = true;
-    if (model_is_implicit(model) && wants_certificate(model) && !model_has_maps(model))
+    model->contact.assumed = !scene_tree_at(tree, 1, "contact.mode");
+    if (model->contact.assumed && model_is_implicit(model) && wants_certificate(model) &&
+        !model_has_maps(model))
         model->contact.mode = MODEL_CONTACT_BEST;
+    if (!scene_tree_at(tree, 1, "contact.self"))
+        model->contact.self = model_contact_is[model->contact.mode].promise.near;
     return CLOTH_OK;
 }
 

@@ -62,9 +62,9 @@ const struct scene_rule scene_contact_keys[] = {
      .about = "certified: in the solve, and no step ends where a contact is not proven; "
      "repulsion: springs push apart what is too near; project: vertices in obstacles are put out "
      "after the step; else certified in implicit steps where there is more to touch than planes"},
-    {"self", SCENE_CHOICE, .fallback = "off", INTO(struct model_contact, self),
-     WORDS({"on", true}, {"off", false}),
-     .about = "a cloth touches itself, too; different cloths always touch", .needs = NEEDS_MET},
+    {"self", SCENE_CHOICE, INTO(struct model_contact, self), WORDS({"on", true}, {"off", false}),
+     .about = "a cloth touches itself, too, unless it is `off`; different cloths always touch",
+     .needs = NEEDS_MET},
     {"untangle", SCENE_CHOICE, .fallback = "off", INTO(struct model_contact, untangle),
      WORDS({"on", true}, {"off", false}),
      .about = "cloths that start in each other or in obstacles are moved apart",

@@ -91,8 +91,8 @@ fi
 # ---- The scenes themselves
 
 listed() { # all, with a sentence each
-    duite-cloth --scenes > scenes && cat scenes && (cd "$srcdir/cloth/scenes" && ls ./*.yaml) | sed 's|./||' > wanted && sed 's/ .*//' scenes | diff wanted - &&
-        ! grep -v '^[a-z]*\.yaml  *[A-Z].*\.$\|\.\.\.$' scenes
+    duite-cloth --scenes > scenes && cat scenes && (cd "$srcdir/cloth/scenes" && ls ./*.yaml gallery/*.yaml) | sed 's|^\./||' | LC_ALL=C sort > wanted && sed 's/ .*//' scenes | LC_ALL=C sort | diff wanted - &&
+        ! grep -v '^[a-z/]*\.yaml  *[A-Z].*\.$\|\.\.\.$' scenes
 }
 ok "--scenes lists what was installed" listed
 ok "a shipped scene is found by name" limited duite-cloth zara.yaml --quiet --set cloths[0].mesh.grid.nx=9 --set cloths[0].mesh.grid.ny=9

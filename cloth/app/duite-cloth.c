@@ -19,6 +19,7 @@ enum {
     LIVE,
     MAPPING,
     BALANCE,
+    CHECK,
     CHECK_INTERSECTIONS,
     CHECKPOINT,
     OUTPUT,
@@ -68,6 +69,10 @@ static const struct argp_option OPTIONS[] = {
     {"check-intersections", CHECK_INTERSECTIONS, NULL, 0,
      "look in each frame, exactly, for triangles of cloth that go through each other or through "
      "obstacles",
+     1},
+    {"check", CHECK, NULL, 0,
+     "say what the run would take of memory, time and disk, and what is slow, by its first steps "
+     "alone; nothing is written",
      1},
     {"quiet", QUIET, NULL, 0, "neither progress nor summary", 1},
     {"end", END, "SECONDS", 0, "simulated time, instead of the scene's time.end", 2},
@@ -287,6 +292,9 @@ static error_t cloth_cli_parse(int key, char *value, struct argp_state *state)
     case CHECK_INTERSECTIONS:
         run->check_intersections = true;
         return 0;
+    case CHECK:
+        run->check = true;
+        return 0;
     case QUIET:
         run->quiet = true;
         return 0;
@@ -336,6 +344,9 @@ static const char *find_fault(const struct command *command)
         return NULL;
     if (!run->scene)
         return "a scene file is expected; see duite-cloth --help";
+    if (run->check && (run->restart || run->save_system || run->live || run->checkpoint > 0))
+        return "--check is of a run from its start, and writes nothing: leave --restart, "
+               "--checkpoint, --save-system and --live out";
     if (run->restart && run->save_system)
         return "--save-system with --restart: the system is that of a run from its start";
     if (run->checkpoint > 0 && !run->output && !run->restart)

@@ -4,6 +4,7 @@
 #include "cloth/app/cli.h"
 #include "cloth/app/view/frames.h"
 #include "cloth/app/view/live.h"
+#include "cloth/app/view/start.h"
 #include "cloth/live/live.h"
 #include "cloth/view/window.h"
 #include "tools/chart/chart.h"
@@ -150,8 +151,8 @@ static const struct cli_option OPTIONS[] = {
      "(glTF) or .obj",
      CLI_OTHER, 0, "a FILE that ends in .usda, .usd, .glb or .obj", read_export, 0},
     {"frames", 'n', "A:B",
-     "Frames of the film or of USD, from A to B; either may be left out (all)", CLI_OTHER, 0,
-     "A:B, A up to B, such as 0:24, 10: or :24", read_frames, RANGED},
+     "Frames of the film, of USD or of the check, from A to B; either may be left out (all)",
+     CLI_OTHER, 0, "A:B, A up to B, such as 0:24, 10: or :24", read_frames, RANGED},
     {"fps", 'r', "RATE", "Frames a second of the film (those of the scene: its own time)",
      CLI_OTHER, 0, "a rate from 0.1 to 1000 frames a second", read_fps, FILMED},
     {"size", 's', "WxH",
@@ -182,7 +183,8 @@ static const struct cli_option OPTIONS[] = {
      "FROM:TO in seconds, such as 0.1:0.2, or in percent of the run, such as 50%:51%", read_window,
      CHARTED},
     {"check-intersections", 'i', NULL,
-     "Look in all frames, exactly, for triangles that go through each other or through obstacles",
+     "Look in all frames, or --frames, exactly, for triangles that go through each other or "
+     "through obstacles",
      CLI_FLAG, TO(check_intersections), NULL, NULL, 0}};
 
 static bool opens_window(const struct options *options)
@@ -220,13 +222,16 @@ static void check_together(void *to, struct argp_state *state)
                           "colour or check goes with it");
     if (options->given & FILMED && !options->mp4)
         argp_error(state, "--fps is of films: --mp4 FILE");
-    if (options->given & RANGED && !options->mp4 &&
+    if (options->given & RANGED && !options->mp4 && !options->check_intersections &&
         !(options->export && view_frames_exports_many(options->export)))
-        argp_error(state, "--frames is of films and of USD: --mp4 FILE or --export FILE.usda");
+        argp_error(
+            state,
+            "--frames is of films, of USD and of the check: --mp4 FILE, --export FILE.usda or "
+            "--check-intersections");
     if (options->trace && !options->png && !options->svg)
         argp_error(state, "say where the chart goes: --svg FILE or --png FILE");
     if (!options->trace && !options->host && !options->folder)
-        argp_error(state, "say which folder of frames to show, or --connect HOST:PORT");
+        argp_error(state, "say which folder of frames or scene to show, or --connect HOST:PORT");
 #ifndef HAVE_WINDOW
     if (opens_window(options))
         argp_error(state, "this build opens no windows: say where the picture goes by --png FILE, "
@@ -235,11 +240,11 @@ static void check_together(void *to, struct argp_state *state)
 }
 
 static const struct cli CLI = {
-    .arguments = "DIR\n--connect HOST:PORT\n--trace FILE",
+    .arguments = "DIR\nSCENE.yaml\n--connect HOST:PORT\n--trace FILE",
     .about = "Shows a simulated cloth in a window, makes a picture or a film of it, writes it for "
              "other programs, or checks all frames; DIR is what duite-cloth --output wrote. Or "
-             "shows a run that goes on, or "
-             "draws the Gantt chart of one.",
+             "shows the start of a scene, with its pins and seams; a run that goes on; or the "
+             "Gantt chart of one.",
     .option = OPTIONS,
     .n_options = sizeof OPTIONS / sizeof *OPTIONS,
     .marks = TO(given),
@@ -250,10 +255,12 @@ static const struct cli CLI = {
 /* ---- Frames of a folder ---- */
 
 /* Standard output says it where there are none. */
-static int check_frames(struct output_cache *cache, bool *bad, struct cloth_error *error)
+static int check_frames(struct output_cache *cache, const struct options *options, bool *bad,
+                        struct cloth_error *error)
 {
+    const struct view_frames frames = {.first = options->first, .last = options->last};
     struct intersections_found found = {0};
-    const int code = view_frames_check(cache, &found, error);
+    const int code = view_frames_check(cache, options->folder, &frames, &found, error);
     if (code)
         return code;
     if (!found.bad)
@@ -280,11 +287,26 @@ static int show_frames(struct view_show *show, const struct options *options,
     return code;
 }
 
+/* A scene that has not run has one frame, with marks that are no cloth. */
+static int open_start(struct output_cache *cache, const struct options *options, const char *path,
+                      struct cloth_error *error)
+{
+    if (options->mp4 || options->export || options->check_intersections)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%s has not run: it has no film, no export and no frames to check; "
+                          "duite-cloth --output DIR makes them",
+                          options->folder);
+    return view_start_open(cache, path ? path : options->folder, error);
+}
+
 static int show_folder(struct options *options, bool *bad, struct cloth_error *error)
 {
     struct output_cache cache = {0};
     struct view_show *show = NULL;
-    int code = output_cache_open(&cache, options->folder, error);
+    char *path;
+    int code = view_start_is_scene(options->folder, &path)
+                   ? open_start(&cache, options, path, error)
+                   : output_cache_open(&cache, options->folder, error);
     if (!code && (options->png || options->mp4 || opens_window(options))) {
         code = view_frames_open(&show, &cache, &options->wish, error);
         code = code ? code : show_frames(show, options, error);
@@ -296,8 +318,9 @@ static int show_folder(struct options *options, bool *bad, struct cloth_error *e
         code = view_frames_export(&cache, options->folder, &frames, options->frame, error);
     }
     if (!code && options->check_intersections)
-        code = check_frames(&cache, bad, error);
+        code = check_frames(&cache, options, bad, error);
     output_cache_close(&cache);
+    free(path);
     return code;
 }
 

@@ -87,7 +87,9 @@ static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
                                  .end = last ? NULL : run->phases.end};
     outputs_receive(&run->outputs, options, run->wants_frames, last, &output);
     const bool wants = run->wants_frames || options->save_system || goes_on;
-    const struct flow_progress progress = {run, forget_meshes, show_step, simulate_stops,
+    const struct flow_progress progress = {run, forget_meshes,
+                                           options->check ? simulate_check_step : show_step,
+                                           options->check ? simulate_check_ends : simulate_stops,
                                            options->checkpoint > 0 ? is_due : NULL};
     const char *from;
     run->threads = duite_threads(rt);
@@ -141,8 +143,7 @@ static void simulate_warn_of_edges(const struct run *run)
             report->correction_excess);
 }
 
-/* Runs the phase. */
-static int execute(struct run *run)
+int simulate_execute(struct run *run)
 {
     struct cloth_error error = {0};
     duite *rt = NULL;
@@ -150,6 +151,7 @@ static int execute(struct run *run)
     duite_options options = run->options->runtime;
     options.kernels = flow_kernels();
     options.context = run->flow;
+    options.trace = run->options->check ? NULL : options.trace;
     if (!runtime_fails(&error, duite_start(&rt, &options))) {
         run_flow(run, rt, &error);
         if (!error.code && duite_trace_end(rt))
@@ -171,12 +173,12 @@ static int execute(struct run *run)
 /* All phases, or those up to a stop. */
 static int run_phases(struct run *run)
 {
-    int code = execute(run);
+    int code = simulate_execute(run);
     while (!code && !run->report.stopped && !phases_is_last(&run->phases)) {
         code = simulate_next(run);
         if (code || run->stopped_before)
             break;
-        code = execute(run);
+        code = simulate_execute(run);
     }
     if (run->stopped_before) { /* between two phases: nothing else closed them */
         struct cloth_error error = {0};
@@ -285,9 +287,12 @@ int simulate(const struct simulate_options *options)
     const bool begins = !code && !run.stopped_before;
     if (code == CLOTH_E_RUN) /* a start whose places no check can take */
         code = CLOTH_E_INPUT;
-    code = begins ? run_phases(&run) : code;
-    if (begins && !code)
-        code = simulate_conclude(&run);
+    if (begins && options->check)
+        code = simulate_check(&run);
+    else if (begins) {
+        code = run_phases(&run);
+        code = code ? code : simulate_conclude(&run);
+    }
     struct cloth_error ignored = {0};
     outputs_close(&run.outputs, &ignored);
     outputs_free(&run.outputs);

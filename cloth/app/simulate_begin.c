@@ -142,8 +142,8 @@ static void simulate_begin_warn(const struct run *run)
 static void agree_on_frames(struct run *run)
 {
     const struct simulate_options *options = run->options;
-    int wanted =
-        options->output || options->live || options->check_intersections || run->outputs.drape.n;
+    int wanted = !options->check && (options->output || options->live ||
+                                     options->check_intersections || run->outputs.drape.n);
     MPI_Bcast(&wanted, 1, MPI_INT, 0, MPI_COMM_WORLD);
     run->wants_frames = wanted;
 }
@@ -152,18 +152,24 @@ static void agree_on_frames(struct run *run)
 static void open_outputs(struct run *run, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
+    struct outputs_extent *all = &run->forecast.extent;
     simulate_begin_warn(run);
-    if (run->model->n_probes && !options->output)
+    const bool writes = options->output || options->check;
+    if (run->model->n_probes && !writes)
         fprintf(stderr, "duite-cloth: warning: the scene has probes, whose table is written into "
                         "the folder of --output; there is none\n");
-    if (run->model->hdf5.every && !options->output)
+    if (run->model->hdf5.every && !writes)
         fprintf(stderr, "duite-cloth: warning: the scene asks for output.hdf5, whose frames are "
                         "written into the folder of --output; there is none\n");
-    if (options->output)
-        outputs_check_room(run->phases.n, run->phases.models, run->flow, options->output, error);
+    if (writes)
+        outputs_extent_find(all, options, &run->phases, run->flow, &run->apart, error);
+    if (options->output && !error->code)
+        outputs_check_room(all, run->model, run->flow, options->output, error);
     if (!error->code)
         start_check(run->model, run->flow, &run->apart, options->scene, error);
-    if (!error->code)
+    if (options->check)
+        forecast_begin(&run->forecast, &run->phases);
+    else if (!error->code)
         outputs_open(&run->outputs, options, &run->phases, run->flow, &run->apart,
                      options->restart ? &run->restart.at : NULL, error);
     if (!error->code && options->restart)

@@ -1,13 +1,14 @@
 #ifndef CLOTH_APP_SIMULATE_RUN_H
 #define CLOTH_APP_SIMULATE_RUN_H
 
+#include "cloth/app/report/forecast.h"
 #include "cloth/app/run/checkpoints.h"
 #include "cloth/app/run/outputs.h"
 #include "cloth/app/run/progress.h"
 #include "cloth/app/simulate.h"
 #include "cloth/untangle/untangle.h"
 
-/* Shared by simulate.c and simulate_begin.c: a run, from reading to reporting. */
+/* Shared by simulate.c, simulate_begin.c and simulate_check.c: a run, from reading to reporting. */
 
 struct run {
     const struct simulate_options *options;
@@ -27,6 +28,7 @@ struct run {
     struct untangle_result untangled; /* rank 0 */
     struct mesh_elastic *elastic;     /* rank 0: of each material of the phase that runs */
     struct cloth_error untraced;      /* why the trace is not whole */
+    struct forecast forecast;         /* rank 0, with --check */
     bool intersects;                  /* some were found; the same on all ranks */
     bool stopped_before;              /* asked to stop before the phase began */
 };
@@ -49,5 +51,14 @@ int simulate_prepare(struct run *run);
 
 /* Goes on to the next phase, unless that is asked to stop: stopped_before. Collective; as above. */
 int simulate_next(struct run *run);
+
+/* Runs the phase that is prepared; with --check its first steps alone. Collective; as above. */
+int simulate_execute(struct run *run);
+
+/* With --check, after simulate_prepare: says what all of the run takes. Collective; as above. */
+int simulate_check(struct run *run);
+/* Calls of the runtime in its first steps; they have the form of those of flow_progress. */
+void simulate_check_step(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations);
+int simulate_check_ends(void *context);
 
 #endif

@@ -72,6 +72,10 @@ int output_scene(const struct output_frames *frames, const struct output_setup *
 /* Writes the text of scene.json for a setup. Failures are the file's. */
 void output_scene_text(FILE *file, const struct output_setup *setup);
 
+/* Bytes of the files that output_open makes for a setup, about, and of what each frame adds to
+ * them. Touches no file. Local. */
+double output_begin_bytes(const struct output_setup *setup, double *frame);
+
 /* Bytes free for files in a folder, which need not exist yet, plus those of the earlier run's files
  * that would be replaced. Infinite if the file system does not say. Local. */
 double output_room(const char *folder);

@@ -11,6 +11,7 @@ libduite_view_a_SOURCES = \
 	cloth/view/film.h cloth/view/film.c \
 	cloth/view/legend.h cloth/view/legend.c \
 	cloth/view/obstacles.c \
+	cloth/view/pick.h cloth/view/pick.c \
 	cloth/view/picture.c \
 	cloth/view/player.h cloth/view/player.c \
 	cloth/view/scene.h cloth/view/scene.c cloth/view/scene_draw.c \

@@ -3,12 +3,14 @@
 #include "cloth/view/window.h"
 
 #include "cloth/view/overlay.h"
+#include "cloth/view/pick.h"
 #include "cloth/view/player.h"
 
 #include <epoxy/gl.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 
 static const double SEEN = 2.0;   /* s that the time line stays after the mouse has moved */
@@ -21,6 +23,7 @@ static const char *const HELP[] = {"space",       "play, pause",
                                    "Home, End",   "first, last frame",
                                    "up, down",    "play faster, slower",
                                    "drag",        "turn (left button), move (right button)",
+                                   "click",       "name a vertex, with the line of a probe of it",
                                    "wheel",       "zoom",
                                    "r",           "camera as it was",
                                    "c",           "next colours: block, rank, strain, ...",
@@ -40,6 +43,8 @@ struct window {
     double x, y;            /* of the mouse, where it was seen last */
     double moved;           /* s: when that was; -SEEN: never */
     unsigned recolour;      /* how often the next colours were asked for */
+    double press[2];        /* where the left button went down */
+    char picked[160];       /* the vertex that was named last; empty: none */
     bool wire, help, save, seeking, changed;
 };
 
@@ -74,6 +79,7 @@ static void on_key(GLFWwindow *glfw, int key, int scancode, int action, int mods
         return;
     w->changed = true;
     w->moved = now;
+    *w->picked = '\0'; /* another frame may have it elsewhere */
     switch (key) {
     case GLFW_KEY_SPACE:
         view_player_toggle(&w->player, now);
@@ -111,13 +117,47 @@ static bool seek(struct window *w)
     return part >= 0;
 }
 
+/* Names the vertex below the mouse: at the line's place, and its probe on standard output. */
+static void pick(struct window *w)
+{
+    const struct view_show *show = w->show;
+    const struct output_cache *cache = show->cache;
+    struct view_camera camera;
+    char probe[160];
+    int width, height;
+    glfwGetWindowSize(w->glfw, &width, &height);
+    view_orbit_camera(&show->sight.orbit, (double)width / height, &camera);
+    const uint32_t vertex =
+        view_pick(&camera, width, height, &cache->mesh, show->position, w->x, w->y);
+    *w->picked = '\0';
+    if (vertex == VIEW_PICKED_NONE)
+        return;
+    const struct view_picked picked =
+        view_picked_of(&cache->mesh, cache->apart.n_cloths, cache->apart.end, vertex);
+    const double *x = show->position + 3 * (size_t)vertex;
+    snprintf(w->picked, sizeof w->picked, "vertex %" PRIu32 "%s%.40s%s%.40s at %.4g, %.4g, %.4g m",
+             picked.vertex, picked.cloth ? " of " : "", picked.cloth ? picked.cloth : "",
+             picked.panel ? ", " : "", picked.panel ? picked.panel : "", x[0], x[1], x[2]);
+    view_picked_probe(&picked, sizeof probe, probe);
+    printf("%s\n", probe);
+    fflush(stdout);
+}
+
 static void on_button(GLFWwindow *glfw, int button, int action, int mods)
 {
+    const double still = 3; /* pixels: a click that moves less is no drag */
     struct window *w = window_of(glfw);
     (void)mods;
     w->changed = true;
-    if (button == GLFW_MOUSE_BUTTON_LEFT)
-        w->seeking = action == GLFW_PRESS && seek(w);
+    if (button != GLFW_MOUSE_BUTTON_LEFT)
+        return;
+    const bool sought = w->seeking;
+    w->seeking = action == GLFW_PRESS && seek(w);
+    if (action == GLFW_PRESS) {
+        w->press[0] = w->x;
+        w->press[1] = w->y;
+    } else if (!sought && hypot(w->x - w->press[0], w->y - w->press[1]) < still)
+        pick(w);
 }
 
 static void on_mouse(GLFWwindow *glfw, double x, double y)
@@ -185,8 +225,8 @@ static int open_glfw(struct window *w, const struct view_wish *wish, struct clot
 
 static void name_frame(const struct window *w, size_t size, char line[size])
 {
-    if (w->live) {
-        snprintf(line, size, "%s", w->live->line);
+    if (*w->picked || w->live) {
+        snprintf(line, size, "%s", *w->picked ? w->picked : w->live->line);
         return;
     }
     snprintf(line, size, "frame %" PRIu64 " of 0 to %" PRIu64 ", %.4g s, %.4g frames a second",
@@ -197,7 +237,7 @@ static void name_frame(const struct window *w, size_t size, char line[size])
 static void set_title(const struct window *w)
 {
     const struct view_orbit *orbit = &w->show->sight.orbit;
-    char line[120], title[512];
+    char line[160], title[512];
     name_frame(w, sizeof line, line);
     snprintf(title, sizeof title, "%.200s: %s, --camera=%.3g,%.3g,%.3g (h: help)", w->folder, line,
              orbit->azimuth, orbit->elevation, orbit->zoom);
@@ -206,14 +246,15 @@ static void set_title(const struct window *w)
 
 static bool has_line(const struct window *w, double now)
 {
-    return w->help || w->player.playing || now - w->moved < SEEN || (w->live && w->live->waits);
+    return w->help || w->player.playing || *w->picked || now - w->moved < SEEN ||
+           (w->live && w->live->waits);
 }
 
 static int draw_overlay(struct window *w, bool lined, int width, int height,
                         struct cloth_error *error)
 {
     const uint64_t last = w->player.n_frames - 1;
-    char line[120];
+    char line[160];
     name_frame(w, sizeof line, line);
     const struct view_overlay_text text = {
         .part = w->live ? -1

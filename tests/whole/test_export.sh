@@ -37,6 +37,6 @@ done
 ok "another ending is refused" refuses "ends in .usda, .usd, .glb or .obj, not" export_to a.fbx
 ok "a frame that is not there is refused" refuses "4 frames, 0 to 3: no frame 9" export_to c.glb --frame 9
 ok "frames that are not there are refused" refuses "4 frames, 0 to 3: no frame 9" export_to c.usda --frames 2:9
-ok "several frames in one of glTF are refused" refuses "--frames is of films and of USD" export_to c.glb --frames 1:2
+ok "several frames in one of glTF are refused" refuses "--frames is of films, of USD and of the check" export_to c.glb --frames 1:2
 exits 1 "a file that cannot be written" "$DUITE_VIEW" "$scratch/frames" --export "$scratch/nowhere/c.glb"
 ok "what was refused left no file" test ! -e "$scratch/c.glb" -a ! -e "$scratch/c.usda"

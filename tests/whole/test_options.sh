@@ -74,6 +74,8 @@ ok "a negative seed" wrong "duite-cloth: --seed -1: a whole number from 0 to 184
     --seed -1
 ok "a scheduler of no name" wrong "duite-cloth: --scheduler lazy: there is no scheduler of this name; known are " scene.yaml \
     --scheduler lazy
+ok "a check of a run that goes on" wrong_on_two "duite-cloth: --check is of a run from its start, and writes nothing" --check --restart frames \
+    scene.yaml
 ok "a mapping of no name" wrong "duite-cloth: --mapping flat: there is no mapping of this name; known are " scene.yaml \
     --mapping flat
 ok "a balancer of no name" wrong "duite-cloth: --balance fair: there is no balancer of this name; known are none, " \

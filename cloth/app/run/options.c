@@ -93,6 +93,8 @@ char *environment_help(int key, const char *text, void *input)
 
 /* ---- Shipped scenes ---- */
 
+static const char GALLERY[] = "gallery/"; /* the only folder among them */
+
 /* The folder beside the program comes first, so that an installed tree may be moved; configure's
  * folder comes second. */
 
@@ -124,7 +126,8 @@ static char *shipped_folder(void)
 char *shipped_scene(const char *name)
 {
     char *path = NULL, *folder = NULL;
-    if (strchr(name, '/') || access(name, F_OK) == 0)
+    const bool gallery = strncmp(name, GALLERY, sizeof GALLERY - 1) == 0;
+    if (strchr(name + (gallery ? sizeof GALLERY - 1 : 0), '/') || access(name, F_OK) == 0)
         return NULL;
     folder = shipped_folder();
     if (folder && asprintf(&path, "%s/%s", folder, name) < 0)
@@ -143,7 +146,7 @@ static void print_line(FILE *file, const char *name, const char *line)
     const char *text = line + strspn(line, "# "), *end = text;
     while (*end && *end != '\n' && !(*end == '.' && (end[1] == ' ' || end[1] == '\n')))
         end++;
-    fprintf(file, "%-16s %.*s%s\n", name, (int)(end - text), text, *end == '.' ? "." : " ...");
+    fprintf(file, "%-26s %.*s%s\n", name, (int)(end - text), text, *end == '.' ? "." : " ...");
 }
 
 static size_t print_scene(FILE *file, const char *folder, const char *name)
@@ -165,17 +168,32 @@ static int is_scene(const struct dirent *entry)
     return n > 5 && strcmp(entry->d_name + n - 5, ".yaml") == 0;
 }
 
+/* Those of the folder, or of one in it. */
+static size_t print_scenes(FILE *file, const char *folder, const char *inner)
+{
+    struct dirent **scenes = NULL;
+    char *path = NULL, *name;
+    size_t printed = 0;
+    const int made = folder ? asprintf(&path, "%s/%s", folder, inner) : -1;
+    const int n = made < 0 ? 0 : scandir(path, &scenes, is_scene, alphasort);
+    for (int i = 0; i < n; i++) {
+        if (asprintf(&name, "%s%s", inner, scenes[i]->d_name) >= 0) {
+            printed += print_scene(file, folder, name);
+            free(name);
+        }
+        free(scenes[i]);
+    }
+    if (made >= 0)
+        free(path);
+    free(scenes);
+    return printed;
+}
+
 size_t shipped_print(FILE *file)
 {
     char *folder = shipped_folder();
-    struct dirent **scenes = NULL;
-    size_t printed = 0;
-    const int n = folder ? scandir(folder, &scenes, is_scene, alphasort) : 0;
-    for (int i = 0; i < n; i++) {
-        printed += print_scene(file, folder, scenes[i]->d_name);
-        free(scenes[i]);
-    }
-    free(scenes);
+    size_t printed = print_scenes(file, folder, "");
+    printed += print_scenes(file, folder, GALLERY);
     free(folder);
     return printed;
 }

@@ -21,6 +21,7 @@ struct simulate_options {
     duite_options runtime;   /* policies are never NULL when it runs */
     const char *scheduler_name, *mapping_name, *balance_name;
     bool check_intersections; /* of each frame */
+    bool check;               /* only says what the run would take */
     bool quiet;               /* neither progress nor summary */
 };
 
@@ -37,8 +38,8 @@ char *environment_help(int key, const char *text, void *input);
 
 /* The scenes that make install puts into share/duite/scenes. Local. */
 
-/* The path of the shipped scene of this file name, to be freed. NULL: the name has a folder, a file
- * of this name is here, or no shipped scene has it. */
+/* The path of the shipped scene of this file name, or gallery/NAME, to be freed. NULL: the name has
+ * another folder, a file of this name is here, or no shipped scene has it. */
 char *shipped_scene(const char *name);
 
 /* Prints a line for each: its file name and its first line's text. Returns how many there are. */

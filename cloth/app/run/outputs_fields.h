@@ -11,11 +11,6 @@
 /* Says it on standard error. From any thread. */
 void outputs_warn(const char *text);
 
-/* Checks, before the first write, that frames and probes of a run in n phases fit into the folder's
- * file system. Warns if there are unusually many. Error: CLOTH_E_INPUT, they do not fit. */
-int outputs_check_room(uint32_t n, const struct model *phases, const struct flow *flow,
-                       const char *folder, struct cloth_error *error);
-
 /* ---- Data that viewers colour the cloth by ----
  *
  * A full disk does not end the run: one warning says so, *colours becomes NULL, and nothing more is
@@ -53,6 +48,9 @@ int outputs_hdf5_go_on(struct outputs_hdf5 *to, const struct model *model,
                        struct cloth_error *error);
 /* The files are whole; fills `unwritten`. */
 void outputs_hdf5_close(struct outputs_hdf5 *of);
+
+/* Size of a model's scientific frames on the disk, bytes a frame of all; 0: it has none. */
+double outputs_hdf5_bytes(const struct model *model);
 
 /* The parts of a frame, by vertex. Frames that are not taken are ignored. */
 void outputs_hdf5_position(struct outputs_hdf5 *of, uint64_t frame, double time,

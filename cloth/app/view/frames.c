@@ -214,8 +214,6 @@ struct folder {
 static int find_same(const struct folder *folder, struct cloth_error *error)
 {
     const uint32_t n = folder->cache->mesh.n_vertices;
-    if (!folder->cache->n_frames)
-        return cloth_fail(error, CLOTH_E_INPUT, "the folder has no finished frame");
     int code = CLOTH_OK;
     for (uint64_t k = 0; k < folder->cache->n_frames && !code; k++) {
         code = output_cache_frame(folder->cache, k, folder->position, error);
@@ -228,12 +226,12 @@ static int find_same(const struct folder *folder, struct cloth_error *error)
     return code;
 }
 
-static int check_each(const struct folder *folder, struct intersections *intersections,
-                      struct cloth_error *error)
+static int check_each(const struct folder *folder, const struct view_frames *frames,
+                      struct intersections *intersections, struct cloth_error *error)
 {
     struct output_cache *cache = folder->cache;
     int code = CLOTH_OK;
-    for (uint64_t k = 0; k < cache->n_frames && !code; k++) {
+    for (uint64_t k = frames->first; k <= frames->last && !code; k++) {
         code = output_cache_frame(cache, k, folder->position, error);
         code = code ? code : output_cache_pose(cache, k, error);
         code = code ? code
@@ -243,8 +241,8 @@ static int check_each(const struct folder *folder, struct intersections *interse
     return code;
 }
 
-static int check_frames_folder(struct folder *folder, struct intersections_found *found,
-                               struct cloth_error *error)
+static int check_frames_folder(struct folder *folder, const struct view_frames *frames,
+                               struct intersections_found *found, struct cloth_error *error)
 {
     const struct output_cache *cache = folder->cache;
     const struct mesh *mesh = &cache->mesh;
@@ -264,21 +262,26 @@ static int check_frames_folder(struct folder *folder, struct intersections_found
     }
     code = code ? code : intersections_open(&intersections, &setup, &soup, error);
     contact_soup_free(&soup);
-    code = code ? code : check_each(folder, intersections, error);
+    code = code ? code : check_each(folder, frames, intersections, error);
     intersections_close(&intersections);
     return code;
 }
 
-int view_frames_check(struct output_cache *cache, struct intersections_found *found,
+int view_frames_check(struct output_cache *cache, const char *path,
+                      const struct view_frames *wanted, struct intersections_found *found,
                       struct cloth_error *error)
 {
+    struct view_frames frames = *wanted;
+    if (find_frame(cache, path, wanted->last, &frames.last, error) ||
+        find_frame(cache, path, wanted->first, &frames.first, error))
+        return error->code;
     const size_t n = cache->mesh.n_vertices;
     struct folder folder = {.cache = cache,
                             .position = cloth_alloc(n, 3 * sizeof(double), error),
                             .order = cloth_alloc(n, sizeof *folder.order, error),
                             .same = cloth_alloc(n, sizeof *folder.same, error)};
     const int code = folder.position && folder.order && folder.same
-                         ? check_frames_folder(&folder, found, error)
+                         ? check_frames_folder(&folder, &frames, found, error)
                          : CLOTH_E_MEMORY;
     free(folder.position);
     free(folder.order);

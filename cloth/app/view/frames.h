@@ -39,9 +39,11 @@ bool view_frames_exports_many(const char *path);
 int view_frames_export(struct output_cache *cache, const char *folder,
                        const struct view_frames *frames, uint64_t frame, struct cloth_error *error);
 
-/* Checks all frames, as they are written; *found is zero before. Vertices that are in the same
- * place in each frame count as one: welds. Errors: of output_cache_frame, too. */
-int view_frames_check(struct output_cache *cache, struct intersections_found *found,
+/* Checks the frames from first to last, as they are written; *found is zero before. Vertices that
+ * are in the same place in each frame of the folder count as one: welds. Errors: of
+ * output_cache_frame, too. */
+int view_frames_check(struct output_cache *cache, const char *folder,
+                      const struct view_frames *frames, struct intersections_found *found,
                       struct cloth_error *error);
 
 #endif

@@ -190,3 +190,34 @@ int output_begin(const struct output_setup *setup, uint32_t n_points, struct clo
         begin_drop(&begin);
     return code;
 }
+
+/* ---- Their size ---- */
+
+static ssize_t begin_count_bytes(void *bytes, const char *text, size_t n)
+{
+    (void)text;
+    *(double *)bytes += (double)n;
+    return (ssize_t)n;
+}
+
+double output_begin_bytes(const struct output_setup *setup, double *frame)
+{
+    enum { INDEX = 24 }; /* characters of a frame's line in frames.csv, about */
+    struct begin begin = {.setup = setup, .n_bodies = setup->bodies ? setup->bodies->n : 0};
+    double bytes = 0;
+    FILE *count = fopencookie(&bytes, "w", (cookie_io_functions_t){.write = begin_count_bytes});
+    *frame = INDEX;
+    begin.most = begin.n_bodies;
+    for (size_t i = 0; i < setup->n_meshes; i++)
+        begin.n_points += setup->meshes[i]->n_vertices;
+    for (uint32_t i = 0; count && i < begin_count(&begin); i++) {
+        const struct begin_file file = begin_file(&begin, i);
+        if (file.fill)
+            file.fill(count, file.what);
+        if (file.fill == output_pc2_fill)
+            *frame += 3.0 * sizeof(float) * *(const uint32_t *)file.what;
+    }
+    if (count)
+        fclose(count);
+    return bytes;
+}

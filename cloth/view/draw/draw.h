@@ -150,8 +150,8 @@ void draw_mesh_values(struct draw_mesh *mesh, const float *value);
 /* The mean length of the triangles' edges; 0 without triangles. */
 float draw_mesh_edge(const struct draw_mesh *mesh);
 void draw_mesh_draw(const struct draw_mesh *mesh);
-/* Few triangles over some of its vertices, which are about where it is; chosen in its first place.
- */
+/* Few triangles over some of its vertices, which are about where it is, chosen in each place anew:
+ * a picture of a frame does not depend on what was drawn before. */
 void draw_mesh_draw_coarse(const struct draw_mesh *mesh);
 /* A run of its triangles, and of its lines. */
 struct draw_part {
@@ -160,11 +160,12 @@ struct draw_part {
 void draw_mesh_draw_part(const struct draw_mesh *mesh, const struct draw_part *part);
 void draw_mesh_free(struct draw_mesh *mesh);
 
-/* Joins vertices over edges shorter than `longest` (m), so that about a fifth of the triangles are
- * left where all edges are: n of them are in and out. Returns how many are left. vertex: n_vertices
- * x (position, normal); join: scratch, n_vertices. Pure. */
-uint32_t draw_coarsen(uint32_t n_vertices, const float *vertex, float longest, uint32_t *join,
-                      uint32_t n, uint32_t (*triangle)[3]);
+/* Joins vertices over edges shorter than `longest` (m) to others that are at most `flat` (m) off
+ * their planes, and they off theirs, so that about a fifth of the triangles are left where all
+ * edges are: n of them are in and out. Returns how many are left. vertex: n_vertices x (position,
+ * normal); join: scratch, n_vertices. Pure. */
+uint32_t draw_coarsen(uint32_t n_vertices, const float *vertex, float longest, float flat,
+                      uint32_t *join, uint32_t n, uint32_t (*triangle)[3]);
 
 /* --- program.c --- */
 

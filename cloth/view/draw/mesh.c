@@ -5,51 +5,68 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COARSE = 3000, MAX_ROUNDS = 3 }; /* triangles that are few enough */
-static const float SHORT = 0.04f;       /* edges that may vanish, in radii of the mesh */
+/* Triangles that are few enough. Lengths of edges that may vanish, and how far a vertex may leave
+ * the surface that way, in radii of the mesh: the sky's light on a vertex is looked for an
+ * eightieth of a radius off it (draw_lights_aim), and would be none where a coarse triangle is
+ * farther out. */
+enum { COARSE = 3000, MAX_ROUNDS = 3 };
+static const float SHORT = 0.04f, FLAT = 0.002f;
 
-static bool draw_mesh_is_short(const float *vertex, uint32_t a, uint32_t b, float longest)
+/* What may be joined: m. */
+struct joins {
+    const float *vertex;
+    uint32_t *join;
+    float longest, flat;
+};
+
+/* Where an edge is so short, and either end so near to the plane of the other one, that it may
+ * vanish. */
+static bool may_join(const struct joins *joins, uint32_t a, uint32_t b)
 {
-    float square = 0;
-    for (size_t k = 0; k < 3; k++) {
-        const float way = vertex[6 * (size_t)a + k] - vertex[6 * (size_t)b + k];
+    const float *p = joins->vertex + 6 * (size_t)a, *q = joins->vertex + 6 * (size_t)b;
+    float square = 0, off_p = 0, off_q = 0;
+    for (int k = 0; k < 3; k++) {
+        const float way = p[k] - q[k];
         square += way * way;
+        off_p += way * p[3 + k];
+        off_q += way * q[3 + k];
     }
-    return square < longest * longest;
+    return square < joins->longest * joins->longest && fabsf(off_p) <= joins->flat &&
+           fabsf(off_q) <= joins->flat;
 }
 
 /* All three to the first one, where none is joined yet. */
-static void join_triangle(const float *vertex, float longest, uint32_t *join, const uint32_t of[3])
+static void join_triangle(const struct joins *joins, const uint32_t of[3])
 {
     for (int i = 0; i < 3; i++)
-        if (join[of[i]] != UINT32_MAX ||
-            !draw_mesh_is_short(vertex, of[i], of[(i + 1) % 3], longest))
+        if (joins->join[of[i]] != UINT32_MAX || !may_join(joins, of[i], of[(i + 1) % 3]))
             return;
-    join[of[0]] = join[of[1]] = join[of[2]] = of[0];
+    joins->join[of[0]] = joins->join[of[1]] = joins->join[of[2]] = of[0];
 }
 
 /* A corner that is not joined yet to where a neighbour is. */
-static void join_corner(const float *vertex, float longest, uint32_t *join, const uint32_t of[3],
-                        int corner)
+static void join_corner(const struct joins *joins, const uint32_t of[3], int corner)
 {
-    for (int k = 1; k < 3 && join[of[corner]] == UINT32_MAX; k++) {
-        const uint32_t other = of[(corner + k) % 3];
-        if (draw_mesh_is_short(vertex, of[corner], other, longest))
-            join[of[corner]] = join[other];
+    for (int k = 1; k < 3 && joins->join[of[corner]] == UINT32_MAX; k++) {
+        const uint32_t to = joins->join[of[(corner + k) % 3]];
+        if (to != UINT32_MAX && may_join(joins, of[corner], of[(corner + k) % 3]) &&
+            may_join(&(struct joins){joins->vertex, NULL, INFINITY, joins->flat}, of[corner], to))
+            joins->join[of[corner]] = to;
     }
 }
 
-uint32_t draw_coarsen(uint32_t n_vertices, const float *vertex, float longest, uint32_t *join,
-                      uint32_t n, uint32_t (*triangle)[3])
+uint32_t draw_coarsen(uint32_t n_vertices, const float *vertex, float longest, float flat,
+                      uint32_t *join, uint32_t n, uint32_t (*triangle)[3])
 {
+    const struct joins joins = {vertex, join, longest, flat};
     uint32_t left = 0;
     for (uint32_t v = 0; v < n_vertices; v++)
         join[v] = UINT32_MAX;
     for (uint32_t t = 0; t < n; t++)
-        join_triangle(vertex, longest, join, triangle[t]);
+        join_triangle(&joins, triangle[t]);
     for (uint32_t t = 0; t < n; t++)
         for (int corner = 0; corner < 3; corner++)
-            join_corner(vertex, longest, join, triangle[t], corner);
+            join_corner(&joins, triangle[t], corner);
     for (uint32_t t = 0; t < n; t++) {
         uint32_t to[3];
         for (int i = 0; i < 3; i++)
@@ -87,7 +104,7 @@ static void make_coarse(struct draw_mesh *mesh)
     for (int round = 0; round < MAX_ROUNDS && mesh->n_coarse > COARSE && join && triangle; round++)
         mesh->n_coarse =
             draw_coarsen(mesh->n_vertices, mesh->vertex, (float)(round + 1) * SHORT * mesh->radius,
-                         join, mesh->n_coarse, triangle);
+                         FLAT * mesh->radius, join, mesh->n_coarse, triangle);
     glBindVertexArray(mesh->array);
     glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, (GLintptr)behind_lines(mesh),
                     (GLsizeiptr)((size_t)12 * mesh->n_coarse),
@@ -173,7 +190,7 @@ static void upload_vertices(struct draw_mesh *mesh)
     glBindBuffer(GL_ARRAY_BUFFER, mesh->vertices);
     glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)((size_t)mesh->n_vertices * 6 * sizeof *mesh->vertex),
                  mesh->vertex, GL_DYNAMIC_DRAW);
-    if (!mesh->n_coarse && mesh->n_triangles)
+    if (mesh->n_triangles)
         make_coarse(mesh);
 }
 

@@ -1,5 +1,6 @@
 /* The camera of a fit: all points inside the margins and as near as they allow, looking from where
  * it was told. */
+#include "cloth/view/pick.h"
 #include "cloth/view/view.h"
 #include "tests/support/unit.h"
 
@@ -227,4 +228,97 @@ UNIT_LOOP(keeps_depths_when_it_turns, 0, 9)
         project(&camera, position + 3 * v, at);
         ck_assert(at[2] > -1 && at[2] < 1);
     }
+}
+
+/* ---- Vertices that are pointed at ---- */
+
+enum { WIDE = 600, HIGH = 400, SHEET = 9, ALL = 2 * SHEET * SHEET };
+
+/* Two level sheets of SHEET x SHEET vertices, the second one below the first, seen from above. */
+static void see_sheets(struct view_camera *camera, double *position)
+{
+    struct view_fit fit;
+    for (int v = 0; v < ALL; v++) {
+        position[3 * v] = 0.1 * (v % SHEET);
+        position[3 * v + 1] = v < SHEET * SHEET ? 1 : 0.8;
+        position[3 * v + 2] = 0.1 * (v / SHEET % SHEET);
+    }
+    view_fit_start(&fit, 20, 70, (double)WIDE / HIGH, 1);
+    view_fit_add(&fit, ALL, position);
+    view_fit_camera(&fit, camera);
+}
+
+/* Both sheets, or, without triangles, a chain along the first row of each. */
+static void join_sheets(struct mesh *mesh, bool triangles)
+{
+    static double none[3 * ALL];
+    uint32_t corner[2 * ALL][3], edge[ALL][2], n = 0, n_edges = 0;
+    struct cloth_error error = {0};
+    for (uint32_t v = 0; v < ALL; v++) {
+        const bool inside = v % SHEET + 1 < SHEET, last = v / SHEET % SHEET + 1 == SHEET;
+        if (triangles && inside && !last) {
+            memcpy(corner[n++], (uint32_t[3]){v, v + SHEET, v + 1}, sizeof *corner);
+            memcpy(corner[n++], (uint32_t[3]){v + 1, v + SHEET, v + SHEET + 1}, sizeof *corner);
+        }
+        if (!triangles && inside && v / SHEET % SHEET == 0)
+            memcpy(edge[n_edges++], (uint32_t[2]){v, v + 1}, sizeof *edge);
+    }
+    ck_assert_int_eq(mesh_inline(mesh, ALL, none, n_edges, edge[0], n, corner[0], &error), 0);
+}
+
+static uint32_t pick_beside(const struct mesh *mesh, uint32_t vertex, double pixels)
+{
+    struct view_camera camera;
+    double position[3 * ALL], at[3];
+    see_sheets(&camera, position);
+    project(&camera, position + 3 * vertex, at);
+    return view_pick(&camera, WIDE, HIGH, mesh, position, 0.5 * WIDE * (1 + at[0]) + pixels,
+                     0.5 * HIGH * (1 - at[1]) - pixels);
+}
+
+/* Where it is seen it is picked; one below the other sheet is not. */
+UNIT_TEST(picks_what_is_seen)
+{
+    UNIT_OWNED(mesh_free) struct mesh mesh;
+    join_sheets(&mesh, true);
+    for (uint32_t v = 0; v < SHEET * SHEET; v++)
+        if (v % SHEET && v % SHEET + 1 < SHEET && v >= SHEET && v < SHEET * (SHEET - 1))
+            ck_assert_uint_eq(pick_beside(&mesh, v, 3), v);
+    const uint32_t below = SHEET * SHEET + SHEET * (SHEET / 2) + SHEET / 2;
+    ck_assert_uint_lt(pick_beside(&mesh, below, 0), SHEET * SHEET);
+    ck_assert_uint_eq(pick_beside(&mesh, 0, 150), VIEW_PICKED_NONE);
+}
+
+UNIT_TEST(picks_chains)
+{
+    UNIT_OWNED(mesh_free) struct mesh mesh;
+    join_sheets(&mesh, false);
+    for (uint32_t v = 0; v < SHEET; v++)
+        ck_assert_uint_eq(pick_beside(&mesh, v, 5), v);
+    ck_assert_uint_eq(pick_beside(&mesh, 4 * SHEET, 0), VIEW_PICKED_NONE);
+}
+
+/* Of two cloths, one of two panels, as cloth.obj has them. */
+UNIT_TEST(names_what_is_picked)
+{
+    char *group[] = {"shirt", "front", "back", "scarf"};
+    struct mesh_group_run run[] = {{0, 0, 2}, {1, 0, 1}, {2, 1, 1}, {3, 2, 1}};
+    uint32_t corner[] = {0, 1, 2, 3, 4, 5, 6, 7, 8}, start[] = {0, 3, 6, 9}, end[] = {6, 9};
+    const struct mesh mesh = {.n_vertices = 9,
+                              .n_faces = 3,
+                              .face_start = start,
+                              .face_corner = corner,
+                              .n_groups = 4,
+                              .n_group_runs = 4,
+                              .group = group,
+                              .group_run = run};
+    char line[160];
+    struct view_picked picked = view_picked_of(&mesh, 2, end, 4);
+    ck_assert_uint_eq(picked.vertex, 4);
+    ck_assert_str_eq(picked.cloth, "shirt");
+    ck_assert_str_eq(picked.panel, "back");
+    picked = view_picked_of(&mesh, 2, end, 8);
+    ck_assert_ptr_null(picked.panel);
+    view_picked_probe(&picked, sizeof line, line);
+    ck_assert_str_eq(line, "- {name: vertex2, cloth: scarf, vertices: [2]}");
 }

@@ -108,6 +108,27 @@ says "names it" "cannot read $scratch/far/scene.json: Is a directory"
 exits 1 "a folder that is not there for the picture" picture --png "$scratch/none/x.png"
 says "names it" "$scratch/none/x.png"
 
+# A scene before it runs has a picture, and marks of its pins in it; nothing is left of it.
+cat > "$scratch/scene.yaml" << 'END'
+schema: 1
+cloths:
+  - {name: sheet, mesh: {grid: {width: 1, height: 1, nx: 4, ny: 4}}, material: denim, pins: [{vertices: [0, 3]}]}
+  - {name: held, mesh: {grid: {width: 1, height: 1, nx: 2, ny: 2}}, material: denim, transform: {translate: [0, 1, 0]}, pins: [{vertices: [0, 1, 2, 3]}]}
+time: {h: 0.01, end: 1}
+END
+start() { TMPDIR=$scratch/start view "$scratch/scene.yaml" --size 64x48 "$@"; }
+mkdir "$scratch/start"
+ok "a scene before it runs" start --png "$scratch/start.png"
+sed '/sheet/s/pins:.*]}\]/pins: []/' "$scratch/scene.yaml" > "$scratch/free.yaml"
+ok "one without pins" view "$scratch/free.yaml" --size 64x48 --png "$scratch/free.png"
+not_ok_expected "pins are seen" cmp "$scratch/start.png" "$scratch/free.png"
+exits 2 "a film of it" start --mp4 "$scratch/start.mp4"
+says "says that it has not run" 'scene.yaml has not run: it has no film'
+ok "nothing is left" sh -c 'test -z "$(ls "$1")"' sh "$scratch/start"
+sed 's/denim/felt/' "$scratch/scene.yaml" > "$scratch/wrong.yaml"
+exits 2 "a scene with a mistake" view "$scratch/wrong.yaml" --png "$scratch/start.png"
+says "names it" 'wrong.yaml:3:.*felt'
+
 # Films. A program in the place of ffmpeg keeps what it is sent, or fails.
 mkdir "$scratch/bin"
 PATH=$scratch/bin:$PATH

@@ -25,7 +25,8 @@ static double air_limit(const struct model *model, double density, double speed)
 static void air_warn(const struct element_sheet *sheet, char *text, size_t size)
 {
     const struct model *model = sheet->model;
-    const double strongest = model_curve_max(model, model->wind_curve);
+    const double gusts = 1 + 3 * model->air.turbulence.intensity; /* three times the mean size */
+    const double strongest = gusts * model_curve_max(model, model->wind_curve);
     double square = 0;
     for (int i = 0; i < 3; i++)
         square += pow(strongest * model->air.wind[i] - sheet->cloth->velocity[i], 2);

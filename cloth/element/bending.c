@@ -222,6 +222,14 @@ static void hinges_pack(const struct element_cloths *cloths, const struct elemen
     list->number[PHYS_HINGE_REST][e] = bend.rest.s;
 }
 
+/* L^2 / (A1 + A2) changes; angles do not. */
+static void hinges_resize(const struct phys_elements *list, uint32_t e,
+                          const struct element_scale *scale)
+{
+    list->number[PHYS_HINGE_STIFFNESS][e] *= scale->square / scale->area;
+    list->number[PHYS_HINGE_DAMPING][e] *= scale->square / scale->area;
+}
+
 const struct element_kind element_hinges = {
     .name = "hinges",
     .part = ELEMENT_HINGES,
@@ -231,6 +239,7 @@ const struct element_kind element_hinges = {
     .has = hinges_has,
     .check = bending_check,
     .pack = hinges_pack,
+    .resize = hinges_resize,
     .force = phys_hinges_force,
     .matrix = phys_hinges_matrix,
     .stiffness = phys_hinges_stiffness,
@@ -248,6 +257,14 @@ static void quadratic_pack(const struct element_cloths *cloths, const struct ele
         list->vector[e][i] = sqrt(bend.stiffness) * bend.rest.weight[i];
 }
 
+/* Weights of a flat shape, which it has still, sum to nothing with its places: they change alike.
+ * Those of the vertices opposite are one over their heights, L / 2 A. */
+static void quadratic_resize(const struct phys_elements *list, uint32_t e,
+                             const struct element_scale *scale)
+{
+    list->vector[e] *= scale->square / (scale->area * sqrt(scale->area));
+}
+
 const struct element_kind element_quadratic = {
     .name = "quadratic bending energies",
     .part = ELEMENT_HINGES,
@@ -257,6 +274,7 @@ const struct element_kind element_quadratic = {
     .has = quadratic_has,
     .check = bending_check,
     .pack = quadratic_pack,
+    .resize = quadratic_resize,
     .force = phys_quadratic_force,
     .matrix = phys_quadratic_matrix,
     .stiffness = phys_quadratic_stiffness,

@@ -211,12 +211,14 @@ static int cloths_make_cloth(struct element_cloths *cloths, uint32_t c, struct c
     const struct model *model = cloths->model;
     const struct model_cloth *cloth = model->cloths + c;
     struct cloth_error inner = {0};
-    if (!element_parts(model, cloth))
-        return CLOTH_OK;
-    int code = check_format(model, cloth, error);
+    const bool parts = element_parts(model, cloth);
+    int code = parts ? check_format(model, cloth, error) : CLOTH_OK;
     if (code)
         return code;
-    mesh_axes(model_rest(cloth), cloths->axis[c][0], cloths->axis[c][1]);
+    if (parts || model->sizes)
+        mesh_axes(model_rest(cloth), cloths->axis[c][0], cloths->axis[c][1]);
+    if (!parts)
+        return CLOTH_OK;
     code = mesh_edges_find(cloths->edges + c, model_rest(cloth), &inner);
     if (code == CLOTH_E_INPUT)
         return model_fail(cloth->mesh_place, error, "cloth '%.60s': %s", cloth->name, inner.text);

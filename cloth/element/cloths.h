@@ -35,7 +35,8 @@ struct element_fold;
 struct element_cloths {
     const struct model *model;
     struct mesh_edges *edges; /* a cloth; none where it has no elements */
-    double (*axis)[2][3];     /* a cloth: directions of warp and weft where its mesh has no uv */
+    double (*axis)[2][3];     /* a cloth: directions of warp and weft where its mesh has no uv; of
+                                 cloths with elements, or if sizes change */
     uint32_t n_seams;
     struct element_seam *seam; /* of cloths with hinges; added when welds are known */
     uint32_t n_folds;
@@ -90,6 +91,21 @@ static inline uint32_t element_material(const struct element_cloths *cloths,
 {
     return model_material_of(cloths->model->cloths + element->cloth, n, element->corner);
 }
+
+/* How lengths at rest change in time: curves of the model along warp and weft, from 1 (0: they
+ * stay); the square of the cosine between the warp and an element's edge, or a spring. */
+struct element_size {
+    uint32_t curve[2];
+    double along;
+    bool keeps; /* its stiffness: a spring of a grid */
+};
+/* That of what has n corners, the first two of them the ends of its edge; triangle: one that the
+ * edge is of, UINT32_MAX: unknown. */
+struct element_size element_size_of(const struct element_cloths *cloths, uint32_t cloth, size_t n,
+                                    const uint32_t *corner, uint32_t triangle);
+/* The shape at a time, s; needs the model's curves alone. */
+struct element_scale element_scale_at(const struct model *model, const struct element_size *size,
+                                      double time);
 
 /* True if a fold gives the rest angle of a hinge; *s: then its 2 sin(theta / 2). */
 bool element_fold_rest(const struct element_cloths *cloths, const struct element *element,

@@ -33,6 +33,12 @@ struct element_sheet {
     double edge;    /* m: the mean distance of its vertices */
 };
 
+/* A shape at rest against that of the mesh: factors of lengths along warp and weft, of areas, and
+ * of the square of the length of an element's edge, or of a spring. */
+struct element_scale {
+    double warp, weft, area, square;
+};
+
 struct element;
 struct element_cloths;
 
@@ -63,6 +69,9 @@ struct element_kind {
      * there. Corners that it lacks are PHYS_NO_CORNER until it uses them. */
     void (*pack)(const struct element_cloths *cloths, const struct element *element,
                  const struct phys_elements *list, uint32_t e);
+    /* For kinds with a shape at rest: changes the vectors and numbers of entry e from those that
+     * pack wrote. Moduli and rigidities are then those of the changed shape. */
+    void (*resize)(const struct phys_elements *list, uint32_t e, const struct element_scale *scale);
     /* For kinds with material_bytes: writes the elements' data of a material of any kind. */
     void (*material)(const struct model_material *material, void *to);
     /* For kinds without pairs: writes why steps of the model are too long for their force on a

@@ -7,6 +7,7 @@ libduite_cloth_a_SOURCES += \
     cloth/element/kind.h \
     cloth/element/kinds.c \
     cloth/element/pressure.c \
+    cloth/element/size.c \
     cloth/element/strain.c cloth/element/strain.h \
     cloth/element/strain_limit.c \
     cloth/element/triangles.c

@@ -3,6 +3,8 @@
 #include "cloth/physics/strain_limit.h"
 #include "cloth/element/cloths.h"
 
+#include <math.h>
+
 static bool strain_limit_has(const struct model *model, const struct model_cloth *cloth)
 {
     bool has = false;
@@ -21,6 +23,12 @@ static void strain_limit_pack(const struct element_cloths *cloths, const struct 
         (1 + material->limit_strain) * element_rest_length(cloths, element);
 }
 
+static void strain_limit_resize(const struct phys_elements *list, uint32_t e,
+                                const struct element_scale *scale)
+{
+    list->number[PHYS_LIMIT_LENGTH][e] *= sqrt(scale->square);
+}
+
 const struct element_kind element_strain_limit = {
     .name = "limits of strain",
     .part = ELEMENT_EDGES,
@@ -29,6 +37,7 @@ const struct element_kind element_strain_limit = {
     .numbers = 2,
     .has = strain_limit_has,
     .pack = strain_limit_pack,
+    .resize = strain_limit_resize,
     .force = phys_strain_limits_force,
     .matrix = phys_strain_limits_matrix,
     .stiffness = phys_strain_limits_stiffness,

@@ -43,6 +43,13 @@ static void triangles_pack(const struct element_cloths *cloths, const struct ele
     list->corner[e][3] = element_material(cloths, element, 3);
 }
 
+static void triangles_resize(const struct phys_elements *list, uint32_t e,
+                             const struct element_scale *scale)
+{
+    list->vector[e] /= (phys_vec){scale->warp, scale->weft, scale->warp, scale->weft};
+    list->number[PHYS_TRIANGLE_AREA][e] *= scale->area;
+}
+
 static void triangles_material(const struct model_material *material, void *to)
 {
     struct phys_membrane *membrane = to;
@@ -65,6 +72,7 @@ const struct element_kind element_triangles = {
     .has = triangles_has,
     .check = triangles_check,
     .pack = triangles_pack,
+    .resize = triangles_resize,
     .material = triangles_material,
     .force = phys_triangles_force,
     .matrix = phys_triangles_matrix,

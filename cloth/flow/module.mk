@@ -39,6 +39,7 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/springs/springs.c \
     cloth/flow/elements/elements.c \
     cloth/flow/elements/members.c \
+    cloth/flow/elements/resize.c \
     cloth/flow/joints/adopted.c \
     cloth/flow/joints/chosen.c \
     cloth/flow/joints/joints.c \

@@ -36,6 +36,8 @@ struct model_material {
                             corrected; > 0: the excess that may be left, of the length at rest */
         uint32_t rounds; /* at most; 0: they are not */
     } correction;
+    uint32_t size[2];   /* curves of the model that lengths at rest along warp and weft are
+                           multiplied by, from 1; 0: they stay */
     double friction;    /* coefficient, >= 0: of contact that is certified */
     int both_diagonals; /* grids: shear springs along both diagonals of a cell */
 };
@@ -140,6 +142,15 @@ struct model_fold {
     char *place;
 };
 
+/* An elastic along a path of vertices, each joined with the next by a spring: the parts of the path
+ * have their parts of the length. It has no mass. */
+struct model_band {
+    struct model_pick pick; /* of vertices, in their order */
+    double length;          /* m, > 0: of all of it, at rest */
+    double ea, damping;     /* N, > 0: force / strain; s: times the stiffness */
+    uint32_t size;          /* curve that the length is multiplied by, from 1; 0: it stays */
+};
+
 enum { MODEL_MAX_REGIONS = 64 };
 
 enum model_seams_state {
@@ -220,6 +231,8 @@ struct model_cloth {
     struct model_seams seams;
     uint32_t n_folds;
     struct model_fold *folds;
+    uint32_t n_bands; /* joints of the model */
+    struct model_band *bands;
     char *place, *mesh_place, *velocity_place; /* of the cloth, and of parts of it */
 };
 
@@ -246,6 +259,8 @@ struct model_joint {
     struct model_pairs pairs;
     double stiffness, damping; /* N/m, > 0; kg/s, along the joint */
     double length;             /* at rest, m; MODEL_START_LENGTH: the distance at the start */
+    uint32_t size;             /* curve that it is multiplied by, from 1; 0: it stays. The stiffness
+                                  goes with one over it */
     double begin, end;         /* s, >= 0; end 0: never */
 };
 

@@ -68,6 +68,9 @@ static void free_cloth(struct model_cloth *cloth)
         free(cloth->folds[i].vertices);
         free(cloth->folds[i].place);
     }
+    for (uint32_t i = 0; i < cloth->n_bands; i++)
+        free_pick(&cloth->bands[i].pick);
+    free(cloth->bands);
     free(cloth->folds);
     free(cloth->masses);
     free(cloth->region);
@@ -300,8 +303,10 @@ struct phys_air model_air_at(const struct model *model, double time)
 {
     const double curve = model_curve_at(model, model->wind_curve, time);
     struct phys_air air = model->air;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++) {
+        air.turbulence.way[i] = air.wind[i] * time;
         air.wind[i] *= curve;
+    }
     return air;
 }
 

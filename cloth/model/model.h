@@ -121,6 +121,7 @@ struct model {
     uint32_t n_curves, n_curve_keys;
     struct model_curve *curves;
     struct phys_curve_key *curve_keys; /* of each curve in ascending order */
+    bool sizes;                        /* lengths at rest change in time */
     double gravity[3];                 /* m/s^2 */
     struct phys_air air;
     uint32_t wind_curve; /* that the wind is multiplied by, from 1; 0: it is constant */

@@ -36,6 +36,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/crossed.c \
 	cloth/scene/build/girth.c \
 	cloth/scene/build/fold.c \
+	cloth/scene/build/band.c \
 	cloth/scene/build/frames.c \
 	cloth/scene/build/needs.c \
 	cloth/scene/build/unusual.c \

@@ -14,12 +14,12 @@ static const struct {
              {.whole = scene_build_check_contact}, {.whole = scene_build_probes},
              {.whole = scene_build_contact_idle},  {.whole = scene_build_hdf5},
              {.whole = scene_build_drape},         {.whole = scene_build_joints},
-             {.whole = scene_build_welds},         {.each = scene_build_mesh_weld},
-             {.each = scene_build_seams},          {.whole = scene_build_sewn},
-             {.each = scene_build_pieces},         {.each = scene_build_folds},
-             {.each = scene_build_girths},         {.each = scene_build_warn_seams},
-             {.whole = scene_build_unusual},       {.whole = scene_build_settings},
-             {.whole = scene_build_needs}};
+             {.whole = scene_build_welds},         {.each = scene_build_bands},
+             {.each = scene_build_mesh_weld},      {.each = scene_build_seams},
+             {.whole = scene_build_sewn},          {.each = scene_build_pieces},
+             {.each = scene_build_folds},          {.each = scene_build_girths},
+             {.each = scene_build_warn_seams},     {.whole = scene_build_unusual},
+             {.whole = scene_build_settings},      {.whole = scene_build_needs}};
 
 static int read_tree(struct scene_tree *tree, uint32_t phase)
 {

@@ -6,7 +6,7 @@ ASAN_SH += tests/whole/test_same_hash.sh tests/whole/test_world.sh tests/whole/t
     tests/whole/test_scale.sh tests/whole/test_settled.sh tests/whole/test_sides.sh tests/whole/test_slope.sh tests/whole/test_untangle.sh \
     tests/whole/test_meshes.sh tests/whole/test_scenes.sh tests/whole/test_garment.sh tests/whole/test_mannequin.sh \
     tests/whole/test_hdf5.sh tests/whole/test_summary.sh
-PLAIN_SH += tests/whole/test_dress.sh tests/whole/test_probes.sh tests/whole/test_pressure.sh tests/whole/test_colours.sh tests/whole/test_momentum.sh \
+PLAIN_SH += tests/whole/test_dress.sh tests/whole/test_probes.sh tests/whole/test_pressure.sh tests/whole/test_sizes.sh tests/whole/test_colours.sh tests/whole/test_momentum.sh \
     tests/whole/test_predicted.sh tests/whole/test_capstan.sh tests/whole/test_contact_force.sh tests/whole/test_contact_laws.sh \
     tests/whole/test_policies.sh tests/whole/test_fabrics.sh tests/whole/test_cells.sh tests/whole/test_joints.sh \
     tests/whole/test_phases.sh tests/whole/test_timed_joints.sh tests/whole/test_joints_edges.sh tests/whole/test_folds.sh \

@@ -21,7 +21,7 @@ materials: {m: {model: triangles, density: 0.2, stretch: 1000, shear: 500, dampi
 obstacles: [{cylinder: {centre: [0, 0, 0], axis: [0, 1, 0], radius: 0.1, length: 0.4}}]
 contact: {mode: certified, thickness: 0.001}
 probes: [{name: all, box: [[-1, -1, -1], [1, 1, 1]], values: [position, contact]}]
-time: {h: 0.01, end: 0.5, energy_growth: 0}
+time: {h: 0.01, end: 0.5}
 phases:
   - {name: sew, set: {time.sewn: {distance: 0.0005}}}
   - {name: rest, set: {'cloths[0].seams.state': welded, time.sewn: null}}

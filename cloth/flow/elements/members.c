@@ -186,10 +186,27 @@ static void members_fill_corners(const struct flow_source *source, const struct 
             *at++ = members_entry_of(t, layout, corner[i], corner[j]);
 }
 
+/* The corners of an element that say which material it has, and the ends of its edge. */
+static struct flow_sized size_member(const struct flow_source *source,
+                                     const struct element *element,
+                                     const struct phys_elements *list, uint32_t e)
+{
+    const struct element_kind *kind = element_kinds[element->kind];
+    const size_t n = kind->part == ELEMENT_TRIANGLES ? 3 : 2;
+    struct flow_sized sized = {.size = element_size_of(&source->elements, element->cloth, n,
+                                                       element->corner, element->triangle[0])};
+    for (int i = 0; kind->vectors && i < 4; i++)
+        sized.base[i] = list->vector[e][i];
+    for (uint32_t i = 0; i < kind->numbers; i++)
+        sized.base[4 + i] = list->number[i][e];
+    return sized;
+}
+
 void flow_source_members(const struct flow_source *source, uint32_t block,
                          const struct flow_layout *layout)
 {
     const struct flow_table *t = source->shape + block;
+    struct flow_sized *sized = layout->sized + t->n_inner + t->n_cut;
     for (uint32_t i = 0; i < ELEMENT_KINDS; i++) {
         const struct element_kind *kind = element_kinds[i];
         const struct phys_elements *list = layout->list + i;
@@ -201,6 +218,8 @@ void flow_source_members(const struct flow_source *source, uint32_t block,
                                  list->at + (size_t)kind->pairs * e);
             if (kind->pack)
                 kind->pack(&source->elements, element, list, e);
+            if (t->n_sized && kind->resize)
+                *sized++ = size_member(source, element, list, e);
         }
     }
 }

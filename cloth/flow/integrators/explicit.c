@@ -153,7 +153,7 @@ const struct flow_integrator flow_integrator_symplectic_euler = {
 static int verlet_begin(struct flow_state *state)
 {
     struct flow_step_args args = args_at(state, 0);
-    if (state->settled_forces && !flow_ties_changed(state))
+    if (state->settled_forces && !flow_ties_changed(state) && !state->flow->model->sizes)
         return state->code;
     return flow_fork_each(state, &flow_kernel_force_free, &args);
 }

@@ -78,7 +78,8 @@ static int make_joint(struct flow_spring *spring, const struct flow_particles *p
                                    .b = a < b ? b : a,
                                    .stiffness = joint->stiffness,
                                    .damping = joint->damping,
-                                   .length = length > 0 ? length : NO_LENGTH};
+                                   .length = length > 0 ? length : NO_LENGTH,
+                                   .size = {.curve = {joint->size, 0}, .along = 1}};
     return CLOTH_OK;
 }
 

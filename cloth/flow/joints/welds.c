@@ -329,7 +329,11 @@ static int compare_kinds(const struct flow_spring *a, const struct flow_spring *
     int order = cloth_compare_numbers(a, b, 2);
     if (!order)
         order = (a->stretch > b->stretch) - (a->stretch < b->stretch);
-    return order ? order : (a->length > b->length) - (a->length < b->length);
+    if (!order)
+        order = (a->length > b->length) - (a->length < b->length);
+    if (!order)
+        order = cloth_compare_numbers(a->size.curve, b->size.curve, 2);
+    return order ? order : (a->size.along > b->size.along) - (a->size.along < b->size.along);
 }
 
 static int compare_candidates(const void *va, const void *vb)

@@ -105,12 +105,18 @@ int flow_energy_wait(struct flow_state *state)
     return DUITE_OK;
 }
 
+/* The sum of the step under way less what contacts were lent. */
+static double unlent(const struct flow_guard *guard)
+{
+    return guard->sum - guard->loans - guard->lent;
+}
+
 bool flow_energy_gained(const struct flow_state *state, bool touched)
 {
     const struct model *model = state->flow->model;
     const struct flow_guard *guard = &state->guard;
     return model_is_guarded(model) && !guard->off && !touched &&
-           guard->sum - guard->lowest > model->energy_growth * fmax(guard->max, guard->moving);
+           unlent(guard) - guard->lowest > model->energy_growth * fmax(guard->max, guard->moving);
 }
 
 /* The guard is on from the second step without contact: the energies at the begin of the first are
@@ -123,7 +129,9 @@ static void note_guard(struct flow_state *state, bool touched)
         guard->lowest = INFINITY;
         return;
     }
-    guard->lowest = flow_energy_gained(state, false) ? guard->sum : fmin(guard->lowest, guard->sum);
+    guard->lowest =
+        flow_energy_gained(state, false) ? unlent(guard) : fmin(guard->lowest, unlent(guard));
+    guard->loans += guard->lent;
     guard->max = fmax(guard->max, guard->moving);
 }
 

@@ -15,12 +15,14 @@ struct flow_step_args;
 /* The energies that a guarded run (model_is_guarded) keeps, J. */
 struct flow_guard {
     bool off;           /* the last step touched something: energies are not checked */
-    double lowest;      /* of their sum, since the start, a touch, or a gain that was accepted */
+    double lowest;      /* of their sum less all loans to contacts, since the start, a touch, or a
+                         * gain that was accepted */
     double max;         /* of motion and strain together, since the start; at least the energy that
                          * weights and loads can set free (flow_source_release) */
     uint64_t calm;      /* tick: steps grow back from there on */
     double sum, moving; /* of the step under way: their sum; motion and strain; */
-    double lent;        /* lent to contacts to lift cloth that rests on them too deep */
+    double lent;        /* lent to contacts to lift cloth that rests on them too deep; */
+    double loans;       /* in all accepted steps while the guard was on */
 };
 
 /* Forks the sum of the present state's energies into a field: `energies` or `energy`. args: of the

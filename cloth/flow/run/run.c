@@ -233,6 +233,8 @@ static void run_steps(struct flow_state *state)
                goes_on = state->head.resumed_bytes;
     if (goes_on && flow_resume_main(state))
         return;
+    if (state->flow->model->sizes)
+        flow_resize(state);
     flow_ties_choose(state);
     if (!state->code && implicit && !state->solve.generation)
         flow_cg_record(state);

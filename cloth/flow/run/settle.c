@@ -209,8 +209,8 @@ static struct flow_attempt next_attempt(const struct flow_state *state)
 }
 
 /* Settles the step under way while `next` begins. A step waits for the one before if that is
- * shorter, as its own length is not known then, or if its ties differ, as the report needs those of
- * the step before. *begun: next has begun and follows an accepted step. */
+ * shorter, as its own length is not known then, or if its ties or shapes at rest differ, as the
+ * report needs those of the step before. *begun: next has begun and follows an accepted step. */
 static int settle_overlapped(struct flow_state *state, bool *begun)
 {
     const struct flow_attempt before = state->attempt;
@@ -218,7 +218,7 @@ static int settle_overlapped(struct flow_state *state, bool *begun)
     *begun = !before.forked ||
              (before.length == FLOW_TICKS && !state->stopping && !state->saving &&
               !state->resting && !state->sewn && !flow_step_is_driven(state->flow->model) &&
-              flow_ties_stay(state, next.begin));
+              !state->flow->model->sizes && flow_ties_stay(state, next.begin));
     *begun = *begun && next.begin < state->grid.end;
     if (*begun) {
         state->attempt = next;

@@ -164,6 +164,15 @@ static uint32_t count_numbered(const struct flow_source *source, const struct fl
     return n;
 }
 
+/* All springs of a block, and its elements with a shape at rest, have an entry, or none has. */
+static uint32_t count_sized(const struct flow_table *shape)
+{
+    uint32_t n = shape->n_inner + shape->n_cut;
+    for (int kind = 0; kind < ELEMENT_KINDS; kind++)
+        n += element_kinds[kind]->resize ? shape->n_elements[kind] : 0;
+    return n;
+}
+
 static int find_shapes(struct flow_source *source, struct cloth_error *error)
 {
     const struct mesh_blocks *blocks = &source->blocks;
@@ -186,7 +195,10 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
     }
     count_watched(source);
     flow_source_count(source);
-    return flow_source_meet(source, error);
+    const int code = flow_source_meet(source, error);
+    for (uint32_t b = 0; b < blocks->n_blocks && source->model->sizes; b++)
+        source->shape[b].n_sized = count_sized(source->shape + b);
+    return code;
 }
 
 int flow_source_make(struct flow_source *source, const struct model *model, int ranks,

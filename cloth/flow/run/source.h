@@ -201,6 +201,7 @@ struct flow_spring {
     unsigned char stretch;             /* counts for the largest stretch */
     uint32_t seam;                     /* of those that pull, from 1; 0: it is no joint of one */
     const struct model_correction *correction; /* of such a one; NULL: it has none */
+    struct element_size size;                  /* how it changes */
 };
 /* A spring, by its number among all springs of the cloths, that welds make parallel to others of
  * the same rest length. The first of them stands for all; the others are gone. */

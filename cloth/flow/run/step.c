@@ -27,6 +27,11 @@ static bool always(const struct model *model)
     return true;
 }
 
+static bool resizes(const struct model *model)
+{
+    return model->sizes;
+}
+
 static bool is_driven(const struct model *model)
 {
     return model_is_driven(model);
@@ -79,6 +84,7 @@ struct stage {
 
 /* In order, also of their parts; docs/design/cloth.md lists them by name. A new stage is a row. */
 static const struct stage stages[] = {
+    {"resize", TIE, resizes, flow_resize},
     {"choose ties", TIE, always, flow_ties_choose},
     {"begin contact", TIE, always, flow_contact_begin},
     {"keep", PREDICT, keeps_first, flow_keep},

@@ -36,6 +36,10 @@ bool flow_stop_is_asked(const struct flow *flow);
 /* Forks the tasks that note in the step's status if a rank is asked to stop. */
 int flow_status_fork(struct flow_state *state);
 
+/* Forks the tasks that give springs and elements their shape at rest at the end of the step under
+ * way (elements/resize.c). */
+int flow_resize(struct flow_state *state);
+
 /* Fork the tasks that move the pins of a step: before its forces, and after x has moved. */
 int flow_pins_prescribe_velocity(struct flow_state *state);
 int flow_pins_prescribe_position(struct flow_state *state);

@@ -213,6 +213,10 @@ static void fill_sides(const struct flow_source *source, const struct flow_table
         layout->damping[i] = side[i].spring.damping;
         layout->length[i] = side[i].spring.length;
         layout->stretch[i] = side[i].spring.stretch;
+        if (t->n_sized)
+            layout->sized[i] = (struct flow_sized){
+                side[i].spring.size,
+                {side[i].spring.stiffness, side[i].spring.damping, side[i].spring.length}};
         if (side[i].spring.seam) {
             layout->pulled[pulled][0] = i;
             layout->pulled[pulled++][1] = side[i].spring.seam;

@@ -83,6 +83,8 @@ struct visitor {
     void *to;
     uint32_t first;
     const struct model *model;
+    const struct element_cloths *elements;
+    uint32_t number; /* of the cloth */
     const struct model_cloth *cloth;
 };
 
@@ -102,6 +104,23 @@ static const struct model_correction *correction_of(const struct visitor *visito
     return visitor->model->correction_rounds && correction->rounds ? correction : NULL;
 }
 
+/* Stiffness as the lattice of a mesh of that size has it: that of a grid's springs stays. A lone
+ * edge has no weft: its stiffness goes with its length, so that EA stays. */
+static struct element_size size_of(const struct visitor *visitor, uint32_t a, uint32_t b)
+{
+    if (!visitor->model->sizes)
+        return (struct element_size){.along = 1};
+    const uint32_t end[2] = {a, b};
+    const struct mesh_edge *edge = mesh_edges_get(visitor->elements->edges + visitor->number, a, b);
+    const uint32_t triangle = edge ? edge->triangle[0] : UINT32_MAX;
+    struct element_size size =
+        element_size_of(visitor->elements, visitor->number, 2, end, triangle);
+    if (edge && edge->opposite[0] == UINT32_MAX)
+        size = (struct element_size){{size.curve[0], 0}, 1, false};
+    size.keeps = model_rest(visitor->cloth)->grid_nx;
+    return size;
+}
+
 /* damping: s, times the stiffness. stretch: it counts as such a spring. */
 static void visit_spring(const struct visitor *visitor, uint32_t a, uint32_t b, double stiffness,
                          double damping, double length, bool stretch)
@@ -112,7 +131,8 @@ static void visit_spring(const struct visitor *visitor, uint32_t a, uint32_t b, 
                                        .damping = damping * stiffness,
                                        .length = length,
                                        .stretch = stretch,
-                                       .correction = stretch ? correction_of(visitor, a, b) : NULL};
+                                       .correction = stretch ? correction_of(visitor, a, b) : NULL,
+                                       .size = size_of(visitor, a, b)};
     visitor->visit(visitor->to, &spring);
 }
 
@@ -209,8 +229,10 @@ static void each_of_cloths(const struct flow_springs *springs,
                            void (*visit)(void *to, const struct flow_spring *spring), void *to)
 {
     const struct model *model = springs->model;
-    struct visitor visitor = {.visit = visit, .to = to, .model = model};
+    struct visitor visitor = {
+        .visit = visit, .to = to, .model = model, .elements = springs->elements};
     for (uint32_t c = 0; c < model->n_cloths; c++) {
+        visitor.number = c;
         visitor.cloth = model->cloths + c;
         mesh_lattice_each(springs->lattice + c, springs_pass_on, &visitor);
         each_link(springs, c, &visitor);

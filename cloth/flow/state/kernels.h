@@ -8,7 +8,7 @@
 /* clang-format off */
 #define FLOW_KERNELS(X)                                                                            \
     X(broadcast_head) X(broadcast_shared) X(ready) X(table_make) X(table_keep)                                          \
-    X(initial) X(resume_main) X(resume_load) X(resume) X(keep) X(restore) X(status) X(tie) X(tie_show)                                     \
+    X(initial) X(resume_main) X(resume_load) X(resume) X(keep) X(restore) X(status) X(resize) X(tie) X(tie_show)                                     \
     X(force) X(force_free) X(prescribe_velocity) X(prescribe_position)                             \
     X(keep_halo) X(skin_refit) X(skin_place) X(root) X(roots) X(meet) X(meet_self) X(meet_figure) X(meet_shape) X(touch) X(push) X(cut)                \
     X(tie_count) X(tie_contacts) X(tie_say) X(filter) X(constrain) X(collide)        \

@@ -2,7 +2,7 @@
 #define CLOTH_FLOW_STATE_TABLES_H
 
 #include "cloth/base/error.h"
-#include "cloth/element/kind.h"
+#include "cloth/element/cloths.h"
 #include "cloth/physics/spring.h"
 #include "cloth/solve/correction.h"
 #include "cloth/solve/patches.h"
@@ -29,6 +29,13 @@ struct flow_cut_edge {
     struct solve_edge edge;
     uint32_t row, neighbour; /* row here; which of the neighbours */
     double share;            /* of its correction that either block makes at once */
+};
+
+/* A spring or element whose shape at rest changes: how, and its numbers by the mesh: the stiffness,
+ * damping and length of a spring; the vector, then the numbers of an element. */
+struct flow_sized {
+    struct element_size size;
+    double base[4 + PHYS_NUMBERS];
 };
 
 /* clang-format off */
@@ -63,6 +70,7 @@ struct flow_cut_edge {
     X(uint32_t, watched, t->n_watched)   /* rows, ascending */                                     \
     X(unsigned char, stretch, sides)     /* counts for the largest stretch */                      \
     PAIR(pulled, t->n_pulled)            /* spring, ascending; number of its seam, from 1 */       \
+    X(struct flow_sized, sized, t->n_sized) /* springs; elements kind after kind */                \
     X(struct solve_edge, corrected, t->n_corrected) /* their ends are rows here */                 \
     X(struct flow_cut_edge, corrected_cut, t->n_corrected_cut) /* neighbour after neighbour */
 /* clang-format on */
@@ -88,6 +96,7 @@ struct flow_table {
     uint32_t n_sliding;       /* rows that pins leave free along a slider */
     uint32_t n_loose;         /* rows of pieces that no pin holds */
     uint32_t n_varying;       /* loads that vary */
+    uint32_t n_sized;         /* springs and elements, if shapes at rest change; else 0 */
     uint32_t n_pulled;        /* springs that are joints of seams */
     uint32_t lowest, highest; /* of its vertices */
     uint32_t n_neighbours;    /* blocks that it is joined to */

@@ -40,7 +40,7 @@ scene_build_step scene_build_probes, scene_build_hdf5, scene_build_drape;
  * one; a warning of unjoined vertices at one place; folds of sewn cloths. */
 scene_build_step scene_build_joints, scene_build_welds, scene_build_sewn;
 scene_build_cloth_step scene_build_mesh_weld, scene_build_seams, scene_build_pieces;
-scene_build_cloth_step scene_build_folds;
+scene_build_cloth_step scene_build_folds, scene_build_bands;
 
 /* Warnings: sewn cloths that are too small for a body, where it starts at rest; seams of one cloth
  * that cross where it starts; values that are hardly ever meant; keys that do nothing, after all
@@ -110,6 +110,12 @@ int scene_build_check_vertices(const uint32_t *vertices, uint32_t n,
                                const struct model_cloth *cloth, const struct scene_tree *tree,
                                int node);
 
+/* Checks a path of vertices, which a list has: the mesh, whose edges these are, has one between each
+ * and the next. what: "a fold" */
+int scene_build_check_path(const uint32_t *vertices, uint32_t n, const char *what,
+                           const struct model_cloth *cloth, const struct mesh_edges *edges,
+                           const struct scene_tree *tree, int list);
+
 /* ---- Parts of a cloth, which has its name and those before ---- */
 
 /* Its mesh, transformed; that of a map pattern: a file, or an own garment, whose faults are in
@@ -135,6 +141,9 @@ size_t scene_build_count_pairs(const struct model_seams *seams);
 /* The key curve of a map, if it has one: of a load, or of the air. *number: the model's new one;
  * 0: there is none. After the time. */
 int scene_build_curve(uint32_t *number, const struct scene_tree *tree, int node);
+/* A curve of a list of keys; the same of factors of lengths at rest, if there is a list. */
+int scene_build_keys(uint32_t *number, const struct scene_tree *tree, int list);
+int scene_build_size(uint32_t *number, const struct scene_tree *tree, int list);
 
 /* ---- Places and motions (motion.c) ---- */
 

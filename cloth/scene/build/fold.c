@@ -4,23 +4,23 @@
 #include <math.h>
 #include <string.h>
 
-/* Checks that the mesh has an edge between each two consecutive vertices. */
-static int check_path(const struct model_cloth *cloth, const struct model_fold *fold,
-                      const struct mesh_edges *edges, const struct scene_tree *tree, int node)
+int scene_build_check_path(const uint32_t *vertices, uint32_t n, const char *what,
+                           const struct model_cloth *cloth, const struct mesh_edges *edges,
+                           const struct scene_tree *tree, int list)
 {
-    const int list = scene_tree_get(tree, node, "vertices");
-    if (fold->n < 2)
+    if (n < 2)
         return scene_tree_fail(tree, list,
-                               "a fold has one vertex; the vertices along it, two at least, are "
-                               "expected");
-    if (scene_build_check_vertices(fold->vertices, fold->n, cloth, tree, list))
+                               "%s has one vertex; the vertices along it, two at least, are "
+                               "expected",
+                               what);
+    if (scene_build_check_vertices(vertices, n, cloth, tree, list))
         return tree->error->code;
-    for (uint32_t i = 1; i < fold->n; i++)
-        if (!mesh_edges_get(edges, fold->vertices[i - 1], fold->vertices[i]))
+    for (uint32_t i = 1; i < n; i++)
+        if (!mesh_edges_get(edges, vertices[i - 1], vertices[i]))
             return scene_tree_fail(tree, scene_tree_item(tree, list, i),
                                    "there is no edge between vertices %u and %u of cloth '%.60s', "
-                                   "which a fold has one after the other; such two are expected",
-                                   fold->vertices[i - 1], fold->vertices[i], cloth->name);
+                                   "which %s has one after the other; such two are expected",
+                                   vertices[i - 1], vertices[i], cloth->name, what);
     return CLOTH_OK;
 }
 
@@ -62,7 +62,9 @@ static int build_fold(struct model_fold *fold, const struct model_cloth *cloth,
                                "a fold has an angle of %g degrees; one above -180 and below 180 is "
                                "expected",
                                fold->angle);
-    return edge ? build_edge(fold, cloth, tree, edge) : check_path(cloth, fold, edges, tree, node);
+    return edge ? build_edge(fold, cloth, tree, edge)
+                : scene_build_check_path(fold->vertices, fold->n, "a fold", cloth, edges, tree,
+                                         scene_tree_get(tree, node, "vertices"));
 }
 
 /* Seams that are never welded have no hinges; pulled ones may be welded in another phase. */

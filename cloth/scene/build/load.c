@@ -17,7 +17,7 @@ static int build_keys(const struct scene_tree *tree, int list)
         key[i] = (struct phys_curve_key){pair[0], pair[1]};
         if (i && !(pair[0] > key[i - 1].time))
             return scene_tree_fail(tree, scene_tree_item(tree, item, 0),
-                                   "the time of curve.keys[%zu] is %g, which does not come after "
+                                   "the time of key %zu, from 0, is %g, which does not come after "
                                    "%g, that of the one before it; times in ascending order are "
                                    "expected",
                                    i, pair[0], key[i - 1].time);
@@ -39,24 +39,58 @@ static int build_sine(struct model_curve *curve, const struct scene_tree *tree, 
                            curve->frequency, tree->model->h, max);
 }
 
-int scene_build_curve(uint32_t *number, const struct scene_tree *tree, int node)
+/* Adds a curve of a list of keys, if there is one. NULL: no memory. */
+static struct model_curve *add_curve(uint32_t *number, const struct scene_tree *tree, int list)
 {
     struct model *model = tree->model;
-    const int curve = scene_tree_get(tree, node, "curve"),
-              keys = scene_tree_get(tree, curve, "keys");
-    const uint32_t first = model->n_curve_keys;
-    *number = 0;
-    if (!curve)
-        return CLOTH_OK;
     struct model_curve *to =
         scene_build_add(&model->curves, &model->n_curves, 1, sizeof *to, tree->error);
     if (!to)
-        return tree->error->code;
+        return NULL;
     *number = model->n_curves;
-    to->first = first;
-    to->n = (uint32_t)scene_tree_length(tree, keys);
-    return keys ? build_keys(tree, keys)
-                : build_sine(to, tree, scene_tree_get(tree, curve, "sine"));
+    to->first = model->n_curve_keys;
+    to->n = (uint32_t)scene_tree_length(tree, list);
+    return to;
+}
+
+int scene_build_keys(uint32_t *number, const struct scene_tree *tree, int list)
+{
+    return add_curve(number, tree, list) ? build_keys(tree, list) : tree->error->code;
+}
+
+int scene_build_curve(uint32_t *number, const struct scene_tree *tree, int node)
+{
+    const int curve = scene_tree_get(tree, node, "curve"),
+              keys = scene_tree_get(tree, curve, "keys");
+    *number = 0;
+    if (!curve)
+        return CLOTH_OK;
+    if (keys)
+        return scene_build_keys(number, tree, keys);
+    struct model_curve *to = add_curve(number, tree, 0);
+    return to ? build_sine(to, tree, scene_tree_get(tree, curve, "sine")) : tree->error->code;
+}
+
+/* ---- Sizes ---- */
+
+static const double LEAST_SIZE = 0.1, MOST_SIZE = 10; /* beyond these hardly anything is cloth */
+
+int scene_build_size(uint32_t *number, const struct scene_tree *tree, int list)
+{
+    const struct model *model = tree->model;
+    if (!list)
+        return CLOTH_OK;
+    const int code = scene_build_keys(number, tree, list);
+    for (uint32_t i = 0; !code && i < model->curves[*number - 1].n; i++) {
+        const double factor = model->curve_keys[model->curves[*number - 1].first + i].factor;
+        if (!(factor >= LEAST_SIZE && factor <= MOST_SIZE))
+            return scene_tree_fail(tree, scene_tree_item(tree, scene_tree_item(tree, list, i), 1),
+                                   "a size is %g times that of the mesh; a factor from %g to %g "
+                                   "is expected",
+                                   factor, LEAST_SIZE, MOST_SIZE);
+    }
+    tree->model->sizes = true;
+    return code;
 }
 
 /* ---- Loads ---- */

@@ -49,6 +49,31 @@ static int check_membrane(const struct model_material *material, const struct sc
                            sqrt(warp / weft));
 }
 
+/* Builds how lengths at rest change. */
+static int build_sizes(struct model_material *material, const struct scene_tree *tree, int node)
+{
+    static const char *const key[] = {"warp", "weft"};
+    const int size = scene_tree_get(tree, node, "size"), both = scene_tree_get(tree, size, "both");
+    int code = scene_build_size(material->size, tree, both);
+    if (both)
+        material->size[1] = material->size[0];
+    for (int i = 0; i < 2 && !code; i++) {
+        const int list = scene_tree_get(tree, size, key[i]);
+        if (both && list)
+            return scene_tree_fail(tree, list,
+                                   "materials.%.60s.size has both and %s; both, or one of warp "
+                                   "and weft or the two are expected",
+                                   material->name, key[i]);
+        code = scene_build_size(material->size + i, tree, list);
+    }
+    if (!code && size && material->correction.rounds)
+        return scene_tree_fail(tree, size,
+                               "materials.%.60s.size changes the lengths at rest, which "
+                               "velocity_correction takes from the start; strain_limit knows them",
+                               material->name);
+    return code;
+}
+
 /* Turns fields as the scene gives them into those of the model. */
 static int build_material(struct model_material *material, const struct scene_tree *tree, int node)
 {
@@ -62,7 +87,9 @@ static int build_material(struct model_material *material, const struct scene_tr
         material->damping_excess -= material->damping_stiffness;
     if (material->correction.rounds > model->correction_rounds)
         model->correction_rounds = material->correction.rounds;
-    return material->model == MODEL_TRIANGLES ? check_membrane(material, tree, node) : CLOTH_OK;
+    const int code =
+        material->model == MODEL_TRIANGLES ? check_membrane(material, tree, node) : CLOTH_OK;
+    return code ? code : build_sizes(material, tree, node);
 }
 
 static int build_materials(const struct scene_tree *tree)

@@ -17,15 +17,30 @@ const struct scene_rule scene_quaternion = {
     .type = SCENE_LIST, .length = 4, .inside = &scene_number};
 
 /* clang-format off */
+#define TURBULENCE(member) INTO(struct phys_air, turbulence.member)
+static const struct scene_rule turbulence_keys[] = {
+    {"intensity", SCENE_NUMBER, .required = true, .range = SCENE_NOT_NEGATIVE,
+     TURBULENCE(intensity),
+     .about = "root mean square of the gusts along each axis, as a part of the wind's speed; 0.1 to "
+     "0.3 near the ground"},
+    {"length", SCENE_NUMBER, "m", .required = true, .range = SCENE_POSITIVE, TURBULENCE(length),
+     .about = "how large gusts are: along this way they become other ones"},
+    {"seed", SCENE_INTEGER, .fallback = "0", TURBULENCE(seed),
+     .about = "another number, other gusts"},
+    {0}};
+
 static const struct scene_rule air_keys[] = {
     {"density", SCENE_NUMBER, "kg/m^3", "1.2", .range = SCENE_POSITIVE,
      INTO(struct phys_air, density),
      .about = "of the air"},
     {"wind", SCENE_LIST, "m/s", "[0, 0, 0]", VECTOR, INTO(struct phys_air, wind),
-     .about = "velocity of the air, the same everywhere"},
+     .about = "velocity of the air; the same everywhere, without turbulence"},
     {"curve", SCENE_ONE_OF, .inside = scene_curve_kinds,
      .about = "what the wind is multiplied by in time; else it is constant", .needs = NEEDS_WIND,
      .section = "Curves"},
+    {"turbulence", SCENE_MAP, .inside = turbulence_keys,
+     .about = "gusts that the wind carries along ([physics.md](physics.md#air)); else there are none",
+     .needs = NEEDS_WIND},
     {"normal", SCENE_NUMBER, .fallback = "1.2", .range = SCENE_NOT_NEGATIVE,
      INTO(struct phys_air, normal),
      .about = "coefficient of the drag across a triangle"},

@@ -1,4 +1,4 @@
-/* Keys of what joins vertices: joints, welds and seams; and of folds. */
+/* Keys of what joins vertices: joints, welds, seams and bands; and of folds. */
 #include "cloth/scene/schema/tables.h"
 
 /* clang-format off */
@@ -116,3 +116,21 @@ static const struct scene_rule fold_keys[] = {
     {0}};
 const struct scene_rule scene_fold = {
     .type = SCENE_MAP, .inside = fold_keys, PLACE(struct model_fold, place)};
+
+static const struct scene_rule band_keys[] = {
+    PICK_VERTICES(struct model_band, pick.),
+    {"length", SCENE_NUMBER, "m", .required = true, .range = SCENE_POSITIVE,
+     INTO(struct model_band, length),
+     .about = "at rest, of all of it; its parts have it as edges have theirs"},
+    {"ea", SCENE_NUMBER, "N", .required = true, .range = SCENE_POSITIVE,
+     INTO(struct model_band, ea),
+     .about = "force / strain"},
+    {"damping", SCENE_NUMBER, "s", "0", .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_band, damping),
+     .about = "along it, times its stiffness"},
+    {"size", SCENE_LIST, .filled = true, .inside = &scene_curve_key,
+     .about = "[time in s, factor] of the length, times ascending, linear in between: it is drawn "
+     "tight; else it stays"},
+    {0}};
+const struct scene_rule scene_band = {
+    .type = SCENE_MAP, .inside = band_keys, PLACE(struct model_band, pick.place)};

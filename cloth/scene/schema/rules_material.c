@@ -51,6 +51,14 @@ static const struct scene_rule correction_keys[] = {
      .about = "at most in a step"},
     {0}};
 
+#define SIZE(name, text) \
+    {name, SCENE_LIST, .filled = true, .inside = &scene_curve_key, .about = text}
+static const struct scene_rule size_keys[] = {
+    SIZE("both", "[time in s, factor], times ascending, linear in between: of warp and weft"),
+    SIZE("warp", "the same along the warp alone"),
+    SIZE("weft", "along the weft alone"),
+    {0}};
+
 /* ---- Sheets of instruments (instruments.c) ---- */
 
 static const struct scene_rule measured = {.type = SCENE_NUMBER, .range = SCENE_POSITIVE,
@@ -131,6 +139,9 @@ static const struct scene_rule material_keys[] = {
      .about = "impulses after a step's solve, so that no edge ends it stretched too far "
      "([physics.md](physics.md#velocity-correction))", .needs = NEEDS_OWN_EDGES},
     {"damping", SCENE_MAP, .fallback = "{}", .inside = damping_keys, .about = "of motion"},
+    {"size", SCENE_MAP, .filled = true, .inside = size_keys,
+     .about = "what its lengths at rest are multiplied by in time, to shrink and to grow "
+     "([physics.md](physics.md#sizes))", .needs = NEEDS_OWN_EDGES},
     {"friction", SCENE_NUMBER, .range = SCENE_COEFFICIENT, INTO(struct model_material, friction),
      .about = "coefficient of contact; else that of contact", .needs = NEEDS_MET},
     {"diagonals", SCENE_CHOICE, .fallback = "both", INTO(struct model_material, both_diagonals),

@@ -61,7 +61,7 @@ static const struct scene_rule probe_keys[] = {
 const struct scene_rule scene_probe = {
     .type = SCENE_MAP, .inside = probe_keys, PLACE(struct model_probe, pick.place)};
 
-static const struct scene_rule curve_key = {
+const struct scene_rule scene_curve_key = {
     .type = SCENE_LIST, .length = 2, .inside = &scene_number};
 static const struct scene_rule sine_keys[] = {
     {"frequency", SCENE_NUMBER, "1/s", .required = true, .range = SCENE_POSITIVE,
@@ -69,7 +69,7 @@ static const struct scene_rule sine_keys[] = {
     {"phase", SCENE_NUMBER, .fallback = "0", .about = "turns at time 0; 0.25: a cosine"},
     {0}};
 const struct scene_rule scene_curve_kinds[] = {
-    {"keys", SCENE_LIST, .choice = true, .filled = true, .inside = &curve_key,
+    {"keys", SCENE_LIST, .choice = true, .filled = true, .inside = &scene_curve_key,
      .about = "[time in s, factor], times ascending; linear in between"},
     {"sine", SCENE_MAP, .choice = true, .inside = sine_keys,
      .about = "sin 2 pi (frequency t + phase)"},

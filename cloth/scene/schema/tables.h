@@ -72,8 +72,9 @@ extern const struct scene_rule scene_point, scene_edge;
 /* Tables of other files; keys end with a rule without a key. */
 extern const struct scene_rule scene_cloth, scene_material, scene_obstacle;
 extern const struct scene_rule scene_pin, scene_load, scene_mass, scene_start, scene_probe;
-extern const struct scene_rule scene_joint, scene_weld, scene_fold;
+extern const struct scene_rule scene_joint, scene_weld, scene_fold, scene_band;
 extern const struct scene_rule scene_seams_keys[], scene_time_keys[], scene_contact_keys[];
 extern const struct scene_rule scene_solver_keys[], scene_newton_keys[], scene_output_keys[];
 extern const struct scene_rule scene_curve_kinds[], scene_motion_keys[], scene_turn_keys[];
+extern const struct scene_rule scene_curve_key;
 #endif

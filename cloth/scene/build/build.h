@@ -110,8 +110,8 @@ int scene_build_check_vertices(const uint32_t *vertices, uint32_t n,
                                const struct model_cloth *cloth, const struct scene_tree *tree,
                                int node);
 
-/* Checks a path of vertices, which a list has: the mesh, whose edges these are, has one between each
- * and the next. what: "a fold" */
+/* Checks a path of vertices, which a list has: the mesh, whose edges these are, has one between
+ * each and the next. what: "a fold" */
 int scene_build_check_path(const uint32_t *vertices, uint32_t n, const char *what,
                            const struct model_cloth *cloth, const struct mesh_edges *edges,
                            const struct scene_tree *tree, int list);

@@ -141,7 +141,7 @@ static const struct scene_rule material_keys[] = {
     {"damping", SCENE_MAP, .fallback = "{}", .inside = damping_keys, .about = "of motion"},
     {"size", SCENE_MAP, .filled = true, .inside = size_keys,
      .about = "what its lengths at rest are multiplied by in time, to shrink and to grow "
-     "([physics.md](physics.md#sizes))", .needs = NEEDS_OWN_EDGES},
+     "([physics.md](physics.md#sizes)); strains and colours of frames are against the mesh", .needs = NEEDS_OWN_EDGES},
     {"friction", SCENE_NUMBER, .range = SCENE_COEFFICIENT, INTO(struct model_material, friction),
      .about = "coefficient of contact; else that of contact", .needs = NEEDS_MET},
     {"diagonals", SCENE_CHOICE, .fallback = "both", INTO(struct model_material, both_diagonals),

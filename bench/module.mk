@@ -9,7 +9,7 @@ bench_libbench_a_SOURCES = bench/bench.h bench/instructions.c bench/instructions
 	bench/loops.c bench/loops.h bench/measure.c bench/measure.h bench/temporary.c bench/temporary.h \
 	bench/program.c bench/program.h bench/report.c bench/report.h bench/subject.c bench/subject.h \
 	bench/tasks/tasks.c bench/tasks/tasks.h bench/tasks/adopt.c bench/tasks/bytes.c bench/tasks/chain.c bench/tasks/event.c bench/tasks/fib.c bench/tasks/fib.h bench/tasks/forks.c bench/forks.h \
-	bench/tasks/granularity.c bench/tasks/growth.c bench/tasks/independent.c bench/tasks/instructions.c \
+	bench/tasks/growth.c bench/tasks/independent.c bench/tasks/instructions.c \
 	bench/tasks/stencil.c bench/tasks/tiles.c bench/tasks/tree.c bench/tasks/wake.c bench/tiles.h \
 	bench/ranks/await.c bench/ranks/cg.c bench/ranks/delegate.c bench/ranks/forks.c bench/ranks/loaded.c bench/ranks/memory.c \
 	bench/ranks/migrate.c bench/ranks/ranks.c bench/ranks/ranks.h bench/ranks/sheet.c bench/ranks/sheet.h bench/ranks/stencil.c bench/ranks/tree.c bench/ranks/twin.c \

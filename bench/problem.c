@@ -181,18 +181,8 @@ uint64_t problem_tree_nodes(const struct problem_node *node, uint32_t levels)
     return nodes;
 }
 
-void problem_work(uint64_t iterations)
-{
-    uint64_t x = iterations;
-    for (uint64_t i = 0; i < iterations; i++) {
-        x = x * 0xbf58476d1ce4e5b9U + 1;
-        __asm__ volatile("" : "+r"(x)); /* so that no compiler makes two steps one */
-    }
-}
-
 int problem_line_point(const struct problem_message *left, const struct problem_message *middle,
-                       const struct problem_message *right, uint64_t iterations,
-                       struct problem_message *out)
+                       const struct problem_message *right, struct problem_message *out)
 {
     const uint64_t edge = 0;
     if ((left && left->step != middle->step) || (right && right->step != middle->step))
@@ -200,11 +190,10 @@ int problem_line_point(const struct problem_message *left, const struct problem_
     out->step = middle->step + 1;
     problem_combine(left ? &left->value : &edge, &middle->value, right ? &right->value : &edge,
                     &out->value);
-    problem_work(iterations);
     return 0;
 }
 
-int problem_line(struct problem_message *line, size_t points, uint64_t steps, uint64_t iterations)
+int problem_line(struct problem_message *line, size_t points, uint64_t steps)
 {
     static problem_line_body *const volatile body = problem_line_point;
     int wrong = 0;
@@ -214,8 +203,8 @@ int problem_line(struct problem_message *line, size_t points, uint64_t steps, ui
         const struct problem_message *old = line + s % 2 * points;
         struct problem_message *new = line + (1 - s % 2) * points;
         for (size_t i = 0; i < points; i++)
-            wrong |= body(i ? &old[i - 1] : NULL, &old[i], i + 1 < points ? &old[i + 1] : NULL,
-                          iterations, &new[i]);
+            wrong |=
+                body(i ? &old[i - 1] : NULL, &old[i], i + 1 < points ? &old[i + 1] : NULL, &new[i]);
     }
     return wrong;
 }

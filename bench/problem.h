@@ -60,21 +60,16 @@ struct problem_node problem_tree_child(const struct problem_node *node, uint32_t
 /* Nodes of the tree below, this one among them. */
 uint64_t problem_tree_nodes(const struct problem_node *node, uint32_t levels);
 
-/* A body that takes time: so many steps, each of which waits for the one before. */
-void problem_work(uint64_t iterations);
-
-/* A line of points with bodies of so many iterations: what a point hands on. Its body checks that
- * its inputs are of the same step. */
+/* A line of points: what a point hands on. Its body checks that its inputs are of the same step. */
 struct problem_message {
     uint64_t step, value;
 };
 /* left or right NULL at the ends. 0; 1 if the inputs are of different steps. */
 typedef int problem_line_body(const struct problem_message *left,
                               const struct problem_message *middle,
-                              const struct problem_message *right, uint64_t iterations,
-                              struct problem_message *out);
+                              const struct problem_message *right, struct problem_message *out);
 problem_line_body problem_line_point;
 /* The sequential line; `line` has 2 x points messages, the answer is in the half steps % 2. */
-int problem_line(struct problem_message *line, size_t points, uint64_t steps, uint64_t iterations);
+int problem_line(struct problem_message *line, size_t points, uint64_t steps);
 
 #endif

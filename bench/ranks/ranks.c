@@ -116,9 +116,9 @@ int ranks_time_sum(duite *rt, const duite_kernel *kernel, const void *args, int6
 static int serve_ours(const struct bench *bench)
 {
     static struct ranks_session session;
-    const struct serve_run *runs[sizeof CASES / sizeof *CASES + 1] = {tasks_granularity.runs};
+    const struct serve_run *runs[sizeof CASES / sizeof *CASES] = {NULL};
     for (size_t i = 0; bench->cases[i]; i++)
-        runs[i + 1] = bench->cases[i]->runs;
+        runs[i] = bench->cases[i]->runs;
     int status = serve("duite_options_default() but for threads and scheduler; on hosts of one "
                        "machine nobody is bound",
                        runs, &session);

@@ -12,7 +12,7 @@ static problem_line_body *const volatile POINT = problem_line_point;
 
 struct line {
     int rank, ranks;
-    uint64_t points, steps, iterations;
+    uint64_t points, steps;
     size_t n;                        /* points of this rank */
     struct problem_message *cell[2]; /* n of them, between one more for each neighbour's end */
 };
@@ -29,7 +29,7 @@ static const struct problem_message *neighbour(const struct line *line, size_t i
 static int point(const struct line *line, size_t i, uint64_t step)
 {
     const struct problem_message *old = line->cell[(step - 1) % 2];
-    return POINT(neighbour(line, i, -1, old), &old[i], neighbour(line, i, 1, old), line->iterations,
+    return POINT(neighbour(line, i, -1, old), &old[i], neighbour(line, i, 1, old),
                  &line->cell[step % 2][i]);
 }
 
@@ -98,7 +98,7 @@ static int check(const struct line *line, size_t first)
     struct problem_message *all = calloc(2 * line->points, sizeof *all);
     if (!all)
         return 1;
-    int wrong = problem_line(all, line->points, line->steps, 0);
+    int wrong = problem_line(all, line->points, line->steps);
     for (size_t i = 0; i < line->n; i++)
         wrong |= line->cell[line->steps % 2][i + 1].value !=
                  all[line->steps % 2 * line->points + first + i].value;
@@ -106,12 +106,11 @@ static int check(const struct line *line, size_t first)
     return wrong;
 }
 
-static int granularity(void *context, struct serve_request *request, double *value)
+static int run(void *context, struct serve_request *request, double *value)
 {
     struct line line = *(const struct line *)context;
     line.points = serve_number(request, "points");
     line.steps = serve_number(request, "steps");
-    line.iterations = serve_number(request, "iterations");
     uint64_t ranks = (uint64_t)line.ranks, rank = (uint64_t)line.rank;
     if (line.points < ranks)
         return serve_fail("fewer points than ranks");
@@ -133,7 +132,7 @@ static int granularity(void *context, struct serve_request *request, double *val
 
 int main(void)
 {
-    static const struct serve_run runs[] = {{"granularity", granularity}, {0}};
+    static const struct serve_run runs[] = {{"line", run}, {0}};
     const struct serve_run *const all[] = {runs, NULL};
     struct line line = {0};
     char settings[MPI_MAX_LIBRARY_VERSION_STRING + 100], version[MPI_MAX_LIBRARY_VERSION_STRING];

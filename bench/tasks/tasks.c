@@ -6,12 +6,10 @@
 #include <string.h>
 
 static const struct bench_case *const CASES[] = {
-    &tasks_stencil,  &tasks_chain,  &tasks_independent,
-    &tasks_fib_case, &tasks_skynet, &tasks_queens,
-    &tasks_matmul,   &tasks_tree,   &tasks_tiles,
-    &tasks_growth,   &tasks_bytes,  &tasks_granularity,
-    &tasks_wake,     &tasks_event,  &tasks_instructions,
-    &tasks_adopt,    NULL};
+    &tasks_stencil, &tasks_chain,  &tasks_independent,  &tasks_fib_case,
+    &tasks_skynet,  &tasks_queens, &tasks_matmul,       &tasks_tree,
+    &tasks_tiles,   &tasks_growth, &tasks_bytes,        &tasks_wake,
+    &tasks_event,   &tasks_adopt,  &tasks_instructions, NULL};
 enum { N_CASES = sizeof CASES / sizeof *CASES - 1 };
 
 /* For two cores and the full sizes. */
@@ -34,8 +32,6 @@ static const struct measure_target TARGETS[] = {
     {"adopt_vs_copy", 0.1, false},
     {"independent_growth", 1.5, false},
     {"bytes_per_pending_task", 192, false},
-    {"granularity_50_w2_vs_mpi", 1.2, false},
-    {"granularity_50_w16_vs_mpi", 4.5, false},
     {"event_ns", 500, false},
     {"instructions_per_task_stencil", 1000, false},
     {"instructions_per_task_chain", 750, false},
@@ -52,7 +48,6 @@ static const duite_kernel *const KERNELS[] = {&tasks_gate,
                                               &tasks_stencil_padded,
                                               &tasks_chain_next,
                                               &tasks_independent_mark,
-                                              &tasks_granularity_point,
                                               &tasks_fib,
                                               &tasks_fib_flow,
                                               &tasks_fib_put,

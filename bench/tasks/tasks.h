@@ -90,10 +90,10 @@ extern const char *const tasks_forking_rivals[];
 
 extern const struct bench_case tasks_stencil, tasks_chain, tasks_independent, tasks_fib_case,
     tasks_skynet, tasks_queens, tasks_matmul, tasks_tree, tasks_tiles, tasks_growth, tasks_bytes,
-    tasks_granularity, tasks_wake, tasks_event, tasks_instructions, tasks_adopt;
+    tasks_wake, tasks_event, tasks_instructions, tasks_adopt;
 extern const duite_kernel tasks_stencil_combine, tasks_stencil_empty, tasks_stencil_padded,
-    tasks_chain_next, tasks_adopt_change, tasks_independent_mark, tasks_granularity_point,
-    tasks_wake_up, tasks_event_hold, tasks_fib, tasks_fib_flow, tasks_fib_put, tasks_fib_add,
-    tasks_tree_node, tasks_forks_kernels[TASKS_FORKS], tasks_tiles_kernels[TILES_ROUTINES];
+    tasks_chain_next, tasks_adopt_change, tasks_independent_mark, tasks_wake_up, tasks_event_hold,
+    tasks_fib, tasks_fib_flow, tasks_fib_put, tasks_fib_add, tasks_tree_node,
+    tasks_forks_kernels[TASKS_FORKS], tasks_tiles_kernels[TILES_ROUTINES];
 
 #endif

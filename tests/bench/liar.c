@@ -39,7 +39,7 @@ int main(void)
                                             {"stencil", answer},
                                             {"chain", answer},
                                             {"independent", answer},
-                                            {"granularity", answer},
+                                            {"line", answer},
                                             {"triad", answer},
                                             {0}};
     const struct serve_run *const all[] = {runs, NULL};

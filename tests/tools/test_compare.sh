@@ -144,12 +144,12 @@ ok "duite-graph has none of StarPU's schedulers" refuses "bench/rivals/starpu-gr
     irregular --scheduler starpu:lws
 # How short tasks may be, from made-up times: grains of half, the whole and four times a microsecond take 1.5, 2 and 4 us a task of 39.
 metg() {
-    set -- tree random --metg --scheduler steal --threads 1 --grain 0.5,1,4 --rounds 1 --output m
-    refused 0 "6 configurations, 1 rounds" "$@" || return 1
+    set -- tree random spread:3 --metg --scheduler steal --threads 1 --grain 0.5,1,4 --rounds 1 --output m
+    refused 0 "9 configurations, 1 rounds" "$@" || return 1
     sed -i 's/^\(0,tree,0.5,.*,steal\),[^,]*,/\1,58.5e-6,/; s/^\(0,tree,1,.*,steal\),[^,]*,/\1,78e-6,/; s/^\(0,tree,4,.*,steal\),[^,]*,/\1,156e-6,/' "$scratch/m/summary.csv"
     refused 0 "^| tree | 2 |$" "$@" || return 1
     cat "$scratch/m/metg.csv"
-    grep -qx "| tree | 2 |" "$scratch/m/compare.html" && grep -qx "tree,1,1,none,metis,steal,1.5,0.3333" "$scratch/m/metg.csv" &&
+    grep -q "^| spread:3 | " "$scratch/m/compare.html" && grep -qx "| tree | 2 |" "$scratch/m/compare.html" && grep -qx "tree,1,1,none,metis,steal,1.5,0.3333" "$scratch/m/metg.csv" &&
         grep -qx "tree,1,1,none,metis,steal,4,1.0000" "$scratch/m/metg.csv" && test "$(grep -c '^random,' "$scratch/m/metg.csv")" = 3 &&
         test "$(grep -c '^<title>tree: efficiency' "$scratch/m/compare.html")" = 1
 }
@@ -230,6 +230,9 @@ if quick; then numbers=2; else numbers="1 2"; fi
 ok "... is stopped at the limit and named, and the others go on" stopped $numbers
 ok "... and by duite-graph at its own" stopped_alone
 ok "a machine that is busy draws a warning" busy
+for kind in tree:4 stencil: stencil:0 stencil:x stencil:1000001; do
+    ok "rows of $kind" refused 2 "there is no kind of graph $kind; .* width of rows from 1 to 1000000" "$kind" --output u
+done
 ok "an unknown kind of graph" refused 2 "there is no kind of graph ring; known are stencil, .* chain, and files" ring --output u
 ok "a scene that is not there" refused 2 "none.yaml: No such file or directory" tree none.yaml --output u
 ok "a set without a value" refused 2 "set grain: KEY=VALUE is expected" tree --set grain --output u

@@ -71,6 +71,7 @@ struct compare {
     struct compare_config *config;
     size_t n;
     FILE *journal, *about; /* about.txt */
+    char *where;           /* the host and the build, a line each */
     struct load load;      /* from the first run on, then from that of a round on */
     char warnings[2000];   /* a line each */
     bool wrong;            /* two runs that should agree have not the same result */
@@ -88,8 +89,6 @@ int compare_journal_add(struct compare *compare, const struct compare_config *co
  * compare->warnings, and on stderr. NULL is none. */
 void compare_journal_warn(struct compare *compare, const char *warning);
 void compare_journal_close(struct compare *compare);
-/* The host and the build, a line each after `before`. */
-void compare_describe(FILE *out, const char *before);
 
 /* The path of a program that lies beside this one, or in a folder there. */
 enum { COMPARE_PROGRAM = PATH_MAX + 100 };

@@ -81,12 +81,13 @@ size_t compare_graph_most_reads(const struct compare_graph *graph)
 
 /* ---- Kinds ---- */
 
-enum { MOST_READS = 5, SPREAD = 5 };
+enum { MOST_READS = 5, SPREAD = 5, MOST_WIDTH = 1000000 };
 
 struct make {
     const struct kind *kind;
     struct compare_graph *graph;
     size_t n;
+    int64_t width; /* of rows; 0: as long as there are */
     double cost;
     uint32_t bytes;
     uint64_t random;
@@ -126,11 +127,11 @@ static int64_t spread(int64_t k, int64_t x, int64_t y, int64_t width)
     return (x + k * width / SPREAD + (k ? y % 3 : 0)) % width;
 }
 
-/* Rows as long as there are. */
 static void make_rows(struct make *make)
 {
-    const int64_t width = (int64_t)sqrt((double)make->n), n = make->kind->most;
-    for (int64_t i = 0; i < width * ((int64_t)make->n / width); i++) {
+    const int64_t width = make->width ? make->width : (int64_t)sqrt((double)make->n);
+    const int64_t rows = (int64_t)make->n / width, n = make->kind->most;
+    for (int64_t i = 0; i < width * (rows ? rows : 1); i++) {
         int64_t reads[MOST_READS];
         for (int64_t k = 0; k < n; k++) {
             const int64_t column = make->kind->column(k, i % width, i / width, width);
@@ -220,18 +221,26 @@ static const struct kind KINDS[] = {
     {"random", make_random, 3, NULL, 0},   {"irregular", make_random, 5, NULL, 2},
     {"chain", make_chain, 1, NULL, 0}};
 
-static const struct kind *find_kind(const char *name)
+/* KIND, or KIND:WIDTH if it has rows. */
+static const struct kind *find_kind(const char *name, int64_t *width)
 {
+    const size_t length = strcspn(name, ":");
+    char *end = "";
+    *width = name[length] ? strtol(name + length + 1, &end, 10) : 0;
+    if (*end || (name[length] && (*width < 1 || *width > MOST_WIDTH)))
+        return NULL;
     for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++)
-        if (!strcmp(KINDS[i].name, name))
-            return &KINDS[i];
+        if (strlen(KINDS[i].name) == length && !strncmp(KINDS[i].name, name, length))
+            return *width && !KINDS[i].column ? NULL : &KINDS[i];
     return NULL;
 }
 
 int compare_graph_make(struct compare_graph *graph, const char *kind, size_t n, double cost,
                        uint32_t bytes, uint64_t seed)
 {
-    struct make make = {find_kind(kind), graph, n < 4 ? 4 : n, cost, bytes, seed};
+    struct make make = {
+        .graph = graph, .n = n < 4 ? 4 : n, .cost = cost, .bytes = bytes, .random = seed};
+    make.kind = find_kind(kind, &make.width);
     if (make.kind)
         make.kind->make(&make);
     if (!graph->n)
@@ -252,12 +261,15 @@ const char *compare_graph_wrong(const char *what, char *text, size_t size)
         snprintf(text, size, "%s: %s", what, strerror(errno));
         return text;
     }
-    if (find_kind(what))
+    int64_t width;
+    if (find_kind(what, &width))
         return NULL;
-    snprintf(text, size,
-             "there is no kind of graph %.60s; known are " COMPARE_GRAPH_KINDS
-             ", and files by a name with a . or / in it",
-             what);
+    snprintf(
+        text, size,
+        "there is no kind of graph %.60s; known are " COMPARE_GRAPH_KINDS
+        ", and files by a name with a . or / in it; the first four take a width of rows from 1 "
+        "to %d, as stencil:16",
+        what, MOST_WIDTH);
     return text;
 }
 

@@ -24,7 +24,8 @@ size_t compare_graph_most_reads(const struct compare_graph *graph);
 
 /* Fills an empty graph of one of these kinds with about n tasks that cost `cost` seconds on average
  * and write `bytes` each:
- *   stencil    rows as long as there are; each task reads its three neighbours of the row before
+ *   stencil    as many rows as tasks in each, or rows of WIDTH tasks (stencil:WIDTH, and the three
+ *              below); each task reads its three neighbours of the row before
  *   nearest    likewise, its five
  *   fft        likewise, itself and those at a distance of 1, 2, 4, ..., the next in each row
  *   spread     likewise, five all over the row, and others in the next

@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
+#include <mpi.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/utsname.h>
@@ -23,37 +24,79 @@
 
 enum { LINE = 1000 };
 
-static void first_line_of(FILE *out, const char *before, const char *key, const char *command)
+/* ---- Where ---- */
+
+static bool begins(const char *line, const char *with)
 {
-    char line[LINE] = "";
-    FILE *in = popen(command, "r");
-    if (in && fgets(line, sizeof line, in))
-        line[strcspn(line, "\n")] = 0;
-    if (in)
-        pclose(in);
-    fprintf(out, "%s%s: %s\n", before, key, line[0] ? line : "unknown");
+    return !strncmp(line, with, strlen(with));
 }
 
-void compare_describe(FILE *out, const char *before)
+/* The rest of the first line that begins with `with`; blanks and a colon may lie between. */
+static void print_line_of(FILE *in, const char *key, const char *with, FILE *out)
 {
-    struct utsname host;
+    char line[LINE];
+    bool found = false;
+    while (in && !found && fgets(line, sizeof line, in))
+        found = begins(line, with);
+    const char *rest = found ? line + strlen(with) : "unknown";
+    rest += found ? strspn(rest, " \t:") : 0;
+    fprintf(out, "%s: %.*s\n", key, (int)strcspn(rest, "\n"), rest);
+}
+
+static void print_file_line(const char *key, const char *file, const char *with, FILE *out)
+{
+    FILE *in = fopen(file, "r");
+    print_line_of(in, key, with, out);
+    if (in)
+        fclose(in);
+}
+
+static void print_mpi(FILE *out)
+{
+    char version[MPI_MAX_LIBRARY_VERSION_STRING] = "unknown";
+    int length;
+    if (MPI_Get_library_version(version, &length)) /* allowed before MPI_Init */
+        *version = 0;
+    fprintf(out, "mpi: %.*s\n", (int)strcspn(version, ",\n"), version);
+}
+
+/* Of the tree that this program was built in, if it is started there. */
+static void print_revision(FILE *out)
+{
     char build[COMPARE_PROGRAM], command[COMPARE_PROGRAM + LINE];
-    if (!uname(&host))
-        fprintf(out, "%shost: %s, %s %s, %s\n", before, host.nodename, host.sysname, host.release,
-                host.machine);
-    fprintf(out, "%scores: %ld\n", before, sysconf(_SC_NPROCESSORS_ONLN));
-    first_line_of(out, before, "processor",
-                  "sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1");
-    first_line_of(out, before, "memory", "sed -n 's/^MemTotal: *//p' /proc/meminfo");
-    first_line_of(out, before, "load", "cut -d ' ' -f 1-3 /proc/loadavg");
-    first_line_of(out, before, "mpi", COMPARE_MPIRUN " --version 2> /dev/null | head -n 1");
-    fprintf(out, "%sbuild: %s, %s, %s\n", before, PACKAGE_STRING, COMPILER, COMPARE_CFLAGS);
     snprintf(command, sizeof command,
              "cd '%s' && test -e config.status && git -C '" COMPARE_SOURCE
-             "' describe --always --dirty --abbrev=12 2> /dev/null", /* a build folder's alone */
+             "' describe --always --dirty --abbrev=12 2> /dev/null",
              compare_find_program("", build));
-    first_line_of(out, before, "revision", command);
+    FILE *in = popen(command, "r");
+    print_line_of(in, "revision", "", out);
+    if (in)
+        pclose(in);
 }
+
+/* The host and the build, once: what is asked for them takes as long as starting some programs. 1
+ * without memory. */
+static int describe(struct compare *compare)
+{
+    struct utsname host;
+    size_t size;
+    FILE *out = open_memstream(&compare->where, &size);
+    if (!out)
+        return 1;
+    if (!uname(&host))
+        fprintf(out, "host: %s, %s %s, %s\n", host.nodename, host.sysname, host.release,
+                host.machine);
+    fprintf(out, "cores: %ld\n", sysconf(_SC_NPROCESSORS_ONLN));
+    print_file_line("processor", "/proc/cpuinfo", "model name", out);
+    print_file_line("memory", "/proc/meminfo", "MemTotal", out);
+    print_file_line("load", "/proc/loadavg", "", out);
+    print_mpi(out);
+    fprintf(out, "build: %s, %s, %s\n", PACKAGE_STRING, COMPILER, COMPARE_CFLAGS);
+    print_revision(out);
+    return fclose(out) != 0;
+}
+
+/* ---- What is compared ---- */
 
 /* The settings that all runs of a comparison share; lists and rounds may grow. */
 static void print_specification(const struct compare *compare, FILE *out)
@@ -161,11 +204,6 @@ struct found {
     char other[LINE]; /* the build or the revision of it, if it is another one's */
 };
 
-static bool begins(const char *line, const char *with)
-{
-    return !strncmp(line, with, strlen(with));
-}
-
 /* A line of about.txt. ours: what begin() would write. */
 static void look_at(struct compare *compare, const char *ours, char *line, struct found *found)
 {
@@ -187,7 +225,7 @@ static int look_at_about(struct compare *compare, struct found *found)
     FILE *memory = open_memstream(&ours, &size), *in = open_file(compare, "about.txt", "r");
     if (memory) {
         print_specification(compare, memory);
-        compare_describe(memory, "");
+        fputs(compare->where, memory);
         fclose(memory);
     }
     while (memory && in && fgets(line, sizeof line, in))
@@ -259,7 +297,7 @@ static void begin(struct compare *compare)
     strftime(date, sizeof date, "%Y-%m-%d %H:%M:%S UTC", gmtime(&now));
     print_specification(compare, compare->about);
     fprintf(compare->about, "date: %s\n", date);
-    compare_describe(compare->about, "");
+    fputs(compare->where, compare->about);
     fprintf(compare->journal, "round");
     for (int d = 0; d < compare->dimensions; d++)
         fprintf(compare->journal, ",%s", compare->name[d]);
@@ -271,6 +309,8 @@ int compare_journal_open(struct compare *compare)
 {
     char text[LINE + 60];
     struct found found = {.whole = 0};
+    if (describe(compare))
+        return cannot_keep(compare);
     FILE *in = open_file(compare, "summary.csv", "r");
     const int failed = in ? take_over(compare, in, &found) : 0;
     if (in)
@@ -334,4 +374,5 @@ void compare_journal_close(struct compare *compare)
         fclose(compare->about);
     if (compare->journal)
         fclose(compare->journal);
+    free(compare->where);
 }

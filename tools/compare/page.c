@@ -51,8 +51,7 @@ static void print_warnings(const struct compare *compare, FILE *out)
 
 static void print_host(const struct compare *compare, FILE *out)
 {
-    (void)compare;
-    compare_describe(out, "");
+    fputs(compare->where, out);
 }
 
 static void print_conditions(const struct compare *compare, FILE *out)

@@ -6,8 +6,8 @@
 
 #include <stdatomic.h>
 
-/* A forecast of a run by its first steps, on rank 0. Intervals are those that the scenes of
- * docs/measuring.md keep. Local functions. */
+/* A forecast of a run by its first steps, on rank 0. forecast.c says which runs its intervals were
+ * compared with. Local functions. */
 struct forecast {
     struct outputs_extent extent;
     double begun;     /* s of the clock: the end of the first step; 0: before */

@@ -58,6 +58,7 @@ static void triangles_material(const struct model_material *material, void *to)
         return;
     phys_membrane_make(material->stretch, model_weft(material), material->shear, material->poisson,
                        material->damping_stiffness, membrane); /* the model was checked */
+    phys_membrane_stiffen(membrane, &material->stiffening);
     membrane->uncorrected = material->uncorrected;
 }
 
@@ -79,4 +80,5 @@ const struct element_kind element_triangles = {
     .system = phys_triangles_system,
     .energy = phys_triangles_energy,
     .torque = phys_triangles_torque,
+    .stiffest = phys_triangles_stiffest,
 };

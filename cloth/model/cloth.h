@@ -5,6 +5,7 @@
 #include "cloth/physics/curve.h"
 #include "cloth/physics/motion.h"
 #include "cloth/physics/spring.h"
+#include "cloth/physics/triangle.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -20,7 +21,8 @@ struct model_material {
         weft_excess;    /* membrane moduli, N/m, >= 0: along the warp; the weft's less the warp's */
     double shear, bend; /* likewise; bend: of springs only */
     double poisson;     /* triangles: nu12, nu12 nu21 < 1 */
-    bool uncorrected;   /* triangles: with the papers' forces (cloth/physics/triangle.h) */
+    struct phys_stiffening stiffening; /* triangles: beyond these two moduli */
+    bool uncorrected; /* triangles: with the papers' forces (cloth/physics/triangle.h) */
     enum { MODEL_NO_BENDING, MODEL_HINGES, MODEL_QUADRATIC } bending; /* besides bend springs */
     double rigidity[2];       /* N m, of warp and weft, >= 0 */
     double damping_viscous;   /* kg/s a vertex */

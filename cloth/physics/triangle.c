@@ -16,8 +16,54 @@ int phys_membrane_make(double warp, double weft, double shear, double poisson, d
         !isfinite(warp + weft + shear) || !(damping >= 0) || !isfinite(damping))
         return -1;
     const double c11 = warp / (1 - product), c22 = weft / (1 - product);
-    *membrane = (struct phys_membrane){{c11, poisson * c22, c22, shear}, damping, 0};
+    *membrane =
+        (struct phys_membrane){.modulus = {c11, poisson * c22, c22, shear}, .damping = damping};
     return 0;
+}
+
+size_t phys_stiffening_make(size_t n, const double (*point)[2], int thread,
+                            struct phys_stiffening *stiffening, double *modulus)
+{
+    double strain = 0, stress = 0, before = 0;
+    for (size_t i = 0; i < n; i++) {
+        const double slope = (point[i][1] - stress) / (point[i][0] - strain);
+        if (!(point[i][0] > strain) || !(point[i][1] > stress) || !isfinite(slope))
+            return i;
+        if (i == 0) {
+            *modulus = slope;
+        } else {
+            stiffening->at[thread][i - 1] = strain;
+            stiffening->more[thread][i - 1] = slope - before;
+        }
+        before = slope;
+        strain = point[i][0];
+        stress = point[i][1];
+    }
+    return n;
+}
+
+/* The least of the sums of `more` from the first knee on, or 0. */
+static double least_more(const double more[PHYS_KNEES])
+{
+    double sum = 0, least = 0;
+    for (int k = 0; k < PHYS_KNEES; k++) {
+        sum += more[k];
+        least = fmin(least, sum);
+    }
+    return least;
+}
+
+int phys_membrane_stiffen(struct phys_membrane *membrane, const struct phys_stiffening *stiffening)
+{
+    const phys_vec c = membrane->modulus;
+    membrane->stiffening = *stiffening;
+    membrane->curved = 0;
+    for (int d = 0; d < 2; d++)
+        for (int k = 0; k < PHYS_KNEES; k++)
+            membrane->curved |= stiffening->more[d][k] < 0 || stiffening->more[d][k] > 0;
+    const double c11 = c[0] + least_more(stiffening->more[0]);
+    const double c22 = c[2] + least_more(stiffening->more[1]);
+    return !membrane->curved || (c11 > 0 && c22 > 0 && c11 * c22 > c[1] * c[1]) ? 0 : -1;
 }
 
 int phys_triangle_rest(const double uv[6], double gradient[4], double *area)
@@ -107,6 +153,7 @@ PHYS_KERNEL(phys_triangles_force,
         e.uv += moduli.damping * ds.uv;
         e.vv += moduli.damping * ds.vv;
         phys_frame_stress(&frame, &e, &stress);
+        phys_frame_stiffen(&frame, &stress, NULL);
         phys_frame_s(&frame, &s);
         phys_frame_twist(&frame, &stress, &s, &c);
         c *= moduli.corrected;
@@ -130,7 +177,8 @@ PHYS_KERNEL_OF(double, phys_triangles_energy,
         phys_frame_make(t, &four, sight, &moduli, &frame);
         phys_frame_strain(&frame, &e);
         phys_frame_stress(&frame, &e, &s);
-        const phys_vec energy = 0.5 * frame.area * (s.uu * e.uu + s.vv * e.vv + 2 * s.uv * e.uv);
+        phys_vec energy = 0.5 * frame.area * (s.uu * e.uu + s.vv * e.vv + 2 * s.uv * e.uv);
+        phys_frame_stiffening_energy(&frame, &energy);
         sum = phys_sum_own(&four, t->corner, sight->n, &energy, sum);
     }
     return sum;
@@ -159,6 +207,7 @@ PHYS_KERNEL(phys_triangles_strain,
         phys_frame_make(t, &four, sight, &moduli, &frame);
         phys_frame_strain(&frame, &e);
         phys_frame_stress(&frame, &e, &s);
+        phys_frame_stiffen(&frame, &s, NULL);
         larger_of(&e, &larger);
         for (size_t i = 0; i < PHYS_WIDE && first + i < t->n; i++) {
             largest[first + i] = larger[i];
@@ -182,6 +231,7 @@ PHYS_KERNEL(phys_triangles_torque,
         phys_frame_make(t, &four, sight, &moduli, &frame);
         phys_frame_strain(&frame, &e);
         phys_frame_stress(&frame, &e, &stress);
+        phys_frame_stiffen(&frame, &stress, NULL);
         phys_frame_s(&frame, &s);
         phys_frame_twist(&frame, &stress, &s, &c);
         c *= -frame.area * frame.trace * (1 - moduli.corrected);

@@ -22,13 +22,26 @@
  * rotation. They are, times the area, (S^-1 (T - c J))+ against moves along the normal and max(T :
  * S, 0) against rotation in the plane. The parts of compression, and how the strain depends on the
  * rotation, are left out: K is never indefinite. `full` has them all. Pure functions; nothing is
- * allocated. */
+ * allocated.
+ *
+ * Threads may stiffen. With e the strain S - I along a thread, the energy has beside W
+ *     area / 2 sum of more (e - at)^2  over those knees that e is beyond                     (J)
+ * so that the stress along the thread is straight between knees, and K has `more` in C there. */
+
+/* Knees of warp (0) and weft (1): the strain of each, ascending, and by how much the modulus is
+ * higher beyond it, N/m, below 0 where a thread softens. Those that are not used are all 0. */
+enum { PHYS_KNEES = 3 };
+struct phys_stiffening {
+    double at[2][PHYS_KNEES], more[2][PHYS_KNEES];
+};
 
 /* Plane stress: stresses (N/m) of strains. */
 struct phys_membrane {
     phys_vec modulus; /* C11 C12 C22 C33, N/m; C33 of the shear angle, 2 e_uv */
-    double damping;   /* s */
+    double damping;   /* s, times these moduli */
     int uncorrected;  /* forces as the papers have them */
+    int curved;       /* it has knees */
+    struct phys_stiffening stiffening;
 };
 
 /* Makes a membrane from moduli (N/m) along warp and weft and of shear, and the Poisson ratio nu12,
@@ -36,6 +49,17 @@ struct phys_membrane {
  * moduli are finite and not negative and nu12 nu21 < 1. */
 int phys_membrane_make(double warp, double weft, double shear, double poisson, double damping,
                        struct phys_membrane *membrane);
+
+/* Makes the knees of a thread (0 or 1), and its modulus at rest (N/m), of the curve through 0 and n
+ * points of strain and stress (N/m), straight between them and on from the last; 1 <= n <=
+ * PHYS_KNEES + 1. Returns n, or the number of the first point that is not beyond and above the one
+ * before. */
+size_t phys_stiffening_make(size_t n, const double (*point)[2], int thread,
+                            struct phys_stiffening *stiffening, double *modulus);
+
+/* Gives a membrane knees. Returns 0, or -1 where the moduli beyond some of them, with its Poisson
+ * ratio, would resist some strain with less than nothing. */
+int phys_membrane_stiffen(struct phys_membrane *membrane, const struct phys_stiffening *stiffening);
 
 /* A triangle has three corners, then the number of its membrane, of those that are the list's
  * material. Its vector is g_1u g_1v g_2u g_2v, 1/m, with g_0 = -g_1 - g_2; its number is its area
@@ -54,6 +78,7 @@ int phys_triangle_rest(const double uv[6], double gradient[4], double *area);
 /* Pairs of a triangle: (0, 1), (0, 2), (1, 2). The torque is what uncorrected triangles leave. */
 phys_force phys_triangles_force;
 phys_matrix phys_triangles_matrix;
+phys_matrix phys_triangles_stiffest; /* with all of `more` that is above 0, whatever the strain */
 phys_system phys_triangles_system;
 phys_energy phys_triangles_energy;
 phys_torque phys_triangles_torque;

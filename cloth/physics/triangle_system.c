@@ -11,6 +11,7 @@ struct slope {
     struct phys_plane2 t, q, n; /* T; T - c J of the strain; S^-1 q, of which reduced the positive
                                    part */
     phys_vec c, spin;           /* reduced: max(T : S, 0) */
+    phys_vec rise[2];           /* of curved ones: the moduli beyond knees, less C */
 };
 
 /* n -> its part with eigenvalues above 0; n is symmetric. */
@@ -38,8 +39,10 @@ PHYS_INLINE void slope_make(const struct phys_frame *f, int full, struct slope *
 {
     struct phys_plane2 e, s;
     const struct phys_plane2 *t = &slope->t, *q = &slope->q;
+    slope->rise[0] = slope->rise[1] = (phys_vec){0};
     phys_frame_strain(f, &e);
     phys_frame_stress(f, &e, &slope->t);
+    phys_frame_stiffen(f, &slope->t, slope->rise);
     phys_frame_s(f, &s);
     phys_frame_twist(f, t, &s, &slope->c);
     phys_frame_untwist(t, &slope->c, &slope->q);
@@ -64,6 +67,10 @@ PHYS_INLINE void slope_reduced(const struct phys_frame *f, const struct slope *s
     phys_frame_stress(f, &e, &t);
     const phys_vec c = -a * slope->spin * (d->vu - d->uv) * f->turn * f->turn;
     *dq = (struct phys_plane2){share * t.uu, share * t.uv + c, share * t.vu - c, share * t.vv};
+    if (f->of->curved) {
+        dq->uu += a * slope->rise[0] * e.uu;
+        dq->vv += a * slope->rise[1] * e.vv;
+    }
 }
 
 PHYS_INLINE void slope_full(const struct phys_frame *f, const struct slope *slope, double a,
@@ -84,6 +91,14 @@ PHYS_INLINE void slope_full(const struct phys_frame *f, const struct slope *slop
     dq->uv = share * dt.uv - a * w * q->vv + dc;
     dq->vu = share * dt.vu + a * w * q->uu - dc;
     dq->vv = share * dt.vv + a * w * q->uv;
+    if (f->of->curved) {
+        dt = (struct phys_plane2){slope->rise[0] * ds.uu, {0}, {0}, slope->rise[1] * ds.vv};
+        phys_frame_twist(f, &dt, &s, &damped);
+        dq->uu += a * dt.uu;
+        dq->uv += a * damped;
+        dq->vu -= a * damped;
+        dq->vv += a * dt.vv;
+    }
 }
 
 PHYS_INLINE void slope_of(const struct phys_frame *f, const struct slope *slope, int full, double a,
@@ -175,6 +190,10 @@ PHYS_INLINE void stiff_make(const struct phys_frame *f, const struct slope *slop
                             .nuu = a * area * slope->n.uu,
                             .nuv = a * area * slope->n.uv,
                             .nvv = a * area * slope->n.vv};
+    if (c->curved) {
+        stiff->c11 += a * area * slope->rise[0];
+        stiff->c22 += a * area * slope->rise[1];
+    }
 }
 
 PHYS_INLINE void block_reduced(const struct phys_frame *f, const struct stiff *stiff, int i, int j,
@@ -272,13 +291,26 @@ PHYS_INLINE void write_blocks(const struct phys_four *four, const struct phys_fr
 
 /* ---- Both ---- */
 
-/* The results wanted: b may be NULL. */
+/* The results wanted: b may be NULL. stiffest: as if each thread were where it is stiffest. */
 struct wanted {
     double h, push;
-    int full;
+    int full, stiffest;
     const struct phys_sight *sight;
     phys_vec *b;
 };
+
+/* Beyond all knees that stiffen. */
+PHYS_INLINE void slope_rise(const struct phys_moduli *moduli, struct slope *slope)
+{
+    for (int d = 0; d < 2; d++) {
+        slope->rise[d] = (phys_vec){0};
+        for (int k = 0; moduli->curved && k < PHYS_KNEES; k++) {
+            phys_vec more;
+            phys_positive(&moduli->more[d][k], &more);
+            slope->rise[d] += more;
+        }
+    }
+}
 
 PHYS_INLINE void work(const struct phys_elements *t, size_t first, size_t end,
                       const struct wanted *wanted, struct phys_moduli *moduli, const uint32_t *at,
@@ -291,6 +323,8 @@ PHYS_INLINE void work(const struct phys_elements *t, size_t first, size_t end,
     phys_four_from(first, end, &four);
     phys_frame_make(t, &four, wanted->sight, moduli, &frame);
     slope_make(&frame, wanted->full, &slope);
+    if (wanted->stiffest)
+        slope_rise(moduli, &slope);
     if (wanted->b)
         add_right_side(t, &four, &frame, &slope, wanted->full, h * h, wanted->push, wanted->sight,
                        wanted->b);
@@ -315,11 +349,20 @@ PHYS_KERNEL(phys_triangles_matrix,
              struct phys_pair *pair),
             (triangles, from, to, step, sight, at, pair))
 {
-    const struct wanted reduced = {step->h, 0, 0, sight, NULL}, full = {step->h, 0, 1, sight, NULL};
+    const struct wanted reduced = {step->h, 0, 0, 0, sight, NULL},
+                        full = {step->h, 0, 1, 0, sight, NULL};
     if (step->full)
         work_all(triangles, from, to, &full, at, pair);
     else
         work_all(triangles, from, to, &reduced, at, pair);
+}
+
+void phys_triangles_stiffest(const struct phys_elements *triangles, size_t from, size_t to,
+                             const struct phys_step *step, const struct phys_sight *sight,
+                             const uint32_t *at, struct phys_pair *pair)
+{
+    const struct wanted stiffest = {step->h, 0, 0, 1, sight, NULL};
+    work_all(triangles, from, to, &stiffest, at, pair);
 }
 
 PHYS_KERNEL(phys_triangles_system,
@@ -328,7 +371,8 @@ PHYS_KERNEL(phys_triangles_system,
              const uint32_t *at, phys_vec *b, struct phys_pair *pair),
             (triangles, from, to, step, push, sight, at, b, pair))
 {
-    const struct wanted reduced = {step->h, push, 0, sight, b}, full = {step->h, push, 1, sight, b};
+    const struct wanted reduced = {step->h, push, 0, 0, sight, b},
+                        full = {step->h, push, 1, 0, sight, b};
     if (step->full)
         work_all(triangles, from, to, &full, at, pair);
     else

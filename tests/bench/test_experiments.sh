@@ -32,6 +32,7 @@ ok "grain" table grain 8 "a step of 900 vertices, .*median of 1 run"
 ok "scaling" table scaling 22 "A step of 3600 vertices"
 ok "contact-partition" table contact-partition 17 "median of 1 run"
 ok "vassilev" table vassilev 17 "median of 1 run of 10 iterations"
+ok "fabrics" table fabrics 3 "drape coefficient (%) and nodes"
 # Panels of so many vertices that joints pull together around the figure.
 awk -v n=300 -f "$srcdir/bench/vassilev/panels.awk" > "$scratch/panels.yaml"
 # What the loops give: on two threads as many pairs repel each other, and vertices are in the body, as on one, or nearly so.

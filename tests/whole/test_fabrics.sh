@@ -1,5 +1,5 @@
 #!/bin/sh
-# The materials that every scene knows by name: what docs/physics.md says of them is what a strip weighs, and how far it hangs
+# The materials that every scene knows by name: what docs/fabrics.md says of them is what a strip weighs, and how far it hangs
 # along the warp and along the weft; the scene that ships with them runs by long steps, too.
 . "${srcdir:-.}/tests/support/probes.sh"
 
@@ -42,6 +42,34 @@ denim 0.324 2026.8 410.5
 polycotton 0.22 4069.9 4033.0
 END
 
+# Between jaws a fabric carries, at the strains that FAST printed, the loads of the instrument: 5, 20 and 100 gf/cm.
+jaws() { # TRANSLATE FIXED MOVED: rows or columns of 3 x 3 vertices, 0.1 m
+    cat << END
+schema: 1
+gravity: [0, 0, 0]
+cloths:
+  - mesh: {grid: {width: 0.1, height: 0.1, nx: 3, ny: 3}}
+    material: wool_plain
+    pins: [{vertices: $2}, {vertices: $3, motion: {times: [0, 1], translate: [[0, 0, 0], $1]}}]
+time: {h: 0.1, end: 1.2}
+newton: {steps: 20}
+probes: [{name: jaw, vertices: $3, values: [total]}]
+END
+}
+carries() { # COLUMN LOAD
+    run strip.yaml && near "the jaw, N" "$(last "jaw.total.$1" | awk '{ printf "%.12g", $1 < 0 ? -$1 : $1 }')" "$(awk -v f="$2" 'BEGIN { printf "%.12g", f * 0.0980665 }')" 1e-6
+}
+while read -r load warp weft; do
+    jaws "[$warp, 0, 0]" '[0, 3, 6]' '[2, 5, 8]' > strip.yaml
+    ok "wool_plain along the warp at $load gf/cm" carries rx "$load"
+    jaws "[0, 0, $weft]" '[0, 1, 2]' '[6, 7, 8]' > strip.yaml
+    ok "wool_plain along the weft at $load gf/cm" carries rz "$load"
+done << 'END'
+5 0.00067 0.00040
+20 0.00187 0.00187
+100 0.00460 0.00587
+END
+
 scene=$srcdir/cloth/scenes/fabrics.yaml
 ships() { # H END: no edge is twice as long, nothing was given up
     run "$scene" --report report.json --set time.h="$1" --end "$2" || return 1
@@ -53,7 +81,7 @@ bare() { # no materials, no damping
     printf 'schema: 1\ncloths: [{mesh: {grid: {width: 1, height: 1, nx: 5, ny: 5}}, material: %s}]\ntime: {h: 0.01, end: 0.05}\n' "$1" > bare.yaml
     run bare.yaml
 }
-for fabric in rib_knit silk denim polycotton; do
+for fabric in rib_knit silk denim polycotton interlock jersey sweatshirt swimwear tablecloth poplin wool_suiting faille wool_plain cotton_denim; do
     ok "a scene that says $fabric and no more" bare $fabric
 done
 cotton() { # is what the scene makes it, and no knit in disguise

@@ -70,6 +70,8 @@ else
     one_hash "40 x 40, triangles and hinges" some 0 "$scene" $small \
         'materials.cloth={model: triangles, density: 0.2, stretch: [3000, 1000], shear: 100, poisson: 0.3, damping: {stiffness: 0.01}, bending: {rigidity: [1e-4, 5e-5]}}'
     # shellcheck disable=SC2086
+    one_hash "40 x 40, threads that stiffen" some 0 "$scene" $small 'materials.cloth={model: triangles, density: 0.2, shear: 100, damping: {stiffness: 0.01}, stretch_curve: {warp: [[1.0e-7, 1.0e-4], [0.01, 50]], weft: [[1.0e-7, 5.0e-5], [0.1, 3000]]}}'
+    # shellcheck disable=SC2086
     one_hash "40 x 40, triangles and quadratic bending, verlet, a wind and a pin that moves" few 0 "$scene" $small \
         'air={wind: [3, 1, -2]}' 'cloths[0].pins[2].motion={times: [0, 1], translate: [[0, 0, 0], [0, 1, 0]]}' \
         integrator=verlet obstacles=[] time.h=1e-5 time.end=5e-5 \

@@ -17,6 +17,8 @@ struct phys_moduli {
     uint32_t of[PHYS_WIDE];               /* number of the membrane; at first none's */
     phys_vec c11, c12, c22, c33, damping; /* N/m; s */
     phys_vec corrected;                   /* 1; or 0 of uncorrected forces */
+    int curved;                           /* one of the four has knees: */
+    phys_vec at[2][PHYS_KNEES], more[2][PHYS_KNEES];
 };
 #define PHYS_NO_MODULI                                                                             \
     {                                                                                              \
@@ -32,6 +34,16 @@ struct phys_frame {
     const struct phys_moduli *of; /* of the membranes */
 };
 
+PHYS_INLINE void phys_moduli_take_knees(struct phys_moduli *moduli, int lane,
+                                        const struct phys_stiffening *stiffening)
+{
+    for (int d = 0; d < 2; d++)
+        for (int k = 0; k < PHYS_KNEES; k++) {
+            moduli->at[d][k][lane] = stiffening->at[d][k];
+            moduli->more[d][k][lane] = stiffening->more[d][k];
+        }
+}
+
 PHYS_INLINE void phys_moduli_take(const struct phys_elements *t, const struct phys_four *four,
                                   struct phys_moduli *moduli)
 {
@@ -44,10 +56,13 @@ PHYS_INLINE void phys_moduli_take(const struct phys_elements *t, const struct ph
     if (!others)
         return;
     phys_vec row[PHYS_WIDE], column[PHYS_WIDE];
+    moduli->curved = 0;
     PHYS_UNROLL
     for (int i = 0; i < PHYS_WIDE; i++) {
         const struct phys_membrane *membrane = (const struct phys_membrane *)t->material + of[i];
         moduli->of[i] = of[i];
+        moduli->curved |= membrane->curved;
+        phys_moduli_take_knees(moduli, i, &membrane->stiffening);
         row[i] = membrane->modulus;
         moduli->damping[i] = membrane->damping;
         moduli->corrected[i] = membrane->uncorrected ? 0 : 1;
@@ -140,6 +155,45 @@ PHYS_INLINE void phys_frame_strain(const struct phys_frame *f, struct phys_plane
 {
     const phys_vec one = {1, 1, 1, 1};
     *e = (struct phys_plane2){f->suu - one, f->suv, f->suv, f->svv - one};
+}
+
+/* Strain along warp (0) or weft (1) beyond a knee, or 0. */
+PHYS_INLINE void phys_frame_beyond(const struct phys_frame *f, int d, int k, phys_vec *over)
+{
+    const phys_vec one = {1, 1, 1, 1}, beyond = (d ? f->svv : f->suu) - one - f->of->at[d][k];
+    phys_positive(&beyond, over);
+}
+
+/* Adds what the strain beyond knees adds to the stress. rise: what K gets along warp and weft,
+ * N/m; or NULL. */
+PHYS_INLINE void phys_frame_stiffen(const struct phys_frame *f, struct phys_plane2 *t,
+                                    phys_vec rise[2])
+{
+    const phys_vec zero = {0};
+    if (!f->of->curved)
+        return;
+    for (int d = 0; d < 2; d++)
+        for (int k = 0; k < PHYS_KNEES; k++) {
+            phys_vec over, more;
+            phys_frame_beyond(f, d, k, &over);
+            *(d ? &t->vv : &t->uu) += f->of->more[d][k] * over;
+            if (!rise)
+                continue;
+            const phys_mask is_over = over > zero;
+            phys_choose(&is_over, &f->of->more[d][k], &zero, &more);
+            rise[d] += more;
+        }
+}
+
+/* Adds the energy of the strain beyond knees. */
+PHYS_INLINE void phys_frame_stiffening_energy(const struct phys_frame *f, phys_vec *energy)
+{
+    for (int d = 0; f->of->curved && d < 2; d++)
+        for (int k = 0; k < PHYS_KNEES; k++) {
+            phys_vec over;
+            phys_frame_beyond(f, d, k, &over);
+            *energy += 0.5 * f->area * f->of->more[d][k] * over * over;
+        }
 }
 
 /* Without the normal: R' F of a slope. */

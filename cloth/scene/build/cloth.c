@@ -3,14 +3,19 @@
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/rules.h"
 
+#include <string.h>
+
 /* ---- Moduli ---- */
 
-/* True if the scene gives the material, by number, a key. */
-static bool has_key(const struct scene_tree *tree, uint32_t material, const char *key)
+/* True if the scene gives the material, by number, a key; triangles may stretch by a curve. */
+static bool has_key(const struct scene_tree *tree, uint32_t number, const char *key)
 {
+    const struct model_material *material = tree->model->materials + number;
     const int materials = scene_tree_get(tree, 1, "materials");
-    const int node = scene_tree_get(tree, materials, tree->model->materials[material].name);
-    return scene_tree_get(tree, node, key) != 0;
+    const int node = scene_tree_get(tree, materials, material->name);
+    const bool curved = material->model == MODEL_TRIANGLES && !strcmp(key, "stretch") &&
+                        scene_tree_get(tree, node, "stretch_curve");
+    return curved || scene_tree_get(tree, node, key) != 0;
 }
 
 /* True if each material of the cloth has a key: then no element needs a check. */

@@ -26,6 +26,61 @@ static int world_name_scene(const struct scene_tree *tree)
     return CLOTH_OK;
 }
 
+/* Where the scene gives a part of a curve: there, or in the sheet of an instrument, or by a name.
+ */
+static int curve_place(const struct scene_tree *tree, int part, int material)
+{
+    static const char *const from[] = {"kes", "fast", "like"};
+    int place = scene_tree_is_given(tree, part) ? part : material;
+    for (size_t i = 0; place == material && i < sizeof from / sizeof *from; i++)
+        if (scene_tree_get(tree, material, from[i]))
+            place = scene_tree_get(tree, material, from[i]);
+    return place;
+}
+
+/* Reads the curve of a thread, 0 the warp and 1 the weft, which may be that of the warp. */
+static int build_thread(struct model_material *material, const struct scene_tree *tree, int node,
+                        int thread, double *modulus)
+{
+    const int curve = scene_tree_get(tree, node, "stretch_curve");
+    const int weft = thread ? scene_tree_get(tree, curve, "weft") : 0;
+    const int list = weft ? weft : scene_tree_get(tree, curve, "warp");
+    const size_t n = scene_tree_length(tree, list);
+    double point[PHYS_KNEES + 1][2];
+    for (size_t i = 0; i < n; i++)
+        scene_tree_vector(tree, scene_tree_item(tree, list, i), 2, point[i]);
+    const size_t good =
+        phys_stiffening_make(n, (const double(*)[2])point, thread, &material->stiffening, modulus);
+    return good == n
+               ? CLOTH_OK
+               : scene_tree_fail(tree, curve_place(tree, scene_tree_item(tree, list, good), node),
+                                 "materials.%.60s.stretch_curve.%s[%zu] is [%g, %g]; strain and "
+                                 "stress above those of the pair before, or above 0, are expected",
+                                 material->name, weft ? "weft" : "warp", good, point[good][0],
+                                 point[good][1]);
+}
+
+/* The moduli at rest and the knees of a curve. */
+static int build_curve(struct model_material *material, const struct scene_tree *tree, int node)
+{
+    const int curve = scene_tree_get(tree, node, "stretch_curve");
+    const int stretch = scene_tree_get(tree, node, "stretch");
+    double warp = 0, weft = 0;
+    if (!curve)
+        return CLOTH_OK;
+    if (stretch)
+        return scene_tree_fail(tree, stretch,
+                               "materials.%.60s has stretch and stretch_curve, which has moduli of "
+                               "its own; leave one of them out",
+                               material->name);
+    if (build_thread(material, tree, node, 0, &warp) ||
+        build_thread(material, tree, node, 1, &weft))
+        return tree->error->code;
+    material->stretch = warp;
+    material->weft_excess = weft - warp;
+    return CLOTH_OK;
+}
+
 /* Checks a membrane's values together, which a table of keys cannot. */
 static int check_membrane(const struct model_material *material, const struct scene_tree *tree,
                           int node)
@@ -33,8 +88,14 @@ static int check_membrane(const struct model_material *material, const struct sc
     const double warp = material->stretch, weft = model_weft(material), nu = material->poisson;
     struct phys_membrane membrane;
     if (!phys_membrane_make(warp, weft, material->shear, nu, material->damping_stiffness,
-                            &membrane))
-        return CLOTH_OK;
+                            &membrane)) {
+        if (!phys_membrane_stiffen(&membrane, &material->stiffening))
+            return CLOTH_OK;
+        return scene_tree_fail(tree, scene_tree_get(tree, node, "poisson"),
+                               "materials.%.60s.poisson is %g, which is too much where "
+                               "stretch_curve is least steep; a ratio nearer to 0 is expected",
+                               material->name, nu);
+    }
     const int place = scene_tree_get(tree, node, "poisson");
     if (!(warp > 0) || !(weft > 0))
         return scene_tree_fail(
@@ -87,9 +148,10 @@ static int build_material(struct model_material *material, const struct scene_tr
         material->damping_excess -= material->damping_stiffness;
     if (material->correction.rounds > model->correction_rounds)
         model->correction_rounds = material->correction.rounds;
-    const int code =
-        material->model == MODEL_TRIANGLES ? check_membrane(material, tree, node) : CLOTH_OK;
-    return code ? code : build_sizes(material, tree, node);
+    if (build_curve(material, tree, node) ||
+        (material->model == MODEL_TRIANGLES && check_membrane(material, tree, node)))
+        return tree->error->code;
+    return build_sizes(material, tree, node);
 }
 
 static int build_materials(const struct scene_tree *tree)

@@ -4,8 +4,13 @@
  * is left to the check.
  *
  * Extension. KES prints the strain EMT at 500 gf/cm and the linearity LT, which a curve
- * F = F_m (e / e_m)^n has for n = 2 / LT - 1; FAST the strains at 5, 20 and 100 gf/cm. `stretch` is
- * the secant to 5 gf/cm, which cloth carries as it hangs. Shear and bending are straight lines.
+ * F = F_m (e / e_m)^n has for n = 2 / LT - 1; FAST the strains at 5, 20 and 100 gf/cm. Both give
+ * `stretch_curve`, straight between these loads, so that the modulus at rest is the secant to 5
+ * gf/cm, which cloth carries as it hangs. Shear is a straight line.
+ *
+ * Bending. The moment rises on KES's loop as B k + 2HB / 2 with the curvature k; `rigidity` is the
+ * secant to 0.5 1/cm, as cloth hangs: friction holds up a fold, too. FAST's cantilever is a secant
+ * by itself.
  *
  * Damping. A loop whose area is that of the instrument's hysteresis, at one swing a second: the
  * force b k w a of a rate b (s), amplitude a and w = 2 pi / s takes pi b k w a^2 a swing. */
@@ -14,11 +19,13 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double GF_PER_CM = 0.980665;       /* N/m */
-static const double GF_CM = 9.80665e-5;         /* N m */
-static const double HANGS = 5, KES_MOST = 500;  /* gf/cm */
+static const double GF_PER_CM = 0.980665;        /* N/m */
+static const double GF_CM = 9.80665e-5;          /* N m */
+static const double LOADS[] = {5, 20, 100, 500}; /* gf/cm: FAST's three, and KES's largest */
+enum { FAST_LOADS = 3, KES_LOADS = 4 };
 static const double KES_SHEARED = 8;            /* degrees, either way */
 static const double KES_BENT = 2.5;             /* 1/cm, either way */
+static const double KES_HANGS = 0.5;            /* 1/cm */
 static const double FAST_SHEAR = 123;           /* N/m: G = 123 / EB5 */
 static const double FAST_BEND = 9.81e-12;       /* N m of g/m^2 and mm^3 */
 static const double SWINGS = 6.283185307179586; /* rad/s: one a second */
@@ -60,21 +67,71 @@ static int fill_number(const struct sheet *sheet, const char *key, double value)
     return value > 0 && isfinite(value) ? fill_text(sheet, key, text) : CLOTH_OK;
 }
 
-static int fill_pair(const struct sheet *sheet, const char *key, const char *format,
-                     const double value[2])
+/* rigidity: N m of warp and weft. */
+static int fill_rigidity(const struct sheet *sheet, const double rigidity[2])
 {
     char text[100];
-    snprintf(text, sizeof text, format, value[0], value[1]);
-    const bool there = value[0] > 0 && value[1] > 0 && isfinite(value[0]) && isfinite(value[1]);
-    return there ? fill_text(sheet, key, text) : CLOTH_OK;
+    snprintf(text, sizeof text, "{rigidity: [%.9g, %.9g]}", rigidity[0], rigidity[1]);
+    const bool there = rigidity[0] > 0 && rigidity[1] > 0;
+    return there && isfinite(rigidity[0] + rigidity[1]) ? fill_text(sheet, "bending", text)
+                                                        : CLOTH_OK;
 }
 
-/* N/m: the secant to 5 gf/cm of the curve that KES sums up. */
-static double kes_stretch(const struct sheet *sheet, size_t i)
+/* Strains of a thread at the loads, 0 where the sheet has none: of the curve that KES sums up. */
+static void kes_strains(const struct sheet *sheet, size_t thread, double strain[KES_LOADS])
 {
-    const double most = value_of(sheet, "EMT", i) / 100, linear = value_of(sheet, "LT", i);
+    const double most = value_of(sheet, "EMT", thread) / 100,
+                 linear = value_of(sheet, "LT", thread);
     const double power = linear > 0 ? 2 / linear - 1 : 1;
-    return HANGS * GF_PER_CM / (most * pow(HANGS / KES_MOST, 1 / power));
+    for (int i = 0; i < KES_LOADS; i++) /* a straight line needs one point */
+        strain[i] = power == 1 && i < KES_LOADS - 1
+                        ? 0
+                        : most * pow(LOADS[i] / LOADS[KES_LOADS - 1], 1 / power);
+}
+
+static void fast_strains(const struct sheet *sheet, size_t thread, double strain[KES_LOADS])
+{
+    static const char *const key[FAST_LOADS] = {"E5", "E20", "E100"};
+    for (int i = 0; i < FAST_LOADS; i++)
+        strain[i] = value_of(sheet, key[i], thread) / 100;
+}
+
+/* Writes "[[e, F], ...]" of the strains that are there. Returns how many. */
+static int write_curve(char *text, size_t size, const double strain[KES_LOADS])
+{
+    size_t at = (size_t)snprintf(text, size, "[");
+    int n = 0;
+    for (int i = 0; i < KES_LOADS; i++)
+        if (strain[i] > 0 && isfinite(strain[i]))
+            at += (size_t)snprintf(text + at, size - at, "%s[%.12g, %.12g]", n++ ? ", " : "",
+                                   strain[i], LOADS[i] * GF_PER_CM);
+    snprintf(text + at, size - at, "]");
+    return n;
+}
+
+/* Fills in the curve of both threads, unless the scene has a stretch of its own. */
+static int fill_curve(const struct sheet *sheet,
+                      void (*strains)(const struct sheet *, size_t, double[KES_LOADS]))
+{
+    char thread[2][200], text[420];
+    int least = KES_LOADS;
+    for (size_t i = 0; i < 2; i++) {
+        double strain[KES_LOADS] = {0};
+        strains(sheet, i, strain);
+        const int n = write_curve(thread[i], sizeof thread[i], strain);
+        least = n < least ? n : least;
+    }
+    if (!least || scene_tree_get(sheet->tree, sheet->material, "stretch"))
+        return CLOTH_OK;
+    snprintf(text, sizeof text, "{warp: %s, weft: %s}", thread[0], thread[1]);
+    return fill_text(sheet, "stretch_curve", text);
+}
+
+/* N m of warp or weft; 0: the sheet has none. */
+static double kes_rigidity(const struct sheet *sheet, size_t i)
+{
+    const double line = value_of(sheet, "B", i);
+    return line > 0 ? GF_CM * (line + value_of(sheet, "2HB", i) / (2 * KES_HANGS)) : 0;
 }
 
 static int fill_damping(const struct sheet *sheet)
@@ -101,29 +158,25 @@ static int fill_damping(const struct sheet *sheet)
 
 static int fill_kes(const struct sheet *sheet)
 {
-    const double stretch[2] = {kes_stretch(sheet, 0), kes_stretch(sheet, 1)};
-    const double bend[2] = {GF_CM * value_of(sheet, "B", 0), GF_CM * value_of(sheet, "B", 1)};
+    const double bend[2] = {kes_rigidity(sheet, 0), kes_rigidity(sheet, 1)};
     return fill_number(sheet, "density", value_of(sheet, "W", 0) / 100) ||
-           fill_pair(sheet, "stretch", "[%.9g, %.9g]", stretch) ||
+           fill_curve(sheet, kes_strains) ||
            fill_number(sheet, "shear", mean_of(sheet, "G") * GF_PER_CM * 180 / M_PI) ||
-           fill_pair(sheet, "bending", "{rigidity: [%.9g, %.9g]}", bend) || fill_damping(sheet) ||
+           fill_rigidity(sheet, bend) || fill_damping(sheet) ||
            fill_number(sheet, "friction", mean_of(sheet, "MIU"));
 }
 
 static int fill_fast(const struct sheet *sheet)
 {
     const double weight = value_of(sheet, "W", 0), given = mean_of(sheet, "G");
-    double stretch[2], bend[2];
-    for (size_t i = 0; i < 2; i++) {
-        stretch[i] = HANGS * GF_PER_CM / (value_of(sheet, "E5", i) / 100);
+    double bend[2];
+    for (size_t i = 0; i < 2; i++)
         bend[i] = value_of(sheet, "B", i) > 0
                       ? 1e-6 * value_of(sheet, "B", i)
                       : FAST_BEND * weight * pow(value_of(sheet, "C", i), 3);
-    }
-    return fill_number(sheet, "density", weight / 1000) ||
-           fill_pair(sheet, "stretch", "[%.9g, %.9g]", stretch) ||
+    return fill_number(sheet, "density", weight / 1000) || fill_curve(sheet, fast_strains) ||
            fill_number(sheet, "shear", given > 0 ? given : FAST_SHEAR / mean_of(sheet, "EB5")) ||
-           fill_pair(sheet, "bending", "{rigidity: [%.9g, %.9g]}", bend);
+           fill_rigidity(sheet, bend);
 }
 
 int scene_instruments_fill(struct scene_tree *tree, int material)

@@ -83,7 +83,7 @@ static const struct scene_rule scene_keys[] = {
      .about = "what moves", .section = "Cloths"},
     {"materials", SCENE_NAMED, .inside = &scene_material,
      ARRAY(struct model, materials, n_materials), .name = FIELD(struct model_material, name),
-     .about = "NAME is yours; rib_knit, silk, denim and polycotton are there",
+     .about = "NAME is yours; [fabrics](fabrics.md) are there",
      .section = "Materials"},
     {"obstacles", SCENE_LIST, .fallback = "[]", .max = SCENE_MOST_NAMED, .inside = &scene_obstacle,
      .about = "what the cloth meets, still or moving by key frames", .section = "Obstacles"},

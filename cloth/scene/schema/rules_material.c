@@ -59,6 +59,15 @@ static const struct scene_rule size_keys[] = {
     SIZE("weft", "along the weft alone"),
     {0}};
 
+static const struct scene_rule curve_point = {
+    .type = SCENE_LIST, .length = 2, .inside = &scene_positive};
+static const struct scene_rule curve_keys[] = {
+    {"warp", SCENE_LIST, .required = true, .filled = true, .max = PHYS_KNEES + 1,
+     .inside = &curve_point, .about = "pairs [strain, N/m], both ascending"},
+    {"weft", SCENE_LIST, .filled = true, .max = PHYS_KNEES + 1, .inside = &curve_point,
+     .about = "else as the warp"},
+    {0}};
+
 /* ---- Sheets of instruments (instruments.c) ---- */
 
 static const struct scene_rule measured = {.type = SCENE_NUMBER, .range = SCENE_POSITIVE,
@@ -79,6 +88,8 @@ static const struct scene_rule kes_keys[] = {
     {0}};
 static const struct scene_rule fast_keys[] = {
     SHEET("E5", "%", "strain at 5 gf/cm: of warp and weft, as all of these, or one for both"),
+    SHEET("E20", "%", "strain at 20 gf/cm"),
+    SHEET("E100", "%", "strain at 100 gf/cm"),
     SHEET("EB5", "%", "strain on the bias at 5 gf/cm"),
     SHEET("G", "N/m", "shear rigidity; else 123 / EB5"),
     SHEET("C", "mm", "bending length"),
@@ -111,6 +122,9 @@ static const struct scene_rule material_keys[] = {
      .inside = &not_negative, STRETCH_AND_WEFT,
      .about = "modulus of triangles, or along threads or edges: one, or those of warp and weft",
      .needs = NEEDS_OWN_TRIANGLES},
+    {"stretch_curve", SCENE_MAP, .inside = curve_keys,
+     .about = "in place of stretch, of triangles: how threads stiffen",
+     .needs = "model = triangles", .section = "Curves of stretch"},
     {"ea", SCENE_NUMBER, "N", .range = SCENE_NOT_NEGATIVE, INTO(struct model_material, ea),
      .about = "force / strain of edges without triangles: chains, ropes",
      .needs = NEEDS_OWN_LINKS},

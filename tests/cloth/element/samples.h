@@ -22,6 +22,7 @@ static struct model_material material[CLOTHS] = {
      .weft_excess = -5,
      .shear = 8,
      .poisson = 0.3,
+     .stiffening = {{{0.02, 0.1}, {0.05}}, {{40, -10}, {15}}},
      .bending = MODEL_HINGES,
      .rigidity = {1, 2},
      .damping_stiffness = 0.02,

@@ -290,6 +290,83 @@ UNIT_TEST(uniaxial_stretch)
     }
 }
 
+/* Threads that stiffen (the warp), and soften (the weft), follow their curves to the last bits, at
+ * their own width; the energy is the area below. */
+static const double knots[2][3][2] = {{{0.01, 10}, {0.05, 90}, {0.1, 400}},
+                                      {{0.02, 6}, {0.06, 15}, {0.09, 18}}};
+
+static double on_curve(int along, double e, double *energy)
+{
+    double strain = 0, stress = 0, slope = 0;
+    *energy = 0;
+    for (int i = 0; i < 3; i++) {
+        const double *to = knots[along][i];
+        slope = (to[1] - stress) / (to[0] - strain);
+        if (e <= to[0] || i == 2)
+            break;
+        *energy += 0.5 * (to[1] + stress) * (to[0] - strain);
+        strain = to[0];
+        stress = to[1];
+    }
+    *energy += (stress + 0.5 * slope * (e - strain)) * (e - strain);
+    return stress + slope * (e - strain);
+}
+
+static void make_curved(struct sheet *s, double nu)
+{
+    struct phys_stiffening stiffening = {0};
+    double modulus[2];
+    make_sheet(s, 0);
+    for (int d = 0; d < 2; d++)
+        ck_assert_uint_eq(phys_stiffening_make(3, knots[d], d, &stiffening, modulus + d), 3);
+    phys_membrane_make(modulus[0], modulus[1], SHEAR, nu, 0, s->membrane);
+    ck_assert_int_eq(phys_membrane_stiffen(s->membrane, &stiffening), 0);
+    s->membrane[1] = s->membrane[0];
+}
+
+UNIT_TEST(uniaxial_stretch_by_a_curve)
+{
+    static const double strain[] = {0.005, 0.03, 0.07, 0.2};
+    const double nu = 0.2, nu21 = nu * 300 / 1000, side[2] = {0.3 * (NY - 1), 0.4 * (NX - 1)};
+    for (int along = 0; along < 2; along++)
+        for (size_t i = 0; i < sizeof strain / sizeof *strain; i++) {
+            const double e = strain[i];
+            struct sheet s;
+            struct elements_state state;
+            phys_vec f[VERTICES], force;
+            double area;
+            make_curved(&s, nu);
+            const double stress = on_curve(along, e, &area);
+            const double across = -(along ? nu21 : nu) * e;
+            const phys_vec fu = {1 + (along ? across : e), 0, 0, 0};
+            const phys_vec fv = {0, 1 + (along ? e : across), 0, 0};
+            place(&s, &fu, &fv, &state);
+            forces(&s, &state, f);
+            pull(f, along, &force);
+            ck_assert_double_eq_tol(force[along], -stress * side[along], 1e-10);
+            const struct phys_sight sight = {VERTICES, state.x, state.v, NULL, NULL};
+            ck_assert_double_eq_tol(phys_triangles_energy(&s.triangles, &sight),
+                                    area * side[0] * side[1], 1e-10);
+        }
+}
+
+/* Curves that go back or down, and a Poisson ratio that soft threads cannot bear. */
+UNIT_TEST(curves_that_are_none)
+{
+    const double back[2][2] = {{0.02, 5}, {0.02, 6}}, down[2][2] = {{0.01, 5}, {0.02, 5}};
+    const struct phys_stiffening soft = {{{0.1}, {0.1}}, {{-990}, {-297}}};
+    struct phys_stiffening stiffening;
+    struct phys_membrane membrane;
+    double modulus;
+    ck_assert_uint_eq(phys_stiffening_make(2, back, 0, &stiffening, &modulus), 1);
+    ck_assert_uint_eq(phys_stiffening_make(2, down, 0, &stiffening, &modulus), 1);
+    phys_membrane_make(WARP, WEFT, SHEAR, POISSON, 0, &membrane);
+    ck_assert_int_eq(phys_membrane_stiffen(&membrane, &soft), -1);
+    phys_membrane_make(WARP, WEFT, SHEAR, 0, 0, &membrane);
+    ck_assert_int_eq(phys_membrane_stiffen(&membrane, &soft), 0);
+    ck_assert(membrane.curved);
+}
+
 UNIT_TEST(pure_shear)
 {
     const double angle = 0.06, height = 0.3 * (NY - 1);

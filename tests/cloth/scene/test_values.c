@@ -267,7 +267,7 @@ UNIT_TEST(materials_of_instruments)
         "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
         "  cotton: {kes: {W: 20, EMT: [5, 4], LT: [1, 0.8], RT: [60, 40], G: 0.5, B: [0.1, 0.05], "
         "2HB: 0.06, MIU: 0.2}}\n"
-        "  wool: {fast: {W: 200, E5: [0.5, 1], EB5: 3, C: [20, 10]}, friction: 0.4}\n"
+        "  wool: {fast: {W: 200, E5: [0.5, 1], E100: [4, 5], EB5: 3, C: [20, 10]}, friction: 0.4}\n"
         "  own: {kes: {W: 20, EMT: 5, G: 1, 2HG: 2}, shear: 7, like: denim}\n");
     const struct model_material *kes = model.materials, *fast = kes + 1, *own = kes + 2;
     const double second = 4.903325 / (0.04 * pow(0.01, 1 / 1.5)); /* n = 2 / 0.8 - 1 */
@@ -276,14 +276,18 @@ UNIT_TEST(materials_of_instruments)
     ck_assert_double_eq_tol(kes->stretch, 9806.65, 1e-4);
     ck_assert_double_eq_tol(model_weft(kes), second, 1e-6 * second);
     ck_assert_double_eq_tol(kes->shear, 28.094, 1e-3);
-    ck_assert_double_eq_tol(kes->rigidity[0], 9.80665e-6, 1e-14);
-    ck_assert_double_eq_tol(kes->rigidity[1], 4.903325e-6, 1e-14);
+    ck_assert_double_eq_tol(kes->rigidity[0], 0.16 * 9.80665e-5, 1e-14);
+    ck_assert_double_eq_tol(kes->rigidity[1], 0.11 * 9.80665e-5, 1e-14);
+    ck_assert_double_eq(kes->stiffening.more[0][0], 0); /* LT 1: a straight line */
+    ck_assert_double_eq_tol(kes->stiffening.at[1][1], 0.04 * pow(0.04, 1 / 1.5), 1e-10);
     ck_assert_double_eq_tol(kes->damping_stiffness, 0.5 / (M_PI * M_PI), 1e-9);
     ck_assert_double_eq_tol(model_damping_bending(kes), 0.06 / (2.5 * M_PI * M_PI * 0.075), 1e-9);
     ck_assert_double_eq(kes->friction, 0.2);
     ck_assert_double_eq_tol(fast->density, 0.2, 1e-12);
     ck_assert_double_eq_tol(fast->stretch, 980.665, 1e-6);
     ck_assert_double_eq_tol(model_weft(fast), 490.3325, 1e-6);
+    ck_assert_double_eq_tol(fast->stiffening.at[1][0], 0.01, 1e-12);
+    ck_assert_double_eq_tol(fast->stiffening.more[1][0], 95 * 0.980665 / 0.04 - 490.3325, 1e-6);
     ck_assert_double_eq_tol(fast->shear, 41, 1e-9);
     ck_assert_double_eq_tol(fast->rigidity[0], 1.5696e-5, 1e-12);
     ck_assert_double_eq(fast->friction, 0.4);

@@ -283,6 +283,7 @@ int view_frames_check(struct output_cache *cache, const char *path,
     const int code = folder.position && folder.order && folder.same
                          ? check_frames_folder(&folder, &frames, found, error)
                          : CLOTH_E_MEMORY;
+    found->frames -= found->frames ? frames.first : 0; /* those before were not looked at */
     free(folder.position);
     free(folder.order);
     free(folder.same);

@@ -18,7 +18,7 @@ bench_libbench_a_SOURCES = bench/bench.h bench/instructions.c bench/instructions
 	bench/contact/maps.c \
 	bench/contact/plans.c bench/contact/scene.c bench/contact/shapes.c bench/contact/shapes.h bench/contact/solid.c bench/contact/state.c \
 	cloth/app/check/intersections.c cloth/app/check/intersections.h \
-	bench/garments/bench.c bench/garments/correction.c bench/garments/scenes.c bench/garments/worn.c bench/garments/garments.h \
+	bench/garments/avatar.c bench/garments/bench.c bench/garments/correction.c tests/support/skinned.c tests/support/skinned.h bench/garments/scenes.c bench/garments/worn.c bench/garments/garments.h \
 	bench/output/bench.c bench/output/folder.h bench/output/output.h bench/output/run.c bench/output/viewer.c bench/output/viewer.h \
 	bench/physics/bench.c bench/physics/ours.c bench/physics/physics.h \
 	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/order.c bench/predict/overhead.c bench/predict/predict.h bench/predict/quota.c \

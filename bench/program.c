@@ -34,6 +34,12 @@
 #define HDF5_MISSING "libhdf5-dev"
 #endif
 
+#ifdef HAVE_ASSIMP
+#define ASSIMP_MISSING ""
+#else
+#define ASSIMP_MISSING "libassimp-dev"
+#endif
+
 #ifdef HAVE_ZMQ
 #define ZMQ_MISSING ""
 #else
@@ -45,6 +51,7 @@ static const struct program PROGRAMS[] = {
     {"duite_hosts", NULL, "", NULL, NULL, true, {0}, {0}},
     {"duite_valgrind", NULL, "", NULL, "valgrind", false, {0}, {0}},
     {"duite_hdf5", NULL, HDF5_MISSING, NULL, NULL, false, {0}, {0}},
+    {"duite_assimp", NULL, ASSIMP_MISSING, NULL, NULL, false, {0}, {0}},
     {"duite_live", NULL, ZMQ_MISSING, NULL, NULL, false, {0}, {0}},
     {"view", "output/draw", BENCH_VIEW_MISSING, NULL, NULL, false, {0}, {0}},
     {"film", "output/draw", BENCH_VIEW_MISSING, NULL, "ffmpeg", false, {0}, {0}},

@@ -1,6 +1,6 @@
 noinst_LIBRARIES += libduite_cloth.a
 libduite_cloth_a_SOURCES =
-CLOTH_LIBS = libduite_cloth.a $(HDF5_LIBS) $(YAML_LIBS) $(ZMQ_LIBS) $(CORE_LIBS)
+CLOTH_LIBS = libduite_cloth.a $(ASSIMP_LIBS) $(HDF5_LIBS) $(YAML_LIBS) $(ZMQ_LIBS) $(CORE_LIBS)
 
 include cloth/base/module.mk
 include cloth/mesh/module.mk

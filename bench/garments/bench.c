@@ -35,7 +35,7 @@ static int mesh(const char *path, uint32_t vertices, bool quick, struct figures 
     struct garment garment = {0};
     struct cloth_error error = {0};
     const struct garment_fineness fineness = {0, vertices};
-    int code = scene_read_pattern(&pattern, path, &error);
+    int code = scene_read_pattern(&pattern, path, NULL, &error);
     const double begin = serve_seconds();
     code = code ? code : garment_make(&garment, &pattern, &fineness, &error);
     figures->seconds = serve_seconds() - begin;
@@ -123,13 +123,20 @@ static const struct bench_case PATTERNS = {
     "with the most triangles that have an angle below 30 degrees, and the least angle of all",
     plan_patterns, RUNS, 0};
 
-static const struct bench_case *const CASES[] = {
-    &PATTERNS,      &contact_maps,        &garments_worn,          &garments_jeans,
-    &garments_walk, &garments_correction, &garments_intersections, NULL};
+static const struct bench_case *const CASES[] = {&PATTERNS,
+                                                 &garments_avatar,
+                                                 &contact_maps,
+                                                 &garments_worn,
+                                                 &garments_jeans,
+                                                 &garments_walk,
+                                                 &garments_correction,
+                                                 &garments_intersections,
+                                                 NULL};
 
 static const struct measure_target TARGETS[] = {{"pattern_ms", 900, false},
                                                 {"pattern_below_30", 0.0001, false},
                                                 {"pattern_least_angle", 20, true},
+                                                {"avatar_seconds", 2, false},
                                                 {"map_ms", 20, false},
                                                 {"body_ns_per_vertex", 200, false},
                                                 {"self_ns_per_vertex", 700, false},
@@ -143,9 +150,13 @@ enum { TARGET_THREADS = 2 };
 
 static int serve_garments(const struct bench *bench)
 {
-    const struct serve_run *const runs[] = {
-        RUNS, contact_map_runs, garments_worn_runs, garments_scene_runs, garments_correction_runs,
-        NULL};
+    const struct serve_run *const runs[] = {RUNS,
+                                            garments_avatar_runs,
+                                            contact_map_runs,
+                                            garments_worn_runs,
+                                            garments_scene_runs,
+                                            garments_correction_runs,
+                                            NULL};
     (void)bench;
     const int status =
         serve(others_are_there() ? "tee, dress, skirt_4_panels and wb_pants_straight"

@@ -9,6 +9,11 @@
 extern const struct serve_run garments_correction_runs[];
 extern const struct bench_case garments_correction;
 
+/* "avatar": seconds that a skinned figure of 30,200 triangles in glTF and its clip of 100 frames
+ * take until they are an obstacle. */
+extern const struct serve_run garments_avatar_runs[];
+extern const struct bench_case garments_avatar;
+
 /* scene name=dressing|jeans|layers|walk contact=certified|repulsion threads= scheduler= quick=
  * what=: wall: seconds of all phases, without meshing; frame: of each 1/25 s of the last phase;
  * intersections: the most in a frame; the key of a count in the report. */

@@ -19,8 +19,6 @@
 
 const char *argp_program_version = "duite-garment " PACKAGE_VERSION;
 
-enum { SIZE_M = 2 };
-
 struct options {
     const char *pattern, *output, *seams;
     struct garment_fineness fineness;
@@ -30,7 +28,7 @@ struct options {
 
     const struct garment_own *own; /* in place of a pattern */
     const struct garment_own *listed;
-    int size;                              /* -1: it is not given */
+    const char *size;                      /* NULL: it is not given */
     const char *measure[GARMENT_MEASURES]; /* NAME=VALUE */
     int n_measures;
 };
@@ -70,11 +68,9 @@ static bool read_listed(const char *text, void *to, struct argp_state *state)
 
 static bool read_size(const char *text, void *to, struct argp_state *state)
 {
-    struct options *options = to;
-    options->size = garment_size_find(text);
-    if (options->size < 0)
-        argp_error(state, "--size takes one of %s, not `%s'", garment_size_words, text);
-    return true;
+    (void)state;
+    ((struct options *)to)->size = text;
+    return *text;
 }
 
 static bool read_measure(const char *text, void *to, struct argp_state *state)
@@ -100,8 +96,9 @@ static const struct cli_option OPTIONS[] = {
     {"own", 257, "GARMENT",
      "Make one of the own garments in place of PATTERN: tshirt, trousers or skirt", CLI_OTHER, 0,
      NULL, read_own, 0},
-    {"size", 258, "SIZE", "The size of an own garment: XS, S, M, L or XL (M)", CLI_OTHER, 0, NULL,
-     read_size, 0},
+    {"size", 258, "SIZE",
+     "The size of an own garment: XS, S, M, L or XL (M); of a DXF file (its sample size)",
+     CLI_OTHER, 0, "a size", read_size, 0},
     {"measure", 259, "NAME=VALUE",
      "A measure of an own garment that differs from its size's; once for each", CLI_OTHER, 0, NULL,
      read_measure, 0},
@@ -123,8 +120,10 @@ static void garment_cli_finish(void *to, struct argp_state *state)
     if (options->pattern && options->own)
         argp_error(state, "a pattern and --own exclude each other: `%s' is one too many",
                    options->pattern);
-    if (!options->own && (options->size >= 0 || options->n_measures))
-        argp_error(state, "--size and --measure need --own GARMENT");
+    if (!options->own && options->n_measures)
+        argp_error(state, "--measure needs --own GARMENT");
+    if (options->own && options->size && garment_size_find(options->size) < 0)
+        argp_error(state, "--size takes one of %s, not `%s'", garment_size_words, options->size);
     if (!options->output && !options->written)
         argp_error(state, "say where the mesh goes: --output FILE");
     if (!options->output && options->body)
@@ -139,8 +138,9 @@ static void garment_cli_finish(void *to, struct argp_state *state)
 
 static const struct cli CLI = {
     .arguments = "PATTERN\n--own GARMENT",
-    .about = "Makes the mesh of a garment from the sewing pattern PATTERN, a JSON file, or from "
-             "measures: panels, and which vertices are sewn together.",
+    .about =
+        "Makes the mesh of a garment from the sewing pattern PATTERN, a JSON or DXF file, or from "
+        "measures: panels, and which vertices are sewn together.",
     .option = OPTIONS,
     .n_options = sizeof OPTIONS / sizeof *OPTIONS,
     .marks = CLI_NONE,
@@ -250,12 +250,13 @@ static int garment_cli_take_pattern(struct garment_pattern *pattern, const struc
 {
     double value[GARMENT_MEASURES];
     char unusual[200];
-    int code = options->own ? CLOTH_OK : scene_read_pattern(pattern, options->pattern, error);
+    int code = options->own ? CLOTH_OK
+                            : scene_read_pattern(pattern, options->pattern, options->size, error);
     if (!options->own && !code && garment_pattern_unusual(pattern, unusual, sizeof unusual))
         fprintf(stderr, "duite-garment: warning: %s: %s\n", options->pattern, unusual);
     if (!options->own)
         return code;
-    garment_own_size(options->own, options->size < 0 ? SIZE_M : options->size, value);
+    garment_own_size(options->own, garment_size_find(options->size ? options->size : "M"), value);
     for (int i = 0; i < options->n_measures && !code; i++)
         code = set_measure(options->own, options->measure[i], value, error);
     return code ? code : garment_own_make(pattern, options->own, value, error);
@@ -328,7 +329,7 @@ static int garment_cli_run(const struct options *options, struct cloth_error *er
 static void list_measures(const struct garment_own *own)
 {
     double value[GARMENT_MEASURES];
-    garment_own_size(own, SIZE_M, value);
+    garment_own_size(own, garment_size_find("M"), value);
     printf("%s: %s. Measures in metres, of size M, and how much more the next size has\n",
            own->name, own->about);
     for (int i = 0; own->measure[i].name; i++) {
@@ -340,7 +341,7 @@ static void list_measures(const struct garment_own *own)
 
 int main(int argc, char **argv)
 {
-    struct options options = {.size = -1};
+    struct options options = {0};
     struct cloth_error error = {0};
     cli_read(&CLI, argc, argv, &options);
     if (options.listed)

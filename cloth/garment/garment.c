@@ -154,7 +154,8 @@ static void put_piece(struct garment *garment, struct meshing *meshing, uint32_t
     panel_axes(panel->rotate, axis);
     for (uint32_t v = 0; v < n; v++) {
         const double *uv = of->plane.place[v], x = of->clockwise ? -uv[0] : uv[0];
-        memcpy(garment->uv[first + v], uv, sizeof garment->uv[0]);
+        garment->uv[first + v][0] = panel->warp_up ? uv[1] : uv[0];
+        garment->uv[first + v][1] = panel->warp_up ? -uv[0] : uv[1];
         for (int k = 0; k < 3; k++)
             garment->position[first + v][k] =
                 (x * axis[0][k] + uv[1] * axis[1][k]) + panel->translate[k];

@@ -28,7 +28,7 @@ struct garment {
     uint32_t n_vertices, n_triangles, n_pieces, n_seams;
     double (*position)[3];       /* m, as the pattern places the panels */
     double (*uv)[2];             /* m, in the panel's plane as seen from its front: for a clockwise
-                                  * panel u is -x */
+                                  * panel u is -x; turned where the warp runs along y */
     uint32_t (*triangle)[3];     /* counterclockwise as seen from the front */
     struct garment_piece *piece; /* a panel, in their order */
     struct garment_seam *seam;   /* a stitch, in their order */

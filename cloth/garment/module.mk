@@ -3,6 +3,11 @@ libduite_cloth_a_SOURCES += \
 	cloth/garment/garment.c cloth/garment/garment.h \
 	cloth/garment/pattern.c cloth/garment/pattern.h \
 	cloth/garment/girth.c cloth/garment/girth.h \
+	cloth/garment/dxf/dxf.h \
+	cloth/garment/dxf/loop.c \
+	cloth/garment/dxf/pieces.c \
+	cloth/garment/dxf/read.c \
+	cloth/garment/dxf/text.c \
 	cloth/garment/own/draw.h \
 	cloth/garment/own/own.c cloth/garment/own/own.h \
 	cloth/garment/own/skirt.c \

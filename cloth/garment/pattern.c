@@ -11,6 +11,8 @@ void garment_pattern_free(struct garment_pattern *pattern)
     for (uint32_t p = 0; pattern->panel && p < pattern->n_panels; p++) {
         free(pattern->panel[p].name);
         free(pattern->panel[p].corner);
+        for (uint32_t e = 0; pattern->panel[p].edge && e < pattern->panel[p].n_edges; e++)
+            free(pattern->panel[p].edge[e].point);
         free(pattern->panel[p].edge);
     }
     free(pattern->panel);

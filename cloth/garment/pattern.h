@@ -11,7 +11,13 @@
  * the body. docs/garments.md has the file format. Lengths are in metres, whatever the file's unit.
  */
 
-enum garment_curve { GARMENT_STRAIGHT, GARMENT_QUADRATIC, GARMENT_CUBIC, GARMENT_CIRCLE };
+enum garment_curve {
+    GARMENT_STRAIGHT,
+    GARMENT_QUADRATIC,
+    GARMENT_CUBIC,
+    GARMENT_CIRCLE,
+    GARMENT_POLYLINE
+};
 
 struct garment_edge {
     uint32_t end[2]; /* corners: where it begins and ends */
@@ -20,6 +26,8 @@ struct garment_edge {
     double radius;        /* m, of an arc */
     bool large;           /* the arc is longer than half a circle */
     bool right;           /* the arc is on the right of the straight way from begin to end */
+    uint32_t n_points;    /* of a polyline, between its ends */
+    double (*point)[2];   /* m: n_points */
 };
 
 struct garment_panel {
@@ -29,6 +37,7 @@ struct garment_panel {
     struct garment_edge *edge;
     double rotate[3];    /* degrees about x, then y, then z; those axes stay where they are */
     double translate[3]; /* m, after the rotation */
+    bool warp_up;        /* the warp runs along y, else along x */
 };
 
 struct garment_side { /* an edge of a panel */
@@ -49,6 +58,13 @@ struct garment_pattern {
 };
 
 void garment_pattern_free(struct garment_pattern *pattern);
+
+/* Reads a DXF file in the profile of AAMA or ASTM (docs/garments.md): the pieces of one size, NULL:
+ * of the sample size, or of the only one. Each stands with its grain line upright, the middle of
+ * the box around it at the origin. The caller frees the pattern, also after an error. Errors:
+ * CLOTH_E_INPUT, with file and line where there is one; CLOTH_E_IO, CLOTH_E_MEMORY. Local. */
+int garment_read_dxf(struct garment_pattern *pattern, const char *path, const char *size,
+                     struct cloth_error *error);
 
 /* Checks that it can be sewn from flat cloth. The edges of each panel, in order, are a closed loop
  * through every corner once. Each has a length, and no arc has too small a radius. No edge meets

@@ -82,13 +82,19 @@ int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint3
 enum { MESH_DISC_RINGS = 10000 };
 int mesh_disc(struct mesh *mesh, double radius, uint32_t rings, struct cloth_error *error);
 
+/* Makes an ellipsoid around the origin, half its axes along x, y and z (m, > 0): the edges of an
+ * icosahedron are halved four times, and all vertices lie on it; normals point outwards. No uv.
+ * Error: CLOTH_E_MEMORY. */
+int mesh_ellipsoid(struct mesh *mesh, const double half[3], struct cloth_error *error);
+
 /* How far the rows of a sheet of equilateral triangles are from each other, m. */
 double mesh_row_distance(double width, uint32_t nx);
 
 /* True if cell (i, j) of a grid is cut along the diagonal from (i + 1, j) to (i, j + 1). */
 bool mesh_cell_turned(const struct mesh *mesh, uint32_t i, uint32_t j);
 
-/* Reads a Wavefront OBJ file: v (x y z, the rest is ignored), vt, f (any polygon; v, v/vt, v//vn,
+/* Reads a mesh: of a file of another program (figure.h) by the ending of its name, else a Wavefront
+ * OBJ file: v (x y z, the rest is ignored), vt, f (any polygon; v, v/vt, v//vn,
  * v/vt/vn; negative indices), l (lone edges), g and o (groups), usemtl and mtllib (materials). All
  * else is skipped. A face is in each group that the last g names, and in that of the last o, whose
  * name is the whole line; without a name it is in none. A repeated name continues its group. Groups
@@ -104,6 +110,14 @@ int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error
 /* The same for a surface that is neither folded nor cut: polygons that cross or touch themselves
  * are fanned from their first corner, since modellers leave twisted ones in bodies. */
 int mesh_read_surface(struct mesh *mesh, const char *path, struct cloth_error *error);
+
+/* Reads an animation of a file that mesh_read_obj reads by another ending: where the vertices of
+ * its mesh are at the times k / rate (1/s) of the clip, from 0 to its end. clip: its name, or
+ * "first". *place: n_frames x n_vertices x 3 as in the file, to be freed; NULL after an error.
+ * CLOTH_E_INPUT: there is no such clip, it moves no vertex, or its frames take more than 4 GB;
+ * CLOTH_E_IO, CLOTH_E_MEMORY, and CLOTH_E_LIBRARY where Assimp is left out. */
+int mesh_read_clip(const char *path, uint32_t n_vertices, const char *clip, double rate,
+                   uint32_t *n_frames, double **place, struct cloth_error *error);
 
 /* Reads a frame of a PC2 file of version 1, or all: *place is n_frames x n_vertices x 3 as in the
  * file, of one frame n_vertices x 3, to be freed; NULL after an error. *n_frames: of the file. A

@@ -5,8 +5,10 @@
 
 static void put_curvature(FILE *file, const struct garment_edge *edge)
 {
-    static const char *const type[] = {
-        [GARMENT_QUADRATIC] = "quadratic", [GARMENT_CUBIC] = "cubic", [GARMENT_CIRCLE] = "circle"};
+    static const char *const type[] = {[GARMENT_QUADRATIC] = "quadratic",
+                                       [GARMENT_CUBIC] = "cubic",
+                                       [GARMENT_CIRCLE] = "circle",
+                                       [GARMENT_POLYLINE] = "polyline"};
     if (edge->curve == GARMENT_STRAIGHT)
         return;
     fprintf(file, ", \"curvature\": {\"type\": \"%s\", \"params\": [", type[edge->curve]);
@@ -15,7 +17,12 @@ static void put_curvature(FILE *file, const struct garment_edge *edge)
         fprintf(file, ", %d, %d]}", edge->large, edge->right);
         return;
     }
-    output_json_put_numbers(file, 2, edge->control[0]);
+    for (uint32_t i = 0; i < edge->n_points; i++) {
+        fputs(i ? ", " : "", file);
+        output_json_put_numbers(file, 2, edge->point[i]);
+    }
+    if (edge->curve != GARMENT_POLYLINE)
+        output_json_put_numbers(file, 2, edge->control[0]);
     if (edge->curve == GARMENT_CUBIC) {
         fputs(", ", file);
         output_json_put_numbers(file, 2, edge->control[1]);
@@ -30,6 +37,7 @@ static void output_pattern_put_panel(FILE *file, const struct garment_panel *pan
     output_json_put_numbers(file, 3, panel->translate);
     fputs(", \"rotation\": ", file);
     output_json_put_numbers(file, 3, panel->rotate);
+    fputs(panel->warp_up ? ", \"warp\": \"y\"" : "", file);
     fputs(",\n        \"vertices\": [", file);
     for (uint32_t c = 0; c < panel->n_corners; c++) {
         fputs(c ? ", " : "", file);

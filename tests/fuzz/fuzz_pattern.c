@@ -1,4 +1,4 @@
-/* Patterns: the file, then its panels as a coarse mesh. */
+/* Patterns, as DXF unless they begin as JSON: the file, then its panels as a coarse mesh. */
 #include "cloth/garment/garment.h"
 #include "cloth/scene/pattern.h"
 #include "tests/fuzz/fuzz.h"
@@ -24,6 +24,8 @@ static double reach_of(const struct garment_panel *panel, double largest)
             largest = larger(largest, panel->corner[0], edge->control[k]);
         if (edge->curve == GARMENT_CIRCLE)
             largest = fmax(largest, edge->radius);
+        for (uint32_t k = 0; k < edge->n_points; k++)
+            largest = larger(largest, panel->corner[0], edge->point[k]);
     }
     return largest;
 }
@@ -41,7 +43,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct cloth_error error = {0};
     struct garment_pattern pattern = {0};
     struct garment garment = {0};
-    if (!scene_read_pattern(&pattern, fuzz_file("panels.json", data, size), &error)) {
+    const bool dxf = size > 0 && *data != '{'; /* no JSON begins otherwise */
+    const char *path = fuzz_file(dxf ? "panels.dxf" : "panels.json", data, size);
+    if (!scene_read_pattern(&pattern, path, NULL, &error)) {
         const struct garment_fineness fineness = {.edge = fineness_of(&pattern)};
         garment_make(&garment, &pattern, &fineness, &error);
     }

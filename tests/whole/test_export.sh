@@ -34,6 +34,18 @@ for file in a.glb a.obj; do
     ok "writes $file" export_to "$file" --frame 2
     ok "$file has the frame" reads "$file" 2:2
 done
+cat > "$scratch/again.yaml" << 'EOF'
+schema: 1
+cloths:
+  - {mesh: {file: 'a.glb#cloth'}, material: cloth}
+materials: {cloth: {density: 0.2, stretch: 100}}
+time: {h: 0.01, end: 0.01}
+EOF
+again() { # the same vertices, in the same order
+    "$DUITE_CLOTH" "$scratch/again.yaml" --quiet --output "$scratch/again" && "$DUITE_VIEW" "$scratch/again" --export "$scratch/again.obj" --frame 0 &&
+        grep '^v ' "$scratch/again.obj" > "$scratch/vertices" && grep '^v ' "$scratch/a.obj" | head -n "$(wc -l < "$scratch/vertices")" | cmp - "$scratch/vertices"
+}
+if grep -q 'define HAVE_ASSIMP 1' config.h; then ok "a cloth of glTF is read back" again; fi
 ok "another ending is refused" refuses "ends in .usda, .usd, .glb or .obj, not" export_to a.fbx
 ok "a frame that is not there is refused" refuses "4 frames, 0 to 3: no frame 9" export_to c.glb --frame 9
 ok "frames that are not there are refused" refuses "4 frames, 0 to 3: no frame 9" export_to c.usda --frames 2:9

@@ -147,7 +147,7 @@ ok "a measure without a value" refuses "--measure takes NAME=VALUE" run --own sk
 ok "a measure that is no number" refuses "the value is not a number" run --own skirt --measure hem=1m -e 0.1 -o x.obj
 ok "a measure that is out of range" refuses "skirt: the measure hem is 9; it has to be 0.5 to 4" run --own skirt --measure hem=9 -e 0.1 -o x.obj
 ok "two patterns" refuses "exclude each other" run mine.json --own skirt -e 0.1 -o x.obj
-ok "a size of a file" refuses "need --own" run mine.json --size M -e 0.1 -o x.obj
+ok "a size of a file" refuses "a pattern as JSON has one size" run mine.json --size M -e 0.1 -o x.obj
 ok "pattern over the mesh" refuses "mesh and pattern cannot be the same file" run --own skirt -e 0.1 -o x.obj --write-pattern x.obj
 ok "pattern over the pattern" refuses "would replace the pattern" run mine.json --write-pattern mine.json
 ok "seams of nothing" refuses "--seams needs --output" run --own skirt --write-pattern y.json --seams x.obj

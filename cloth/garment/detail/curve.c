@@ -48,6 +48,27 @@ static void arc_at(const struct curve *curve, double t, double place[2])
     place[1] = curve->centre[1] + (x * s + y * c);
 }
 
+/* Begin, points and end of a polyline. */
+static const double *way_at(const struct curve *curve, uint32_t i)
+{
+    return i == 0 ? curve->point[0] : i > curve->n_points ? curve->point[3] : curve->points[i - 1];
+}
+
+static void polyline_at(const struct curve *curve, double part, double place[2])
+{
+    double left = part * curve->length, length = 0;
+    uint32_t i = 0;
+    for (; i <= curve->n_points; i++) {
+        length = sqrt(cloth_square_2(way_at(curve, i + 1), way_at(curve, i)));
+        if (left <= length || i == curve->n_points)
+            break;
+        left -= length;
+    }
+    const double t = length > 0 ? fmin(left / length, 1) : 0;
+    for (int k = 0; k < 2; k++)
+        place[k] = (1 - t) * way_at(curve, i)[k] + t * way_at(curve, i + 1)[k];
+}
+
 /* The derivative of a Bezier curve. */
 static void velocity(const struct curve *curve, double t, double v[2])
 {
@@ -88,7 +109,8 @@ static double length_between(const struct curve *curve, double t, double u)
 void curve_make(struct curve *curve, const struct garment_panel *panel, uint32_t edge)
 {
     const struct garment_edge *of = &panel->edge[edge];
-    *curve = (struct curve){.kind = of->curve};
+    *curve = (struct curve){
+        .kind = of->curve, .n_points = of->n_points, .points = (const double(*)[2])of->point};
     memcpy(curve->point[0], panel->corner[of->end[0]], sizeof curve->point[0]);
     memcpy(curve->point[1], of->control[0], sizeof curve->point[1]);
     memcpy(curve->point[2], of->control[1], sizeof curve->point[2]);
@@ -97,8 +119,9 @@ void curve_make(struct curve *curve, const struct garment_panel *panel, uint32_t
         make_arc(curve, of);
         return;
     }
-    if (of->curve == GARMENT_STRAIGHT) {
-        curve->length = sqrt(cloth_square_2(curve->point[3], curve->point[0]));
+    if (of->curve == GARMENT_STRAIGHT || of->curve == GARMENT_POLYLINE) {
+        for (uint32_t i = 0; i <= curve->n_points; i++)
+            curve->length += sqrt(cloth_square_2(way_at(curve, i + 1), way_at(curve, i)));
         return;
     }
     for (int k = 0; k < CURVE_PARTS; k++)
@@ -116,6 +139,10 @@ void curve_at(const struct curve *curve, double t, double place[2])
     }
     if (curve->kind == GARMENT_CIRCLE) {
         arc_at(curve, t, place);
+        return;
+    }
+    if (curve->kind == GARMENT_POLYLINE) {
+        polyline_at(curve, t, place);
         return;
     }
     for (int k = 0; k < 2; k++) {
@@ -176,7 +203,7 @@ double curve_turning(const struct curve *curve)
  * exact, an arc has its circle's segment beside the chord. */
 static double curve_area(const struct curve *curve)
 {
-    const double *a = curve->point[0], *b = curve->point[3];
+    const double *begin = curve->point[0];
     double sum = 0;
     if (curve->kind == GARMENT_QUADRATIC || curve->kind == GARMENT_CUBIC) {
         for (int i = 0; i < 5; i++) {
@@ -187,9 +214,12 @@ static double curve_area(const struct curve *curve)
         }
         return 0.5 * sum;
     }
-    sum = 0.5 * (a[0] * b[1] - a[1] * b[0]);
+    for (uint32_t i = 0; i <= curve->n_points; i++) {
+        const double *a = way_at(curve, i), *b = way_at(curve, i + 1);
+        sum += 0.5 * (a[0] * b[1] - a[1] * b[0]);
+    }
     if (curve->kind == GARMENT_CIRCLE) {
-        const double x = a[0] - curve->centre[0], y = a[1] - curve->centre[1];
+        const double x = begin[0] - curve->centre[0], y = begin[1] - curve->centre[1];
         double c, s;
         phys_turn(360 * curve->turns, &c, &s);
         sum += 0.5 * (x * x + y * y) * (TWO_PI * curve->turns - s);

@@ -12,13 +12,15 @@ struct curve {
     double point[4][2];             /* m: begin, controls, end */
     double centre[2];               /* m, of an arc */
     double turns;                   /* of an arc, above 0 is counterclockwise */
+    uint32_t n_points;              /* of a polyline, between begin and end: */
+    const double (*points)[2];      /* those of the panel */
     double length;                  /* m */
     double before[CURVE_PARTS + 1]; /* m: the length of a Bezier curve up to t = k / CURVE_PARTS */
 };
 
 void curve_make(struct curve *curve, const struct garment_panel *panel, uint32_t edge);
 
-/* Where the curve is at a parameter from 0 to 1. */
+/* Where the curve is at a parameter from 0 to 1; of a polyline, a part of its length. */
 void curve_at(const struct curve *curve, double t, double place[2]);
 
 /* Where it is at a part of its length, from 0 to 1. */

@@ -38,6 +38,9 @@ refuse(const struct finish *of, enum finish_item item, size_t index, const char 
     if (!source->path)
         return cloth_fail(of->error, CLOTH_E_INPUT, "%s[%zu]: %s",
                           item == FINISH_EDGE ? "edges" : "triangles", index, text);
+    if (item == FINISH_FACE && !source->face_line)
+        return cloth_fail(of->error, CLOTH_E_INPUT, "%s: face %zu: %s",
+                          mesh_path_shown(source->path), index + 1, text);
     return cloth_fail(of->error, CLOTH_E_INPUT, "%s:%zu: %s", mesh_path_shown(source->path),
                       (item == FINISH_EDGE ? source->edge_line : source->face_line)[index], text);
 }

@@ -6,7 +6,7 @@
 /* Where a mesh came from, so that an error can name the place. */
 struct mesh_source {
     const char *path;        /* NULL: arrays of a caller, whose entries are counted from 0 */
-    const size_t *face_line; /* with a path: the line of each face, */
+    const size_t *face_line; /* with a path: the line of each face, NULL: they have none, */
     const size_t *edge_line; /* and of each lone edge */
     bool fans;               /* faces that cross or touch themselves are fanned */
 };

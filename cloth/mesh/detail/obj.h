@@ -81,6 +81,23 @@ void obj_naming_free(struct obj_naming *naming);
 int obj_library_line(struct cloth_list *library, const char *path, const char *at,
                      struct cloth_error *error);
 
+/* ---- A mesh of what was read ---- */
+
+/* Lists, in the file's order; without lines, faces and edges are named by their numbers. */
+struct obj_parts {
+    struct cloth_list position, uv; /* 3 and 2 doubles an item */
+    struct cloth_list corner;       /* uint32_t[2]: vertex, and uv or OBJ_NO_UV */
+    struct cloth_list face_start, face_line, edge, edge_line;
+    struct obj_naming naming, drawing; /* groups, materials */
+    struct cloth_list library;         /* char *: paths of the files with these */
+};
+
+/* Uses the lists up. fans: as of struct mesh_source. After an error the mesh is empty. Errors:
+ * those of mesh_finish. */
+int obj_parts_make(struct obj_parts *parts, const char *path, bool fans, struct mesh *mesh,
+                   struct cloth_error *error);
+void obj_parts_free(struct obj_parts *parts);
+
 /* ---- Texture coordinates ---- */
 
 #define OBJ_NO_UV 0xffffffffu

@@ -1,4 +1,5 @@
-/* Frames of bodies: of a PC2 file, or of OBJ files of which each has the faces of the body's. */
+/* Frames of bodies: of a PC2 file, of OBJ files of which each has the faces of the body's, or of an
+ * animation of the body's file. */
 #include "cloth/scene/build/build.h"
 
 #include <math.h>
@@ -14,6 +15,22 @@ static int read_pc2(struct scene_tree *tree, int node, const struct mesh *mesh, 
     const int code =
         path ? mesh_read_pc2(path, mesh->n_vertices, MESH_ALL_FRAMES, n, place, &tree->inner)
              : tree->error->code;
+    free(path);
+    return scene_build_blame(code, "frames", tree, node);
+}
+
+static int read_clip(struct scene_tree *tree, int node, int body, const struct mesh *mesh,
+                     struct contact_frames *frames, double **place)
+{
+    const int file = scene_tree_get(tree, body, "file");
+    char *path = file ? scene_tree_beside(tree, file, scene_tree_scalar(tree, file)) : NULL;
+    if (!file)
+        return scene_tree_fail(tree, node,
+                               "frames.clip is an animation of a body's file, but this body has no "
+                               "key file");
+    const int code = path ? mesh_read_clip(path, mesh->n_vertices, scene_tree_scalar(tree, node),
+                                           frames->rate, &frames->n, place, &tree->inner)
+                          : !scene_build_out_of_memory(tree->error);
     free(path);
     return scene_build_blame(code, "frames", tree, node);
 }
@@ -84,14 +101,15 @@ int scene_build_frames(struct contact_frames *frames, double **place, const stru
 {
     const int node = scene_tree_get(tree, body, "frames");
     const int motion = scene_tree_get(tree, body, "motion");
-    const int pc2 = scene_tree_get(tree, node, "pc2");
+    const int pc2 = scene_tree_get(tree, node, "pc2"), clip = scene_tree_get(tree, node, "clip");
     if (motion)
         return scene_tree_fail(tree, motion,
                                "a body with frames has no motion: its frames say where it is");
     *frames = (struct contact_frames){.first = scene_tree_number(tree, node, "start"),
                                       .rate = scene_tree_number(tree, node, "fps")};
-    if (pc2 ? read_pc2(tree, pc2, mesh, &frames->n, place)
-            : read_objs(tree, scene_tree_get(tree, node, "obj"), mesh, &frames->n, place))
+    if (pc2    ? read_pc2(tree, pc2, mesh, &frames->n, place)
+        : clip ? read_clip(tree, clip, body, mesh, frames, place)
+               : read_objs(tree, scene_tree_get(tree, node, "obj"), mesh, &frames->n, place))
         return tree->error->code;
     for (uint32_t k = 0; k < frames->n; k++) {
         struct mesh moved = {.n_vertices = mesh->n_vertices,

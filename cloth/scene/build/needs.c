@@ -2,6 +2,7 @@
  * (schema/needs.h), and it is not there. A key that stands there by default draws none, nor does a
  * value of 0 or `off`, which asks for nothing. */
 #include "cloth/scene/schema/needs.h"
+#include "cloth/base/number.h"
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/check.h"
 
@@ -127,7 +128,7 @@ static bool asks_for_anything(const struct scene_tree *tree, int node)
 {
     const char *text = scene_tree_scalar(tree, node);
     double value = 1;
-    return !text || (strcmp(text, "off") && (!scene_scalar_number(text, &value) || value != 0));
+    return !text || (strcmp(text, "off") && (!cloth_number(text, &value) || value != 0));
 }
 
 /* The node of a key that a term names; 0: it is not there. rule: whose need it is, which does not
@@ -171,7 +172,7 @@ static bool term_holds(const struct scene_tree *tree, const struct needs_scope *
         const char *text = node ? scene_tree_scalar(tree, node) : NULL;
         double value = 0, least = 0;
         if (more)
-            return text && scene_scalar_number(text, &value) && scene_scalar_number(rest, &least) &&
+            return text && cloth_number(text, &value) && cloth_number(rest, &least) &&
                    value > least;
         while (rest && text)
             any = !strcmp(next_word(&rest), text) || any;

@@ -65,16 +65,37 @@ static int build_shape_motion(struct contact_shape *shape, const struct scene_tr
     return CLOTH_OK;
 }
 
+/* The node that says what a body is. */
+static int source_of(const struct scene_tree *tree, int node)
+{
+    static const char *const keys[] = {"obj", "file", "ellipsoid", "mannequin"};
+    size_t i = 0;
+    while (!scene_tree_get(tree, node, keys[i]))
+        i++;
+    return scene_tree_get(tree, node, keys[i]);
+}
+
+static int build_ellipsoid(struct mesh *mesh, struct scene_tree *tree, int node)
+{
+    double half[3];
+    scene_tree_vector(tree, node, 3, half);
+    return check_bound(half, 3, "half an axis of an ellipsoid", tree, node) ||
+           mesh_ellipsoid(mesh, half, tree->error);
+}
+
 /* The mesh of a body, where it starts, and its frames if it has any. */
 static int build_body_mesh(struct mesh *mesh, struct contact_frames *frames, double **place,
                            struct scene_tree *tree, int node)
 {
     struct mesh_transform transform = {0};
-    const int file = scene_tree_get(tree, node, "obj");
+    const int source = source_of(tree, node);
     if (scene_fill(&transform, &scene_body, tree, node) ||
         scene_build_transform(&transform, tree, node) ||
-        (file ? scene_build_obj(mesh, mesh_read_surface, "body", tree, file)
-              : scene_build_mannequin(mesh, &transform, frames, place, tree, node)))
+        (scene_tree_scalar(tree, source)
+             ? scene_build_obj(mesh, mesh_read_surface, "body", tree, source)
+         : scene_tree_is(tree, source, YAML_SEQUENCE_NODE)
+             ? build_ellipsoid(mesh, tree, source)
+             : scene_build_mannequin(mesh, &transform, frames, place, tree, node)))
         return tree->error->code;
     mesh_apply(mesh, &transform);
     return scene_tree_get(tree, node, "frames") &&
@@ -119,14 +140,14 @@ static int obstacle_build_body(struct contact_shape *shape, struct scene_tree *t
     struct contact_frames frames = {0};
     double *place = NULL;
     char what[220];
-    const int file = scene_tree_get(tree, node, "obj");
-    const int source = file ? file : scene_tree_get(tree, node, "mannequin");
+    const int source = source_of(tree, node);
+    const char *file = scene_tree_scalar(tree, source);
     bool turned = false;
     int code =
         build_body_mesh(&mesh, &frames, &place, tree, node) ||
         contact_bodies_add_frames(bodies, &mesh, frames.n ? &frames : NULL, &turned, &tree->inner);
     snprintf(what, sizeof what, "body: %.200s",
-             file ? scene_tree_scalar(tree, file) : "the mannequin");
+             file ? file : "the mesh of the figure, or of the ellipsoid");
     code = scene_build_blame(code, what, tree, source) || warn_of_body(tree, source, turned) ||
            scene_build_warn_crossed(&mesh, place, tree, source);
     shape->body = bodies->n;

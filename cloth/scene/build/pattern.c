@@ -77,16 +77,78 @@ static int build_pattern_check_fineness(const struct scene_pattern *asked,
 }
 
 /* A file has its own measures. */
-static int refuse_measures(const struct scene_tree *tree, int node)
+static int read_file(struct garment_pattern *pattern, const char *path, const char *size,
+                     struct scene_tree *tree, int node)
 {
-    static const char *const key[] = {"size", "measures"};
-    for (int i = 0; i < 2; i++)
-        if (scene_tree_get(tree, node, key[i]))
-            return scene_tree_fail(tree, scene_tree_get(tree, node, key[i]),
-                                   "mesh.pattern.%s is of an own garment, which this pattern is "
-                                   "not: it is a file",
-                                   key[i]);
+    const int measures = scene_tree_get(tree, node, "measures");
+    if (measures)
+        return scene_tree_fail(tree, measures,
+                               "mesh.pattern.measures is of an own garment, which this pattern is "
+                               "not: it is a file");
+    return scene_read_pattern(pattern, path, size, &tree->inner);
+}
+
+/* ---- What the scene says of a pattern's panels ---- */
+
+/* The number of the panel that a node names, a value or a key. */
+static int find_panel(uint32_t *panel, const struct garment_pattern *pattern,
+                      const struct scene_tree *tree, int node)
+{
+    const char *name = scene_tree_scalar(tree, node);
+    char names[300] = "";
+    for (*panel = 0; *panel < pattern->n_panels; ++*panel) {
+        if (!strcmp(pattern->panel[*panel].name, name))
+            return CLOTH_OK;
+        cloth_text_add(names, sizeof names, "%s%s", *panel ? ", " : "",
+                       pattern->panel[*panel].name);
+    }
+    return scene_tree_fail(tree, node, "the pattern has no panel '%.60s'; there are %s", name,
+                           names);
+}
+
+static int place_panels(struct garment_pattern *pattern, const struct scene_tree *tree, int map)
+{
+    for (size_t i = 0; i < scene_tree_length(tree, map); i++) {
+        const yaml_node_pair_t pair = scene_tree_pair(tree, map, i);
+        uint32_t p;
+        if (find_panel(&p, pattern, tree, pair.key))
+            return tree->error->code;
+        struct garment_panel *panel = pattern->panel + p;
+        scene_tree_vector(tree, scene_tree_get(tree, pair.value, "rotation"), 3, panel->rotate);
+        scene_tree_vector(tree, scene_tree_get(tree, pair.value, "translation"), 3,
+                          panel->translate);
+    }
     return CLOTH_OK;
+}
+
+static int build_pattern_take_side(struct garment_side *side, const struct garment_pattern *pattern,
+                                   const struct scene_tree *tree, int node)
+{
+    side->edge = (uint32_t)scene_tree_number(tree, node, "edge");
+    if (find_panel(&side->panel, pattern, tree, scene_tree_get(tree, node, "panel")))
+        return tree->error->code;
+    const struct garment_panel *panel = pattern->panel + side->panel;
+    return side->edge < panel->n_edges
+               ? CLOTH_OK
+               : scene_tree_fail(tree, scene_tree_get(tree, node, "edge"),
+                                 "panel '%.60s' has the edges 0 to %u, but no edge %u", panel->name,
+                                 panel->n_edges - 1, side->edge);
+}
+
+/* Behind those that the pattern has. */
+static int add_stitches(struct garment_pattern *pattern, struct scene_tree *tree, int list)
+{
+    const size_t n = scene_tree_length(tree, list);
+    struct garment_stitch *stitch =
+        n ? scene_build_add(&pattern->stitch, &pattern->n_stitches, n, sizeof *stitch, tree->error)
+          : NULL;
+    for (size_t i = 0; i < n && !tree->error->code; i++)
+        for (size_t k = 0; k < 2 && !tree->error->code; k++)
+            build_pattern_take_side(&stitch[i].side[k], pattern, tree,
+                                    scene_tree_item(tree, scene_tree_item(tree, list, i), k));
+    return tree->error->code ? tree->error->code
+           : n               ? garment_pattern_check(pattern, &tree->inner)
+                             : CLOTH_OK;
 }
 
 static int take_measures(const struct garment_own *own, double *value,
@@ -139,11 +201,12 @@ static int make_garment(struct scene_made_part *to, const char *path, struct sce
                         int node)
 {
     struct scene_pattern asked = {0};
-    int code =
-        scene_fill(&asked, &scene_pattern, tree, node) ||
-        build_pattern_check_fineness(&asked, tree, node) ||
-        (path ? refuse_measures(tree, node) || scene_read_pattern(&to->pattern, path, &tree->inner)
-              : make_own(&to->pattern, &asked, tree, node));
+    int code = scene_fill(&asked, &scene_pattern, tree, node) ||
+               build_pattern_check_fineness(&asked, tree, node) ||
+               (path ? read_file(&to->pattern, path, asked.size, tree, node)
+                     : make_own(&to->pattern, &asked, tree, node)) ||
+               place_panels(&to->pattern, tree, scene_tree_get(tree, node, "place")) ||
+               add_stitches(&to->pattern, tree, scene_tree_get(tree, node, "stitches"));
     const struct garment_fineness fineness = {asked.edge, asked.vertices};
     if (!code && asked.edge > 0)
         code = scene_build_check_memory(

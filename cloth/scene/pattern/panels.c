@@ -6,7 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PANELS = 1 << 16, EDGES = 4096, ALL_EDGES = 1 << 18 }; /* no garment has more */
+enum {
+    PANELS = 1 << 16,
+    EDGES = 4096,
+    ALL_EDGES = 1 << 18,
+    POINTS = 4096
+}; /* no garment has more */
 
 enum { EDGE_ENDPOINTS, EDGE_CURVATURE };
 static const char *const EDGE_KEYS[PATTERN_KEYS] = {"endpoints", "curvature", "label"};
@@ -42,6 +47,22 @@ static int read_circle(const struct pattern_reader *reader, struct garment_edge 
                         "curvature.params[2], whether the arc is on the right,", &edge->right);
 }
 
+static int read_polyline(const struct pattern_reader *reader, const struct garment_panel *panel,
+                         struct garment_edge *edge, int params)
+{
+    if (pattern_list(reader, params, "curvature.params of a polyline", 1, POINTS))
+        return reader->tree->error->code;
+    const size_t n = scene_tree_length(reader->tree, params);
+    edge->curve = GARMENT_POLYLINE;
+    edge->point = cloth_alloc(n, sizeof *edge->point, reader->tree->error);
+    int code = reader->tree->error->code;
+    for (; edge->n_points < n && !code; edge->n_points++)
+        code =
+            read_control(reader, panel, edge, scene_tree_item(reader->tree, params, edge->n_points),
+                         edge->point[edge->n_points]);
+    return code;
+}
+
 static int read_curve(const struct pattern_reader *reader, const struct garment_panel *panel,
                       struct garment_edge *edge, int node)
 {
@@ -57,9 +78,11 @@ static int read_curve(const struct pattern_reader *reader, const struct garment_
                cubic = type && !strcmp(type, "cubic");
     if (type && !strcmp(type, "circle"))
         return read_circle(reader, edge, value[1]);
+    if (type && !strcmp(type, "polyline"))
+        return read_polyline(reader, panel, edge, value[1]);
     if (!quadratic && !cubic)
         return pattern_wrong(reader, value[0],
-                             "curvature.type is none of quadratic, cubic and circle");
+                             "curvature.type is none of quadratic, cubic, circle and polyline");
     edge->curve = quadratic ? GARMENT_QUADRATIC : GARMENT_CUBIC;
     const size_t n = quadratic ? 1 : 2;
     int code = pattern_list(reader, value[1],
@@ -141,19 +164,23 @@ static void move_to_centre(struct garment_panel *panel)
     for (int k = 0; k < 2; k++) {
         for (uint32_t i = 0; i < panel->n_corners; i++)
             panel->corner[i][k] -= middle[k];
-        for (uint32_t e = 0; e < panel->n_edges; e++)
+        for (uint32_t e = 0; e < panel->n_edges; e++) {
             for (int c = 0; c < 2; c++)
                 panel->edge[e].control[c][k] -= middle[k];
+            for (uint32_t c = 0; c < panel->edge[e].n_points; c++)
+                panel->edge[e].point[c][k] -= middle[k];
+        }
         panel->translate[k] += middle[k];
     }
 }
 
-enum { PANEL_VERTICES, PANEL_EDGES, PANEL_TRANSLATION, PANEL_ROTATION };
-static const char *const PANEL_KEYS[PATTERN_KEYS] = {"vertices", "edges", "translation", "rotation",
-                                                     "label"};
+enum { PANEL_VERTICES, PANEL_EDGES, PANEL_TRANSLATION, PANEL_ROTATION, PANEL_WARP };
+static const char *const PANEL_KEYS[PATTERN_KEYS] = {"vertices", "edges", "translation",
+                                                     "rotation", "warp",  "label"};
 
 static int read_panel(struct pattern_reader *reader, struct garment_panel *panel, int node)
 {
+    static const char *const axes[2] = {"x", "y"};
     int value[PATTERN_KEYS];
     if (pattern_map(reader, node, "the panel", PANEL_KEYS, value))
         return reader->tree->error->code;
@@ -163,7 +190,9 @@ static int read_panel(struct pattern_reader *reader, struct garment_panel *panel
     int code =
         read_corners(reader, panel, value[PANEL_VERTICES]) ||
         pattern_vector(reader, value[PANEL_TRANSLATION], "translation", 3, panel->translate) ||
-        pattern_vector(reader, value[PANEL_ROTATION], "rotation", 3, panel->rotate);
+        pattern_vector(reader, value[PANEL_ROTATION], "rotation", 3, panel->rotate) ||
+        (value[PANEL_WARP] &&
+         pattern_word(reader, value[PANEL_WARP], "warp", axes, &panel->warp_up));
     for (int k = 0; k < 3; k++)
         panel->translate[k] *= reader->unit;
     code = code || pattern_read_edges(reader, panel, value[PANEL_EDGES]);

@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* ---- Stitches ---- */
 
@@ -158,16 +159,35 @@ static int read_pattern_tree(struct pattern_reader *reader)
            read_stitches(reader, pattern[1], pattern[0]);
 }
 
-int scene_read_pattern(struct garment_pattern *pattern, const char *path, struct cloth_error *error)
+static void read_json(struct garment_pattern *pattern, const char *path, const char *size,
+                      struct cloth_error *error)
 {
-    struct cloth_error own = {0}; /* the caller may want none, the steps below rely on one */
     struct scene_tree tree;
     struct pattern_reader reader = {.tree = &tree, .pattern = pattern, .edge = -1, .stitch = -1};
-    *pattern = (struct garment_pattern){0};
-    int code = scene_tree_load(&tree, path, &WORDS, &own) || read_pattern_tree(&reader);
+    if (size) {
+        cloth_fail(error, CLOTH_E_INPUT,
+                   "%s: a pattern as JSON has one size, so that '%.40s' chooses nothing: leave it "
+                   "out",
+                   path, size);
+        return;
+    }
+    if (!scene_tree_load(&tree, path, &WORDS, error))
+        read_pattern_tree(&reader);
     scene_tree_free(&tree);
-    if (code)
+}
+
+int scene_read_pattern(struct garment_pattern *pattern, const char *path, const char *size,
+                       struct cloth_error *error)
+{
+    struct cloth_error own = {0}; /* the caller may want none, the steps below rely on one */
+    const char *dot = strrchr(path, '.');
+    *pattern = (struct garment_pattern){0};
+    if (dot && !strcasecmp(dot, ".dxf"))
+        garment_read_dxf(pattern, path, size, &own);
+    else
+        read_json(pattern, path, size, &own);
+    if (own.code)
         return cloth_fail(error, own.code, "%s", own.text);
-    code = garment_pattern_check(pattern, &own);
+    const int code = garment_pattern_check(pattern, &own);
     return code ? cloth_fail(error, code, "%s: %s", path, own.text) : CLOTH_OK;
 }

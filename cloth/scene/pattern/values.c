@@ -1,6 +1,7 @@
 /* Checks of single nodes of a pattern. Every error passes through pattern_wrong, which says where
  * it is in the pattern's own terms. */
 #include "cloth/base/memory.h"
+#include "cloth/base/number.h"
 #include "cloth/scene/pattern/reader.h"
 
 #include <math.h>
@@ -104,8 +105,8 @@ static bool is_plain(const struct pattern_reader *reader, int node)
 
 int pattern_number(const struct pattern_reader *reader, int node, const char *what, double *value)
 {
-    if (!is_plain(reader, node) ||
-        !scene_scalar_number(scene_tree_scalar(reader->tree, node), value) || fabs(*value) > MOST)
+    if (!is_plain(reader, node) || !cloth_number(scene_tree_scalar(reader->tree, node), value) ||
+        fabs(*value) > MOST)
         return fail_expected(reader, node, what, "a number of at most 1e9");
     return CLOTH_OK;
 }

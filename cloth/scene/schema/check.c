@@ -2,6 +2,7 @@
  * Its depth is the schema's. `base` is the structure that the fields of a rule belong to; NULL:
  * nothing is filled. */
 #include "cloth/scene/schema/check.h"
+#include "cloth/base/number.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -216,7 +217,7 @@ static int check_list(struct scene_tree *tree, const struct scene_place *at,
 static bool number_fits(const struct scene_rule *rule, const char *text)
 {
     double value;
-    if (!scene_scalar_number(text, &value))
+    if (!cloth_number(text, &value))
         return false;
     if (rule->range == SCENE_FRACTION)
         return value > 0 && value < 1;

@@ -14,6 +14,7 @@
  *
  * Damping. A loop whose area is that of the instrument's hysteresis, at one swing a second: the
  * force b k w a of a rate b (s), amplitude a and w = 2 pi / s takes pi b k w a^2 a swing. */
+#include "cloth/base/number.h"
 #include "cloth/scene/schema/check.h"
 
 #include <math.h>
@@ -44,7 +45,7 @@ static double value_of(const struct sheet *sheet, const char *key, size_t i)
     if (scene_tree_is(tree, node, YAML_SEQUENCE_NODE))
         node = i < scene_tree_length(tree, node) ? scene_tree_item(tree, node, i) : 0;
     const char *text = node ? scene_tree_scalar(tree, node) : NULL;
-    return text && scene_scalar_number(text, &value) ? value : 0;
+    return text && cloth_number(text, &value) ? value : 0;
 }
 
 static double mean_of(const struct sheet *sheet, const char *key)

@@ -47,15 +47,29 @@ static const struct scene_rule inline_keys[] = {
 static const struct scene_rule measure = {.type = SCENE_NUMBER, INTO(struct scene_measure, value),
     .about = "a measure, mostly in metres"};
 
+static const struct scene_rule panel_place_keys[] = {
+    {"rotation", SCENE_LIST, "degrees", "[0, 0, 0]", VECTOR,
+     .about = "first: about x, then y, then z, axes that stay"},
+    {"translation", SCENE_LIST, "m", "[0, 0, 0]", VECTOR, .about = "then"},
+    {0}};
+static const struct scene_rule panel_place = {.type = SCENE_MAP, .inside = panel_place_keys};
+static const struct scene_rule side_keys[] = {
+    {"panel", SCENE_TEXT, .required = true, .about = "its name"},
+    {"edge", SCENE_INTEGER, .required = true, .about = "of its edges, from 0"},
+    {0}};
+static const struct scene_rule side = {.type = SCENE_MAP, .inside = side_keys};
+static const struct scene_rule stitch = {.type = SCENE_LIST, .length = 2, .inside = &side};
+
 static const struct scene_rule pattern_keys[] = {
     {"file", SCENE_TEXT, .choice = true,
-     .about = "a sewing pattern (JSON, [garments.md](garments.md#patterns)), relative to the "
+     .about = "a sewing pattern (JSON or DXF, [garments.md](garments.md#patterns)), relative to the "
      "scene's folder"},
     {"garment", SCENE_TEXT, .choice = true, INTO(struct scene_pattern, garment),
      .about = "an own garment ([garments.md](garments.md#own-garments)): tshirt, trousers or "
      "skirt"},
     {"size", SCENE_TEXT, INTO(struct scene_pattern, size),
-     .about = "of the garment: XS, S, M, L or XL; M unless told"},
+     .about = "of the garment: XS, S, M, L or XL; M unless told. Of a DXF file: one of its sizes; its "
+     "sample size unless told"},
     {"measures", SCENE_NAMED, .inside = &measure,
      ARRAY(struct scene_pattern, measures, n_measures), .name = FIELD(struct scene_measure, name),
      .about = "NAME: VALUE of those of the garment that differ from its size's"},
@@ -63,6 +77,11 @@ static const struct scene_rule pattern_keys[] = {
      .about = "how long the edges of its triangles are, about"},
     {"vertices", SCENE_INTEGER, .min = 3, INTO(struct scene_pattern, vertices),
      .about = "in place of edge: how many all panels have, about"},
+    {"place", SCENE_NAMED, .inside = &panel_place,
+     .about = "PANEL: where it is, in place of what the pattern says"},
+    {"stitches", SCENE_LIST, .fallback = "[]", .inside = &stitch,
+     .about = "pairs of edges that are sewn together, behind those of the pattern: each a list of "
+     "two {panel, edge}"},
     {0}};
 
 #define MESH_PLACE PLACE(struct model_cloth, mesh_place)
@@ -72,7 +91,8 @@ static const struct scene_rule mesh_keys[] = {
     {"disc", SCENE_MAP, .choice = true, .inside = disc_keys, .apart = true, MESH_PLACE,
      .about = "a flat round sheet in the x-z plane, centred, of almost equal triangles"},
     {"file", SCENE_TEXT, .choice = true, MESH_PLACE,
-     .about = "an OBJ file, relative to the scene's folder ([mesh.md](mesh.md))"},
+     .about = "an OBJ file, or one of another program, relative to the scene's folder "
+     "([mesh.md](mesh.md))"},
     {"inline", SCENE_MAP, .choice = true, .inside = inline_keys, .apart = true, MESH_PLACE,
      .about = "a mesh written out"},
     {"pattern", SCENE_MAP, .choice = true, .inside = pattern_keys, .apart = true, MESH_PLACE,

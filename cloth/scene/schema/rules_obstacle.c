@@ -125,6 +125,9 @@ static const struct scene_rule frames_keys[] = {
      "the scene's folder"},
     {"obj", SCENE_LIST, .choice = true, .filled = true, .inside = &scene_text,
      .about = "OBJ files with the mesh's faces, one a frame"},
+    {"clip", SCENE_TEXT, .choice = true,
+     .about = "an animation of the body's file, by its name, or first: skins, shapes and nodes that "
+     "it moves, `fps` times a second"},
     {"fps", SCENE_NUMBER, "1/s", "25", .range = SCENE_POSITIVE, .about = "frames a second"},
     {"start", SCENE_NUMBER, "s", "0", .about = "when the first frame is"},
     {0}};
@@ -134,6 +137,12 @@ const struct model_word scene_views[] = {
 static const struct scene_rule body_keys[] = {
     {"obj", SCENE_TEXT, .choice = true,
      .about = "an OBJ file of a closed mesh, relative to the scene's folder"},
+    {"file", SCENE_TEXT, .choice = true,
+     .about = "the same, of another program: glTF, FBX, Collada, PLY or STL "
+     "([mesh.md](mesh.md#meshes-and-figures-of-other-programs))"},
+    {"ellipsoid", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &scene_positive,
+     .about = "half its axes along x, y and z, the middle at the origin: a mesh of 5120 triangles, "
+     "inside it by 0.1 % of them at most"},
     {"mannequin", SCENE_MAP, .choice = true, .inside = mannequin_keys, .apart = true,
      .about = "a standing figure, made to measure", .section = "A figure"},
     AS_IN_FILE,

@@ -1,6 +1,7 @@
 /* A field is found by its offset alone, so its rule must fit its type: tests/cloth/scene/test_rules
  * compares the widths of all rules. */
 #include "cloth/base/memory.h"
+#include "cloth/base/number.h"
 #include "cloth/scene/schema/check.h"
 
 #include <stdlib.h>
@@ -25,7 +26,7 @@ static int store_text(char **field, const char *text, struct cloth_error *error)
 /* A number into each of the doubles that the field has. */
 static void store_number(double *field, size_t width, const char *text)
 {
-    scene_scalar_number(text, field);
+    cloth_number(text, field);
     for (size_t i = 1; i < width / sizeof *field; i++)
         field[i] = field[0];
 }

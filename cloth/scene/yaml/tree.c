@@ -1,6 +1,7 @@
 /* A loaded tree holds one document whose root is a map. Nodes are never removed, and never change
  * their type or text. Only scene_edit adds nodes or changes the children of a map or list. */
 #include "cloth/scene/yaml/tree.h"
+#include "cloth/base/number.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -167,7 +168,7 @@ int scene_tree_fail(const struct scene_tree *tree, int node, const char *format,
 double scene_tree_number(const struct scene_tree *tree, int map, const char *key)
 {
     double value = 0;
-    scene_scalar_number(scene_tree_scalar(tree, scene_tree_get(tree, map, key)), &value);
+    cloth_number(scene_tree_scalar(tree, scene_tree_get(tree, map, key)), &value);
     return value;
 }
 
@@ -180,7 +181,7 @@ const char *scene_tree_text(const struct scene_tree *tree, int map, const char *
 void scene_tree_vector(const struct scene_tree *tree, int node, size_t n, double *value)
 {
     for (size_t i = 0; i < n; i++)
-        scene_scalar_number(scene_tree_scalar(tree, scene_tree_part(tree, node, i)), &value[i]);
+        cloth_number(scene_tree_scalar(tree, scene_tree_part(tree, node, i)), &value[i]);
 }
 
 const char *scene_tree_found(const struct scene_tree *tree, int node, const char *quotes,

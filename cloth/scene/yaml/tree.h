@@ -99,9 +99,7 @@ void scene_tree_vector(const struct scene_tree *tree, int node, size_t n, double
 
 /* ---- Scalars (scalar.c) ---- */
 
-/* Numbers as YAML writes them: [+-] digits [. digits] [e [+-] digits], decimal and finite, nothing
- * before or after; whole ones: [+-] digits, from 0 to 2^32 - 1. */
-bool scene_scalar_number(const char *text, double *value);
+/* Whole numbers as YAML writes them: [+-] digits, from 0 to 2^32 - 1. */
 bool scene_scalar_integer(const char *text, uint32_t *value);
 /* It would be a number with a point in place of its comma. */
 bool scene_scalar_has_comma(const char *text);

@@ -16,7 +16,7 @@ static inline struct garment_pattern read_pattern(const char *name)
     const char *top = getenv("srcdir");
     char path[4096];
     snprintf(path, sizeof path, "%s/tests/cloth/garment/patterns/%s.json", top ? top : ".", name);
-    UNIT_FINE(scene_read_pattern(&pattern, path, &error));
+    UNIT_FINE(scene_read_pattern(&pattern, path, NULL, &error));
     return pattern;
 }
 

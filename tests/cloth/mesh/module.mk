@@ -18,4 +18,10 @@ tests_cloth_mesh_test_shadow_LDADD = $(CLOTH_TEST_LIBS) -lm
 tests_cloth_mesh_test_real_SOURCES = tests/cloth/mesh/test_real.c tests/cloth/mesh/tools.h
 tests_cloth_mesh_test_memory_SOURCES = tests/cloth/mesh/test_memory.c $(SCARCE) tests/cloth/mesh/tools.h
 tests_cloth_mesh_test_memory_LDFLAGS = $(SCARCE_WRAP)
+if HAVE_ASSIMP
+ASAN_TESTS += tests/cloth/mesh/test_figure
+tests_cloth_mesh_test_figure_SOURCES = tests/cloth/mesh/test_figure.c tests/support/skinned.c tests/support/skinned.h \
+	tests/cloth/mesh/tools.h
+tests_cloth_mesh_test_figure_LDADD = $(CLOTH_TEST_LIBS) -lm
+endif
 endif

@@ -140,3 +140,19 @@ UNIT_TEST(maps)
         free(text);
     }
 }
+
+/* Every vertex lies on it, also where it is turned and put. */
+UNIT_TEST(an_ellipsoid)
+{
+    char *text = scene_changed(scene_right, PLANE,
+                               "body: {ellipsoid: [0.3, 0.2, 0.1], rotate: {axis: [0, 0, 1], "
+                               "degrees: 90}, translate: [1, 0, 0]}");
+    UNIT_OWNED(model_free) struct model model = scene_read_right(text, 0, NULL);
+    const struct contact_body *body = contact_bodies_at(&model.bodies, 1);
+    const phys_vec *x = contact_body_vertices(body);
+    ck_assert_uint_eq(body->n_triangles, 5120);
+    for (uint32_t v = 0; v < body->n_vertices; v++)
+        ck_assert_double_eq_tol(
+            pow((x[v][0] - 1) / 0.2, 2) + pow(x[v][1] / 0.3, 2) + pow(x[v][2] / 0.1, 2), 1, 1e-12);
+    free(text);
+}

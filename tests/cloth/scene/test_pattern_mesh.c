@@ -69,6 +69,23 @@ UNIT_TEST(panels_as_a_mesh)
     free(text);
 }
 
+/* What the scene says of panels and stitches, beside what the pattern says. */
+UNIT_TEST(panels_that_the_scene_places_and_sews)
+{
+    char *text = scene_of("{pattern: {file: pillow.json, edge: 0.03, place: {back: {rotation: [0, "
+                          "90, 0], translation: [0, 1, 2]}}, stitches: [[{panel: front, edge: 0}, "
+                          "{panel: back, edge: 0}]]}}");
+    UNIT_OWNED(model_free) struct model model = scene_read_right(text, 0, NULL);
+    const struct mesh *mesh = &model.cloths[0].mesh;
+    double low[3], high[3];
+    mesh_box(mesh, low, high);
+    ck_assert_double_eq_tol(high[1], 1.3, 1e-12);
+    ck_assert_double_eq_tol(high[2], 2, 1e-12);
+    ck_assert_uint_eq(model.cloths[0].seams.n, 3);
+    ck_assert_str_eq(model.cloths[0].seams.seam[2].side[1].panel, "back");
+    free(text);
+}
+
 UNIT_TEST(panels_by_count)
 {
     char *text = scene_of("{pattern: {file: pillow.json, vertices: 4000}}");

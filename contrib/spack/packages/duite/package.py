@@ -16,6 +16,7 @@ class Duite(AutotoolsPackage):
 
     variant("cloth", default=True, description="The cloth simulator beside the library and its tools")
     variant("hdf5", default=False, when="+cloth", description="Scientific frames")
+    variant("assimp", default=False, when="+cloth", description="Meshes and figures in glTF, FBX, Collada, PLY and STL")
     variant("view", default=False, when="+cloth", description="Pictures, films and windows: duite-view")
 
     depends_on("c", type="build")
@@ -29,6 +30,7 @@ class Duite(AutotoolsPackage):
     depends_on("gmp", type="test")
     depends_on("libyaml", when="+cloth")
     depends_on("hdf5", when="+hdf5")
+    depends_on("assimp@5:", when="+assimp")
     with when("+view"):
         depends_on("cairo")
         depends_on("egl")
@@ -39,5 +41,5 @@ class Duite(AutotoolsPackage):
     def configure_args(self):
         args = ["MPICC=" + self.spec["mpi"].mpicc] + self.enable_or_disable("cloth")
         if self.spec.satisfies("+cloth"):
-            args += self.with_or_without("hdf5") + self.with_or_without("view") + ["--without-zmq"]
+            args += self.with_or_without("assimp") + self.with_or_without("hdf5") + self.with_or_without("view") + ["--without-zmq"]
         return args

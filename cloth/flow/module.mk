@@ -51,8 +51,10 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/joints/weld_hinges.c \
     cloth/flow/joints/welds.c \
     cloth/flow/pins/follow.c \
+    cloth/flow/pins/make.c \
     cloth/flow/pins/pins.c \
     cloth/flow/pins/sliders.h \
+    cloth/flow/pins/soft.c \
     cloth/flow/contact/body.c \
     cloth/flow/contact/body.h \
     cloth/flow/contact/certified.c \

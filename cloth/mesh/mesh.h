@@ -129,6 +129,12 @@ int mesh_read_clip(const char *path, uint32_t n_vertices, const char *clip, doub
 int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t frame, uint32_t *n_frames,
                   double **place, struct cloth_error *error);
 
+/* Reads weights, 0 to 1, from a text file: a number a line for each vertex; empty lines and
+ * comments (#) are skipped. weight: n_vertices of the caller. Errors name file and line. Codes:
+ * CLOTH_E_INPUT for other words and another number of weights; CLOTH_E_IO, CLOTH_E_MEMORY. */
+int mesh_read_weights(const char *path, uint32_t n_vertices, double *weight,
+                      struct cloth_error *error);
+
 /* Takes copies of the arrays: vertices n x 3, edges n_edges x 2, triangles n_triangles x 3 (either
  * may be absent). Checks indices, repeated corners, finite positions, non-manifold edges and edges
  * that stand twice as mesh_read_obj does, naming the entry

@@ -2,7 +2,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/mesh/mesh.h cloth/mesh/lattice.h cloth/mesh/blocks.h cloth/mesh/slice.h \
 	cloth/mesh/blocks.c cloth/mesh/coincide.c cloth/mesh/corners.c cloth/mesh/edges.c cloth/mesh/elastic.c cloth/mesh/ellipsoid.c \
 	cloth/mesh/lattice.c cloth/mesh/mesh.c cloth/mesh/obj.c cloth/mesh/pc2.c cloth/mesh/shadow.c cloth/mesh/sheets.c \
-	cloth/mesh/slice.c \
+	cloth/mesh/slice.c cloth/mesh/weights.c \
 	cloth/mesh/detail/figure.c cloth/mesh/detail/figure.h \
 	cloth/mesh/detail/finish.c cloth/mesh/detail/finish.h \
 	cloth/mesh/detail/graph.c cloth/mesh/detail/graph.h \

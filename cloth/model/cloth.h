@@ -70,12 +70,16 @@ struct model_pick {
     char *place;
 };
 
-/* Holds vertices where they start, or moves them from there; or leaves them free along a slider. */
+/* Holds vertices where they start, or moves them from there; or leaves them free along a slider. A
+ * soft pin pulls them there, by a spring and a damper a vertex. */
 struct model_pin {
     struct model_pick pick;
     uint32_t
         motion; /* number of the model's motion, from 1; 0: it does not move, or its slider does */
-    uint32_t slider; /* number of the model's slider, from 1; 0: it holds points */
+    uint32_t slider;           /* number of the model's slider, from 1; 0: it holds points */
+    double stiffness, damping; /* soft: N/m, > 0, and kg/s, >= 0; stiffness 0: it holds */
+    double *weight; /* soft: of each listed vertex, what both are multiplied by; NULL: 1 */
+    uint32_t curve; /* soft: that both are multiplied by, from 1; 0: they are constant */
 };
 
 /* A line or a plane through the start of each of its vertices. */
@@ -186,6 +190,13 @@ struct model_seam {
     struct model_sewing sewing;
 };
 
+/* An edge of a panel: the vertices of the cloth's mesh along it, both ends included. */
+struct model_border {
+    char *panel; /* its name */
+    uint32_t edge, n;
+    uint32_t *vertices; /* n */
+};
+
 /* Seams that are sewn otherwise, by number or by their two panels; only the keys that the scene
  * gives of its sewing count. */
 struct model_some_seams {
@@ -231,6 +242,8 @@ struct model_cloth {
     struct model_mass *masses;
     struct model_start *starts; /* one after the other, from that start */
     struct model_seams seams;
+    uint32_t n_borders;
+    struct model_border *borders; /* of a mesh of panels whose edges are known */
     uint32_t n_folds;
     struct model_fold *folds;
     uint32_t n_bands; /* joints of the model */

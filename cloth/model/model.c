@@ -55,8 +55,10 @@ static void free_seams(struct model_seams *seams)
 static void free_cloth(struct model_cloth *cloth)
 {
     free_seams(&cloth->seams);
-    for (uint32_t i = 0; i < cloth->n_pins; i++)
+    for (uint32_t i = 0; i < cloth->n_pins; i++) {
         free_pick(&cloth->pins[i].pick);
+        free(cloth->pins[i].weight);
+    }
     for (uint32_t i = 0; i < cloth->n_loads; i++) {
         free_pick(&cloth->loads[i].pick);
         free(cloth->loads[i].edges);
@@ -71,6 +73,11 @@ static void free_cloth(struct model_cloth *cloth)
     for (uint32_t i = 0; i < cloth->n_bands; i++)
         free_pick(&cloth->bands[i].pick);
     free(cloth->bands);
+    for (uint32_t i = 0; i < cloth->n_borders; i++) {
+        free(cloth->borders[i].panel);
+        free(cloth->borders[i].vertices);
+    }
+    free(cloth->borders);
     free(cloth->folds);
     free(cloth->masses);
     free(cloth->region);

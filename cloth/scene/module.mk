@@ -53,7 +53,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/obstacle.c \
 	cloth/scene/build/pattern.c \
 	cloth/scene/build/pieces.c cloth/scene/build/pin.c \
-	cloth/scene/build/report.c
+	cloth/scene/build/report.c cloth/scene/build/weights.c
 nodist_libduite_cloth_a_SOURCES = cloth/scene/schema/prose.c
 EXTRA_DIST += cloth/scene/schema/opening.md cloth/scene/schema/prose.md docs/scene.md
 CLEANFILES += cloth/scene/schema/prose.c

@@ -26,6 +26,7 @@ bl_info = {
 
 PC2_HEADER = "<12siiffi"  # signature, version, points, first frame, step, frames
 HELD = 0.5  # the weight in a group from which on a vertex is held
+SETTLES = 0.1  # s: damping over stiffness of soft pins
 
 # Usual weights (kg/m2), moduli of stretch and shear (N/m), and rigidities (N m).
 FABRICS = {
@@ -46,6 +47,9 @@ class Settings(bpy.types.PropertyGroup):
         description="Weight and stiffness; scene.yaml has the numbers",
     )
     pins: StringProperty(name="Pins", description="Vertex group whose vertices are held: those of a weight above 1/2")
+    pin_stiffness: FloatProperty(
+        name="Pin Stiffness", default=0, min=0, soft_max=100, description="N/m of a vertex, times its weight: pins that give; 0: they hold"
+    )
     thickness: FloatProperty(
         name="Thickness", default=0.002, min=1e-5, soft_max=0.02, unit="LENGTH", description="Surfaces keep this distance; well below the edges"
     )
@@ -138,23 +142,36 @@ def rate(scene):
     return scene.render.fps / scene.render.fps_base
 
 
-def find_pins(cloth):
-    """The vertices that are held."""
+def find_weights(cloth):
+    """The weight of each vertex in the group that pins it; none without one."""
     name = cloth.duite.pins
     if not name:
         return []
     if name not in cloth.vertex_groups:
         raise RuntimeError("%s has no vertex group %s to be pinned by" % (cloth.name, name))
     number = cloth.vertex_groups[name].index
-    return [v.index for v in cloth.data.vertices if any(g.group == number and g.weight > HELD for g in v.groups)]
+    return [next((g.weight for g in v.groups if g.group == number), 0) for v in cloth.data.vertices]
 
 
-def scene_text(context, cloth, obstacles):
+def write_pins(folder, cloth):
+    """The line of the scene that pins the cloth, and the file of weights that it names; none where nothing is pinned."""
+    weights, stiffness = find_weights(cloth), cloth.duite.pin_stiffness
+    held = [i for i, weight in enumerate(weights) if weight > HELD]
+    if not stiffness:
+        return ["    pins: [{vertices: %s}]" % held] if held else []
+    if not any(weights):
+        return []
+    with open(os.path.join(folder, "pins.txt"), "w", encoding="utf-8") as file:
+        file.writelines("%.9g\n" % weight for weight in weights)
+    return ["    pins: [{weights: {file: pins.txt}, stiffness: %.9g, damping: %.9g}]" % (stiffness, SETTLES * stiffness)]
+
+
+def scene_text(context, cloth, pins, obstacles):
     """The scene file."""
     scene, settings = context.scene, cloth.duite
     density, stretch, shear, rigidity = FABRICS[settings.fabric]
     gravity = tuple(scene.gravity) if scene.use_gravity else (0, 0, 0)
-    fps, pins = rate(scene), find_pins(cloth)
+    fps = rate(scene)
     lines = [
         "# %s of %s, by the Blender add-on: metres, z upwards." % (cloth.name, os.path.basename(bpy.data.filepath)),
         "schema: 1",
@@ -163,10 +180,7 @@ def scene_text(context, cloth, obstacles):
         "  - name: %s" % quoted(cloth.name),
         "    mesh: {file: cloth.obj}",
         "    material: fabric",
-    ]
-    if pins:
-        lines.append("    pins: [{vertices: %s}]" % pins)
-    lines += [
+        *pins,
         "materials:",
         "  fabric: {density: %g, model: triangles, stretch: %g, shear: %g, poisson: 0.3," % (density, stretch, shear),
         "           bending: {rigidity: %g}, friction: %.9g, damping: {stiffness: 0.005, mass: 0.5}}" % (rigidity, settings.friction),
@@ -189,7 +203,7 @@ def write_scene(context, cloth):
         flat_places(cloth.data, cloth.matrix_world),
         [list(polygon.vertices) for polygon in cloth.data.polygons],
     )
-    text = scene_text(context, cloth, write_colliders(folder, context, cloth))
+    text = scene_text(context, cloth, write_pins(folder, cloth), write_colliders(folder, context, cloth))
     with open(os.path.join(folder, "scene.yaml"), "w", encoding="utf-8") as file:
         file.write(text)
     return folder
@@ -370,7 +384,7 @@ class DUITE_PT_panel(bpy.types.Panel):
         column, settings = self.layout.column(), context.object.duite
         column.prop(settings, "fabric")
         column.prop_search(settings, "pins", context.object, "vertex_groups")
-        for name in ("thickness", "friction", "steps", "self_contact", "program", "threads"):
+        for name in ("pin_stiffness", "thickness", "friction", "steps", "self_contact", "program", "threads"):
             column.prop(settings, name)
         column.operator("duite.simulate")
         column.operator("duite.export")

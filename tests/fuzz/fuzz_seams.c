@@ -15,8 +15,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     model.cloths = cloth;
     model.n_cloths = 1;
     if (!mesh_inline(&cloth->mesh, 8, vertices, 0, NULL, 4, triangles, &error))
-        scene_read_seams(&cloth->seams, &cloth->mesh, fuzz_file("mesh.seams.json", data, size),
-                         &error);
+        scene_read_seams(cloth, fuzz_file("mesh.seams.json", data, size), &error);
     model_free(&model);
     return 0;
 }

@@ -2,7 +2,7 @@ LEAK_SH += tests/whole/test_input.sh tests/whole/test_signals.sh tests/whole/tes
 ASAN_SH += tests/whole/test_same_hash.sh tests/whole/test_world.sh tests/whole/test_memory.sh tests/whole/test_contact.sh \
     tests/whole/test_intersections.sh tests/whole/test_options.sh tests/whole/test_live.sh tests/whole/test_simd.sh \
     tests/whole/test_images.sh tests/whole/test_system.sh tests/whole/test_welds.sh tests/whole/test_seams_tube.sh \
-    tests/whole/test_bodies.sh tests/whole/test_contact_bodies.sh tests/whole/test_pins.sh tests/whole/test_follow.sh \
+    tests/whole/test_bodies.sh tests/whole/test_contact_bodies.sh tests/whole/test_pins.sh tests/whole/test_pins_soft.sh tests/whole/test_follow.sh \
     tests/whole/test_scale.sh tests/whole/test_settled.sh tests/whole/test_sides.sh tests/whole/test_slope.sh tests/whole/test_untangle.sh \
     tests/whole/test_meshes.sh tests/whole/test_scenes.sh tests/whole/test_garment.sh tests/whole/test_mannequin.sh \
     tests/whole/test_hdf5.sh tests/whole/test_summary.sh

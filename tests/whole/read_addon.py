@@ -66,5 +66,11 @@ for frame in range(6):
     seen.to_mesh_clear()
 if not -0.3 < lowest < -0.02:
     sys.exit('the sheet has fallen to %g' % lowest)
+cloth.duite.pin_stiffness = 20
+if bpy.ops.duite.export() != {'FINISHED'}:
+    sys.exit('the scene of soft pins is not written')
+weights = [float(line) for line in open(os.path.join(folder, 'duite-' + bpy.path.clean_name(cloth.name), 'pins.txt'))]
+if len(weights) != n or {v: round(w, 6) for v, w in enumerate(weights) if w} != {0: 1, 5: 0.2, 12: 1}:
+    sys.exit('the weights are %s' % weights)
 duite_cloth.unregister()
 print('brought back')

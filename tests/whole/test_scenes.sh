@@ -71,6 +71,7 @@ contact() {
     for i in 0 1 2 3 4; do set -- "$@" "cloths[$i].mesh.grid={width: 0.5, height: 0.5, nx: 15, ny: 15}"; done
     certified stack "$@" time.end=0.25
     certified twist 'cloths[0].mesh.grid={width: 0.8, height: 0.25, nx: 41, ny: 14}' time.h=0.01
+    certified laid 'cloths[0].mesh.grid={width: 1, height: 1, nx: 21, ny: 21}' time.end=1.5
     # The places where cloth over an edge is nearest to it jump along the edge: a cloth that follows them rocks for ever.
     certified drape 'cloths[0].mesh.disc.rings=16' time.end=2.5
     rests() { grep -E 'rest_seconds|drape_' report.json && test "$(value rest_seconds)" != null; }
@@ -108,6 +109,7 @@ small "wind that swells, loads, a region, a pin that moves" --set 'air={wind: [3
     --set 'cloths[0].regions=[{box: [[-0.5, 0, 0.3], [0.5, 1, 0.5]], material: hem}]' \
     --set 'cloths[0].pins[2].motion={times: [0, 1], translate: [[0, 0, 0], [0, 1, 0]]}'
 small "pins to lines and planes" --set 'cloths[0].pins=[{box: [[-1, -1, -1], [-0.2, 1, 1]], to: line, direction: [3, -4, 0]}, {box: [[0.2, -1, -1], [1, 1, 0]], to: plane, normal: [1, 1, 1]}]'
+small "soft pins, one of them moves and lets go" --set "$triangles}" --set 'cloths[0].pins=[{box: [[-1, -1, -1], [-0.2, 1, 1]], stiffness: 30, damping: 0.1}, {nearest: [0.5, 0.5, 0.5], radius: 0.2, stiffness: 50, motion: {times: [0, 1], translate: [[0, 0, 0], [0, 1, 0]]}, curve: {keys: [[0.005, 1], [0.015, 0]]}}]'
 small "cells by turns" --set 'cloths[0].mesh.grid.cells=alternate'
 small "mirrored cells, triangles" --set 'cloths[0].mesh.grid.cells=mirrored' --set "$triangles}"
 small "equilateral triangles" --set 'cloths[0].mesh.grid={width: 1, nx: 30, ny: 30, cells: equilateral}' --set 'materials.cloth={density: 0.2, stretch: 5000}'

@@ -127,6 +127,17 @@ static void visit_element(void *to, const struct element *element)
         }
 }
 
+/* A soft pin is alike in all directions, and its other end is held. */
+static void visit_soft(const struct visitor *visitor, const struct flow_soft *soft)
+{
+    const struct flow_source *source = visitor->source;
+    const double most = model_curve_max(source->model, soft->curve);
+    struct block *block = visitor->block + source->blocks.vertex[soft->at];
+    for (int i = 0; i < 3; i++)
+        block->stiff[i] += most * soft->stiffness;
+    block->damping += 3 * most * soft->damping; /* over the trace, which has three stiffnesses */
+}
+
 /* Finds the vertex whose block over its mass is largest. */
 static void find_fastest(struct visitor *visitor, struct flow_limit *limit)
 {
@@ -180,6 +191,9 @@ int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
                                source->springs.timed[i].n, source->springs.timed[i].vertex,
                                source->springs.timed[i].weight);
         element_each(&source->elements, visit_element, &visitor);
+        const struct flow_soft *soft = source->particles.soft.items;
+        for (size_t i = 0; i < source->particles.soft.n; i++)
+            visit_soft(&visitor, soft + i);
         find_fastest(&visitor, limit);
     }
     cloth_pool_free(&visitor.memory);

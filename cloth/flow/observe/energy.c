@@ -25,7 +25,8 @@ FLOW_KERNEL(energy, FLOW_NO_PART, struct flow_step_args,
     sums[FLOW_ENERGY_LOADS] = phys_energy_load(t->n, t->mass, gravity, t->load, on->x) +
                               flow_varying_energy(call, t, on->args->now, on->x);
     sums[FLOW_ENERGY_ELASTIC] = flow_elements_energy(call, t, &view, sums + FLOW_TORQUE) +
-                                phys_energy_springs(&springs, on->x, on->x);
+                                phys_energy_springs(&springs, on->x, on->x) +
+                                flow_soft_energy(call, t, on->args, on->x);
     for (uint32_t s = 0; s < t->n_neighbours; s++) {
         springs = flow_table_cut(t, s);
         sums[FLOW_ENERGY_ELASTIC] +=

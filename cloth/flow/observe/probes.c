@@ -7,7 +7,10 @@
 /* ---- A block's values ---- */
 
 struct probe_args {
-    uint32_t block;
+    union {
+        uint32_t block;
+        struct flow_step_args step; /* the last one; its `now` is its end */
+    };
     struct flow_two_steps steps; /* the last two */
 };
 
@@ -50,9 +53,10 @@ static int probe_body(const duite_call *call, const struct probe_fields *on)
     for (uint32_t i = 0; i < t->n_watched; i++, to += FLOW_PROBE_VALUES) {
         const uint32_t row = t->watched[i];
         phys_vec pull;
-        if (t->free[row] != 0)
+        if (t->free[row] != 0) {
             reaction_of_sliding(call, t, row, on, &pull);
-        else
+            flow_soft_pull(call, t, &on->args->step, row, on->x, on->v, &pull);
+        } else
             reaction_of_held(call, t, row, on, &pull);
         for (int c = 0; c < 3; c++) {
             to[c] = on->x[row][c];
@@ -67,10 +71,14 @@ static int probe_body(const duite_call *call, const struct probe_fields *on)
 /* On a block. */
 static void fork_probe(struct flow_state *state, uint32_t block, const struct flow_two_steps *steps)
 {
-    const struct flow_step_args force = {
-        .block = block, .h = steps->h, .time = steps->end, .now = steps->end};
-    const struct probe_args probe = {block, *steps};
-    flow_fork_one_as(state, &flow_kernel_force, &force, FLOW_AS(FLOW_FOR(f, probe_force)));
+    const double tick = state->flow->model->h / FLOW_TICKS;
+    const struct probe_args probe = {.step = {.block = block,
+                                              .h = steps->h,
+                                              .begin = (steps->end - steps->h) / tick,
+                                              .time = steps->end,
+                                              .now = steps->end},
+                                     .steps = *steps};
+    flow_fork_one_as(state, &flow_kernel_force, &probe.step, FLOW_AS(FLOW_FOR(f, probe_force)));
     flow_fork_one(state, &flow_kernel_probe, &probe);
 }
 

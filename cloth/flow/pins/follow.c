@@ -106,14 +106,21 @@ static bool has_frames(const struct model *model, uint32_t obstacle)
     return pins_follow_body_of(model, obstacle) && pins_follow_body_of(model, obstacle)->n_frames;
 }
 
-/* Marks all vertices that follow an obstacle, and those welded to them. */
+/* The obstacle, from 1, that a soft pin follows; 0: none. */
+static uint32_t pulled_along(const struct model *model, const struct flow_soft *soft)
+{
+    return soft->motion ? model->motions[soft->motion - 1].follow : 0;
+}
+
+/* Marks all vertices that pins hold to an obstacle, and those welded to them. Takes room for the
+ * anchors of these, and of soft pins that follow. */
 static int mark_followers(struct flow_particles *p, const struct model *model,
                           struct cloth_error *error)
 {
     p->attached = cloth_alloc(p->n, sizeof *p->attached, error);
     if (!p->attached)
         return CLOTH_E_MEMORY;
-    size_t n = 0;
+    size_t n = p->soft.n;
     for (uint32_t v = 0; v < p->n; v++) {
         p->attached[v] = followed_by(p, model, flow_root(&p->welds, v));
         n += p->attached[v] != 0;
@@ -122,20 +129,30 @@ static int mark_followers(struct flow_particles *p, const struct model *model,
     return p->anchor ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
-/* Adds the anchors of an obstacle, whose vertices are at `place`. */
+/* Adds the anchor of a vertex on an obstacle, whose vertices are at `place`. Returns its number
+ * among motions. */
+static uint32_t add_anchor(struct flow_particles *p, const struct model *model, uint32_t obstacle,
+                           const phys_vec *place, struct flow_cloths *at, uint32_t vertex)
+{
+    phys_vec x;
+    flow_source_cloth(at, model, vertex);
+    flow_start_place(p, model->cloths + at->cloth, at->first, vertex - at->first, &x);
+    find_anchor(model, obstacle, place, &x, p->anchor + p->n_anchors);
+    return model->n_motions + ++p->n_anchors;
+}
+
+/* Adds the anchors of an obstacle: of vertices that are held, then of soft pins. */
 static void add_anchors(struct flow_particles *p, const struct model *model, uint32_t obstacle,
                         const phys_vec *place)
 {
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < model->n_cloths; first += model->cloths[c++].mesh.n_vertices)
-        for (uint32_t v = first; v < first + model->cloths[c].mesh.n_vertices; v++) {
-            phys_vec x;
-            if (p->attached[v] != obstacle + 1 || flow_root(&p->welds, v) != v)
-                continue;
-            flow_start_place(p, model->cloths + c, first, v - first, &x);
-            find_anchor(model, obstacle, place, &x, p->anchor + p->n_anchors);
-            p->motion[v] = model->n_motions + ++p->n_anchors;
-        }
+    struct flow_cloths at = {0};
+    struct flow_soft *soft = p->soft.items;
+    for (uint32_t v = 0; v < p->n; v++)
+        if (p->attached[v] == obstacle + 1 && flow_root(&p->welds, v) == v)
+            p->motion[v] = add_anchor(p, model, obstacle, place, &at, v);
+    for (size_t i = 0; i < p->soft.n; i++)
+        if (soft[i].motion <= model->n_motions && pulled_along(model, soft + i) == obstacle + 1)
+            soft[i].motion = add_anchor(p, model, obstacle, place, &at, soft[i].at);
 }
 
 static int anchor_all(struct flow_particles *p, const struct model *model, uint32_t obstacle,

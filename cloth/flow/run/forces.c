@@ -24,6 +24,7 @@ void flow_forces(const duite_call *call, const struct flow_table *t,
     else
         memcpy(f, t->load, t->n * sizeof *f);
     flow_varying_add(call, t, step->now, f);
+    flow_soft_force(call, t, step, view->x, view->v, f);
     if (flow_has_elements(t)) {
         const struct phys_sight sight = flow_elements_see(call, t, view);
         flow_elements_force(call, t, step->now, false, &sight, f);

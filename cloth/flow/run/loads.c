@@ -75,28 +75,6 @@ int flow_loads_make(struct flow_particles *p, uint32_t first, const struct model
     return code;
 }
 
-void flow_varying_settle(struct flow_source *source)
-{
-    struct cloth_list *list = &source->particles.varying;
-    struct flow_varying *all = list->items;
-    size_t n = 0;
-    for (size_t i = 0; i < list->n; i++) {
-        struct flow_varying load = all[i];
-        load.at = source->blocks.place[load.at];
-        if (load.at != MESH_NO_PLACE)
-            all[n++] = load;
-    }
-    list->n = n;
-    cloth_list_sort(list, sizeof *all, cloth_by_two);
-}
-
-uint32_t flow_varying_from(const struct flow_source *source, uint32_t place)
-{
-    const struct cloth_list *list = &source->particles.varying;
-    return cloth_first_from(list->items, sizeof(struct flow_varying) / sizeof(uint32_t),
-                            (uint32_t)list->n, place);
-}
-
 /* ---- In bodies ---- */
 
 void flow_varying_add(const duite_call *call, const struct flow_table *t, double now, phys_vec *f)

@@ -11,60 +11,6 @@
 /* kg of a vertex: squares of momenta beyond these would vanish or be infinite. */
 static const double MIN_MASS = 1e-30, MAX_MASS = 1e30;
 
-/* True if two sliders, by number, hold alike; both may be none. */
-static bool alike(const struct model_slider *sliders, uint32_t a, uint32_t b)
-{
-    if (a == b || !a || !b)
-        return a == b;
-    const struct model_slider *one = sliders + a - 1, *other = sliders + b - 1;
-    bool same = one->kind == other->kind && one->motion == other->motion;
-    for (int i = 0; i < 3; i++)
-        same = same && one->direction[i] - other->direction[i] == 0;
-    return same;
-}
-
-/* Returns false if another pin moves the vertex, of all cloths, in another way, or holds it. */
-static bool hold(struct flow_particles *p, const struct model *model, const struct model_pin *pin,
-                 const struct flow_picking *picking, uint32_t vertex)
-{
-    const uint32_t v = flow_root(&p->welds, vertex);
-    const uint32_t sliding = p->slider ? p->slider[v] : 0;
-    const bool held = p->free[v] == 0 || sliding;
-    if (!p->used[v] && !held)
-        flow_unusual_note(&p->pinned, picking->cloth, vertex - picking->first, pin->pick.place);
-    const bool torn = held && ((p->motion && p->motion[v] != pin->motion) ||
-                               !alike(model->sliders, sliding, pin->slider));
-    if (p->motion)
-        p->motion[v] = pin->motion;
-    if (p->slider)
-        p->slider[v] = pin->slider;
-    p->free[v] = pin->slider ? 1 : 0;
-    return !torn;
-}
-
-static int pins(struct flow_particles *p, uint32_t first, const struct model *model,
-                const struct model_cloth *cloth, struct cloth_error *error)
-{
-    struct flow_picking picking = {cloth, first, p->used, "a pin", {0}};
-    int code = CLOTH_OK;
-    for (uint32_t i = 0; i < cloth->n_pins && !code; i++, picking.list.n = 0) {
-        const struct model_pin *pin = cloth->pins + i;
-        uint32_t torn = UINT32_MAX;
-        code = flow_pick(&pin->pick, &picking, error);
-        const uint32_t *vertex = picking.list.items;
-        for (size_t k = 0; k < picking.list.n && !code; k++)
-            if (!hold(p, model, pin, &picking, vertex[k]))
-                torn = vertex[k] - first;
-        if (torn != UINT32_MAX)
-            code = model_fail(pin->pick.place, error,
-                              "vertex %u of cloth '%.60s' is held by two pins that do not hold "
-                              "and move alike; one is expected (vertices count from 1)",
-                              torn + 1, cloth->name);
-    }
-    free(picking.list.items);
-    return code;
-}
-
 /* Adds a mass to a vertex of all cloths: a name's mass goes to its root. */
 static void particles_weigh(struct flow_particles *p, uint32_t vertex, double mass)
 {
@@ -194,7 +140,7 @@ static int cloth_forces(struct flow_particles *p, uint32_t first, const struct m
     if (!code)
         code = flow_loads_make(p, first, cloth, error);
     if (!code)
-        code = pins(p, first, model, cloth, error);
+        code = flow_pins_make(p, first, model, cloth, error);
     return code;
 }
 
@@ -339,6 +285,7 @@ void flow_particles_free(struct flow_particles *particles)
     cloth_pool_free(&particles->memory);
     free(particles->attached);
     free(particles->varying.items);
+    free(particles->soft.items);
     free(particles->joints.items);
     *particles = (struct flow_particles){0};
 }

@@ -6,6 +6,7 @@
 #include "cloth/base/sets.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 uint32_t flow_source_block(const struct mesh_blocks *blocks, uint32_t place, uint32_t guess)
 {
@@ -154,6 +155,34 @@ static void count_watched(struct flow_source *source)
     }
 }
 
+void flow_placed_settle(const struct flow_source *source, struct cloth_list *list, size_t size)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < list->n; i++) {
+        uint32_t *item = (uint32_t *)(void *)((char *)list->items + i * size);
+        const uint32_t place = source->blocks.place[*item];
+        if (place == MESH_NO_PLACE)
+            continue;
+        *item = place;
+        memmove((char *)list->items + n++ * size, item, size);
+    }
+    list->n = n;
+    cloth_list_sort(list, size, cloth_by_two);
+}
+
+uint32_t flow_placed_from(const struct cloth_list *list, size_t size, uint32_t place)
+{
+    return cloth_first_from(list->items, size / sizeof(uint32_t), (uint32_t)list->n, place);
+}
+
+/* The number of items of a list that are in a block. */
+static uint32_t count_placed(const struct cloth_list *list, size_t size,
+                             const struct flow_table *shape)
+{
+    return flow_placed_from(list, size, shape->first + shape->n) -
+           flow_placed_from(list, size, shape->first);
+}
+
 /* Counts the vertices of a block that have a number: that of a motion, or of a slider. */
 static uint32_t count_numbered(const struct flow_source *source, const struct flow_table *shape,
                                const uint32_t *number)
@@ -180,7 +209,8 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
     source->shape = cloth_take(&source->memory, blocks->n_blocks, sizeof *source->shape, error);
     if (source->memory.lacks)
         return CLOTH_E_MEMORY;
-    flow_varying_settle(source);
+    flow_placed_settle(source, &source->particles.varying, sizeof(struct flow_varying));
+    flow_placed_settle(source, &source->particles.soft, sizeof(struct flow_soft));
     for (uint32_t b = 0; b < blocks->n_blocks; b++) {
         struct flow_table *shape = source->shape + b;
         shape->format = source->model->format;
@@ -190,8 +220,9 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
         shape->n_moved = count_numbered(source, shape, source->particles.motion);
         shape->n_sliding = count_numbered(source, shape, source->particles.slider);
         shape->n_loose = count_numbered(source, shape, source->particles.piece);
-        shape->n_varying = flow_varying_from(source, shape->first + shape->n) -
-                           flow_varying_from(source, shape->first);
+        shape->n_varying =
+            count_placed(&source->particles.varying, sizeof(struct flow_varying), shape);
+        shape->n_soft = count_placed(&source->particles.soft, sizeof(struct flow_soft), shape);
     }
     count_watched(source);
     flow_source_count(source);

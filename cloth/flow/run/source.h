@@ -42,6 +42,14 @@ struct flow_varying {
     double force[3]; /* N, times the curve */
 };
 
+/* A soft pin of one vertex. */
+struct flow_soft {
+    uint32_t at;               /* its vertex, of all cloths; when blocks are there, its place */
+    uint32_t number;           /* in the scene's order */
+    uint32_t motion, curve;    /* of its place and of both numbers, from 1; 0: none */
+    double stiffness, damping; /* N/m, kg/s, times the curve */
+};
+
 /* Vertices that welds make one. Each of them is a name of it; the lowest, the root, stands for all:
  * it has their masses and loads, and the row. The others have a mass of 0. */
 struct flow_welds {
@@ -68,6 +76,7 @@ struct flow_particles {
     double *own, *drag;        /* kg, of each name alone; kg/s; NULL: there are no welds */
     phys_vec *load;            /* N, gravity included; NULL: gravity alone */
     struct cloth_list varying; /* struct flow_varying: in the scene's order; then by place */
+    struct cloth_list soft;    /* struct flow_soft: the same */
     double (*start)[6];        /* m, m/s; NULL: all start where the meshes have them */
     double (*unwelded)[3];     /* m: before the welds; NULL: no weld is of a seam */
     struct cloth_list joints;  /* struct flow_pair: of all; flow_joints_make uses it up */
@@ -107,6 +116,12 @@ int flow_follow_make(struct flow_particles *particles, const struct model *model
 /* The place of a vertex with an anchor at a time, s. Local. */
 void flow_anchor_place(const struct model *model, const struct flow_anchor *anchor, double time,
                        phys_vec *to);
+
+/* Makes the pins of a cloth, the first vertex of which is `first`; a part of flow_particles_make.
+ * Errors: CLOTH_E_INPUT for a vertex that two pins hold otherwise, and as of flow_pick;
+ * CLOTH_E_MEMORY. Local. */
+int flow_pins_make(struct flow_particles *particles, uint32_t first, const struct model *model,
+                   const struct model_cloth *cloth, struct cloth_error *error);
 
 /* Makes the loads of a cloth, the first vertex of which is `first`; a part of flow_particles_make,
  * after weights. Local. */
@@ -423,10 +438,11 @@ double flow_source_mass(const struct flow_source *source);
  * one that is not convex, or pins. (contact/pinch.c) */
 bool flow_source_may_pinch(const struct flow_source *source);
 
-/* Orders the loads that vary by place, when blocks are there; those of unused vertices are dropped.
- * Then: the first of them at or after a place. Local. */
-void flow_varying_settle(struct flow_source *source);
-uint32_t flow_varying_from(const struct flow_source *source, uint32_t place);
+/* Lists whose items begin with a vertex of all cloths and their number: when blocks are there,
+ * makes vertices places and orders items by place; those of unused vertices are dropped. Then: the
+ * first item at or after a place. size: of an item, bytes. Local. */
+void flow_placed_settle(const struct flow_source *source, struct cloth_list *list, size_t size);
+uint32_t flow_placed_from(const struct cloth_list *list, size_t size, uint32_t place);
 
 /* The cloth of a vertex, and its first vertex; looked for from the last one found, zero at first.
  * The particle there. */

@@ -12,7 +12,8 @@
 struct making {
     const duite_call *call;
     const struct flow_table *t;
-    double h, now, push;    /* now, s: of the loads */
+    const struct flow_step_args *step;
+    double push;
     struct flow_view view;  /* without v: the matrix alone */
     phys_vec *b;            /* NULL: the matrix alone */
     void *values;           /* of the entries */
@@ -21,14 +22,15 @@ struct making {
 
 /* Writes the diagonal of the matrix and an open filter, which the step's filter replaces
  * (flow_contact_constrain). Returns the place of the values. */
-static void *begin_matrix(const duite_call *call, const struct flow_table *t, double h,
-                          phys_vec *matrix)
+static void *begin_matrix(const duite_call *call, const struct flow_table *t,
+                          const struct flow_step_args *step, phys_vec *matrix)
 {
     double *diagonal = (double *)matrix;
     phys_vec *value = matrix + flow_diagonal_rows(t);
     const bool filtered = model_is_filtered(flow_of(call)->model);
     for (uint32_t a = 0; a < t->n; a++)
-        diagonal[a] = t->mass[a] + h * t->drag[a];
+        diagonal[a] = t->mass[a] + step->h * t->drag[a];
+    flow_soft_diagonal(call, t, step, diagonal);
     for (size_t a = t->n; a < 4 * flow_diagonal_rows(t); a++)
         diagonal[a] = 0;
     for (size_t a = 0; filtered && a < t->n; a++)
@@ -46,9 +48,9 @@ static void some_springs(const struct making *m, const struct phys_springs *spri
     const bool inner = s == UINT32_MAX;
     const phys_vec *x = m->view.x, *x_other = inner ? x : flow_rows_of(m->view.halo_x, s);
     if (!m->b)
-        phys_springs_matrix(springs, m->h, x, x_other, value);
+        phys_springs_matrix(springs, m->step->h, x, x_other, value);
     else
-        phys_springs_system(springs, m->h, m->push, x, m->view.v, inner ? NULL : x_other,
+        phys_springs_system(springs, m->step->h, m->push, x, m->view.v, inner ? NULL : x_other,
                             inner ? NULL : flow_rows_of(m->view.halo_v, s), m->b, value);
 }
 
@@ -80,21 +82,23 @@ static void all_springs(const struct making *m)
 
 /* ---- Both ---- */
 
-/* Begins b with the forces that do not come with the matrix, unless b has them: loads, drag, and
- * element kinds without a system. */
+/* Begins b with the forces that do not come with the matrix, unless b has them: loads, drag,
+ * soft pins, and element kinds without a system. */
 static void begin_right_side(const struct making *m, const struct phys_sight *sight)
 {
     const struct flow_table *t = m->t;
     if (m->push > 0) {
         phys_outside(t->n, t->load, t->drag, m->view.v, m->b);
-        flow_varying_add(m->call, t, m->now, m->b);
+        flow_varying_add(m->call, t, m->step->now, m->b);
+        flow_soft_force(m->call, t, m->step, m->view.x, m->view.v, m->b);
         if (sight->x)
-            flow_elements_force(m->call, t, m->now, true, sight, m->b);
+            flow_elements_force(m->call, t, m->step->now, true, sight, m->b);
     }
     for (uint32_t i = 0; i < t->n; i++)
-        m->b[i] = m->h * m->b[i];
+        m->b[i] = m->step->h * m->b[i];
     if (sight->x)
-        flow_elements_stiffness(m->call, t, m->h * m->h, sight, m->b);
+        flow_elements_stiffness(m->call, t, m->step->h * m->step->h, sight, m->b);
+    flow_soft_stiffness(m->call, t, m->step, m->view.v, m->b);
 }
 
 /* Makes the values from the sums. The object also has room for double entries: zeros. */
@@ -126,13 +130,13 @@ static void make_block(const struct making *m)
     if (m->b)
         begin_right_side(m, &sight);
     if (sight.x)
-        flow_elements_assemble(m->call, t, m->h, m->push, &sight, m->b, m->sums);
+        flow_elements_assemble(m->call, t, m->step->h, m->push, &sight, m->b, m->sums);
     all_springs(m);
     if (m->view.tie_table)
-        flow_ties_system(flow_of(m->call), &m->view, m->h, m->push, m->b,
+        flow_ties_system(flow_of(m->call), &m->view, m->step->h, m->push, m->b,
                          (phys_vec *)m->values + flow_value_rows(m->t));
     if (m->view.contact_rows)
-        flow_contact_system(flow_of(m->call), &m->view, m->h, m->push, m->b,
+        flow_contact_system(flow_of(m->call), &m->view, m->step->h, m->push, m->b,
                             (phys_vec *)m->values + flow_value_rows(m->t));
     if (m->view.tie_table)
         gather_ties(m);
@@ -154,12 +158,11 @@ static void make_system(const duite_call *call, const struct flow_table *t,
 {
     const struct making making = {.call = call,
                                   .t = t,
-                                  .h = step->h,
-                                  .now = step->now,
+                                  .step = step,
                                   .push = push,
                                   .view = *view,
                                   .b = b,
-                                  .values = begin_matrix(call, t, step->h, matrix),
+                                  .values = begin_matrix(call, t, step, matrix),
                                   .sums = sums_of(call, t)};
     make_block(&making);
 }

@@ -136,14 +136,32 @@ static void fill_watched(const struct flow_source *source, const struct flow_tab
 static void fill_varying(const struct flow_source *source, const struct flow_table *t,
                          const struct flow_layout *layout)
 {
+    const struct cloth_list *list = &source->particles.varying;
     if (!t->n_varying)
         return;
-    const struct flow_varying *all = source->particles.varying.items;
-    const struct flow_varying *load = all + flow_varying_from(source, t->first);
+    const struct flow_varying *all = list->items;
+    const struct flow_varying *load = all + flow_placed_from(list, sizeof *all, t->first);
     for (uint32_t i = 0; i < t->n_varying; i++, load++) {
         layout->varying[i][0] = load->at - t->first;
         layout->varying[i][1] = load->curve;
         layout->varying_force[i] = PHYS_VEC(load->force);
+    }
+}
+
+static void fill_soft(const struct flow_source *source, const struct flow_table *t,
+                      const struct flow_layout *layout)
+{
+    const struct cloth_list *list = &source->particles.soft;
+    if (!t->n_soft)
+        return;
+    const struct flow_soft *all = list->items;
+    const struct flow_soft *pin = all + flow_placed_from(list, sizeof *all, t->first);
+    for (uint32_t i = 0; i < t->n_soft; i++, pin++) {
+        layout->soft[i][0] = pin->at - t->first;
+        layout->soft[i][1] = pin->motion;
+        layout->soft_curve[i] = pin->curve;
+        layout->soft_stiffness[i] = pin->stiffness;
+        layout->soft_damping[i] = pin->damping;
     }
 }
 
@@ -273,6 +291,7 @@ void flow_source_table(const struct flow_source *source, uint32_t block, void *m
     fill_numbered(source, t, source->particles.slider, t->n_sliding, arrays.sliding);
     fill_numbered(source, t, source->particles.piece, t->n_loose, arrays.loose);
     fill_varying(source, t, &arrays);
+    fill_soft(source, t, &arrays);
     fill_inner(t, side, &arrays);
     fill_cut(source, t, side + t->n_inner, &arrays);
     fill_sides(source, t, side, &arrays);

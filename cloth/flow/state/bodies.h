@@ -178,6 +178,22 @@ void flow_varying_add(const duite_call *call, const struct flow_table *t, double
 double flow_varying_energy(const duite_call *call, const struct flow_table *t, double now,
                            const phys_vec *x);
 
+/* Soft pins (pins/soft.c), as they are at a step's `now`. Their forces (N), added to f; of one row,
+ * added to *sum. Their part of the diagonal of the step's matrix, kg; y -= h^2 K v. Their energy,
+ * J. */
+void flow_soft_force(const duite_call *call, const struct flow_table *t,
+                     const struct flow_step_args *step, const phys_vec *x, const phys_vec *v,
+                     phys_vec *f);
+void flow_soft_pull(const duite_call *call, const struct flow_table *t,
+                    const struct flow_step_args *step, uint32_t row, const phys_vec *x,
+                    const phys_vec *v, phys_vec *sum);
+void flow_soft_diagonal(const duite_call *call, const struct flow_table *t,
+                        const struct flow_step_args *step, double *diagonal);
+void flow_soft_stiffness(const duite_call *call, const struct flow_table *t,
+                         const struct flow_step_args *step, const phys_vec *v, phys_vec *y);
+double flow_soft_energy(const duite_call *call, const struct flow_table *t,
+                        const struct flow_step_args *step, const phys_vec *x);
+
 /* All forces on the block's rows at a time of a step, its `now`, in N, with the drag or without.
  * (forces.c) */
 void flow_forces(const duite_call *call, const struct flow_table *t,

@@ -67,6 +67,10 @@ struct flow_sized {
     PAIR(loose, t->n_loose)              /* row, ascending; number of its piece, from 1 */         \
     PAIR(varying, t->n_varying)          /* row, ascending; number of its curve, from 1 */         \
     X(phys_vec, varying_force, t->n_varying) /* N, times the curve */                              \
+    PAIR(soft, t->n_soft)                /* row, ascending; number of its motion, from 1; 0: none */ \
+    X(uint32_t, soft_curve, t->n_soft)   /* number, from 1; 0: constant */                         \
+    X(double, soft_stiffness, t->n_soft) /* N/m, times the curve */                                \
+    X(double, soft_damping, t->n_soft)   /* kg/s, times the curve */                               \
     X(uint32_t, watched, t->n_watched)   /* rows, ascending */                                     \
     X(unsigned char, stretch, sides)     /* counts for the largest stretch */                      \
     PAIR(pulled, t->n_pulled)            /* spring, ascending; number of its seam, from 1 */       \
@@ -97,6 +101,7 @@ struct flow_table {
     uint32_t n_loose;         /* rows of pieces that no pin holds */
     uint32_t n_varying;       /* loads that vary */
     uint32_t n_sized;         /* springs and elements, if shapes at rest change; else 0 */
+    uint32_t n_soft;          /* soft pins of rows */
     uint32_t n_pulled;        /* springs that are joints of seams */
     uint32_t lowest, highest; /* of its vertices */
     uint32_t n_neighbours;    /* blocks that it is joined to */

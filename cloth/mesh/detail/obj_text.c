@@ -39,7 +39,7 @@ static int read_raw(struct obj_lines *lines, size_t *n, bool *more, struct cloth
     *n -= lines->raw[*n - 1] == '\n';
     if (memchr(lines->raw, 0, *n))
         return cloth_fail(error, CLOTH_E_INPUT,
-                          "%s:%zu: the line has a zero byte; an OBJ file is text",
+                          "%s:%zu: the line has a zero byte; a text file is expected",
                           mesh_path_shown(lines->path), lines->next);
     return CLOTH_OK;
 }

@@ -95,8 +95,9 @@ int scene_build_material(uint32_t *material, const struct model_cloth *cloth,
 int scene_build_group(uint32_t *group, const struct model_cloth *cloth,
                       const struct scene_tree *tree, int node);
 
-/* Checks a pick that a map with one of the keys vertices, nearest, box, group filled: there are
- * such vertices. Puts the corners of a box in order, and lists the vertices of a group. */
+/* Checks a pick that a map with one of the keys vertices, nearest, box, group, edge filled: there
+ * are such vertices. Puts the corners of a box in order, and lists the vertices of a group or edge.
+ */
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth);
 
@@ -119,16 +120,17 @@ int scene_build_check_path(const uint32_t *vertices, uint32_t n, const char *wha
 /* ---- Parts of a cloth, which has its name and those before ---- */
 
 /* Its mesh, transformed; that of a map pattern: a file, or an own garment, whose faults are in
- * tree->inner; its panels and regions; its start by the key from; its masses and starts; its loads.
+ * tree->inner; the seams, and edges of panels, of an OBJ mesh with a file of them; its panels and
+ * regions; its start by the key from; its masses and starts; its loads.
  * Files, curves and motions are added to the model's. */
 typedef int scene_build_part(struct model_cloth *cloth, struct scene_tree *tree, int node);
 scene_build_part scene_build_mesh, scene_build_pattern, scene_build_parts, scene_build_settled;
+scene_build_part scene_build_borders;
 scene_build_part scene_build_starts, scene_build_loads;
 
-/* Reads the seams of an OBJ mesh (docs/garments.md), for a mesh that has as many vertices and
- * triangles. The seams belong to `seams`, also after an error. */
-int scene_read_seams(struct model_seams *seams, const struct mesh *mesh, const char *path,
-                     struct cloth_error *error);
+/* Reads the seams, and the edges of the panels, of an OBJ mesh (docs/garments.md), for a cloth
+ * whose mesh has as many vertices and triangles. They belong to it, also after an error. */
+int scene_read_seams(struct model_cloth *cloth, const char *path, struct cloth_error *error);
 
 /* Gives new pairs of vertices of a cloth the place of a node, and room for n of them; adds one. */
 int scene_build_room(struct model_pairs *pairs, uint32_t cloth, uint32_t n,
@@ -147,8 +149,14 @@ int scene_build_size(uint32_t *number, const struct scene_tree *tree, int list);
 
 /* ---- Places and motions (motion.c) ---- */
 
-/* The constraint of a pin, and its motion: motions and sliders are added to the model's. */
+/* The constraint of a pin, its motion and its curve, which are added to the model's, like sliders.
+ */
 int scene_build_constraint(struct model_pin *pin, const struct scene_tree *tree, int node);
+
+/* The vertices of a pin that its key weights picks, if it has one, and their weights (weights.c).
+ */
+int scene_build_weights(struct model_pin *pin, const struct model_cloth *cloth,
+                        struct scene_tree *tree, int node);
 
 /* A motion by key frames, whose keys become the model's last. */
 int scene_build_motion(struct model_motion *motion, const struct scene_tree *tree, int node);

@@ -73,13 +73,14 @@ static int check_moduli(const struct model_cloth *cloth, const struct scene_tree
 
 /* ---- Parts ---- */
 
-static int build_pins(struct model_cloth *cloth, const struct scene_tree *tree, int node)
+static int build_pins(struct model_cloth *cloth, struct scene_tree *tree, int node)
 {
     const int list = scene_tree_get(tree, node, "pins");
     int code = CLOTH_OK;
     for (uint32_t i = 0; !code && i < cloth->n_pins; i++) {
         const int pin = scene_tree_item(tree, list, i);
-        code = scene_build_pick(&cloth->pins[i].pick, tree, pin, cloth) ||
+        code = scene_build_weights(&cloth->pins[i], cloth, tree, pin) ||
+               scene_build_pick(&cloth->pins[i].pick, tree, pin, cloth) ||
                scene_build_constraint(&cloth->pins[i], tree, pin);
     }
     return code;
@@ -120,8 +121,9 @@ int scene_build_cloth(struct scene_tree *tree, uint32_t i, int node)
     struct model_cloth *cloth = tree->model->cloths + i;
     if (scene_build_name(tree, SCENE_CLOTHS, i, node) ||
         scene_build_material(&cloth->material, cloth, tree, node) ||
-        scene_build_mesh(cloth, tree, node) || build_rest(cloth, tree, node) ||
-        scene_build_parts(cloth, tree, node) || check_moduli(cloth, tree, node))
+        scene_build_mesh(cloth, tree, node) || scene_build_borders(cloth, tree, node) ||
+        build_rest(cloth, tree, node) || scene_build_parts(cloth, tree, node) ||
+        check_moduli(cloth, tree, node))
         return tree->error->code;
     choose_format(tree->model, cloth);
     return build_pins(cloth, tree, node) || scene_build_settled(cloth, tree, node) ||

@@ -28,6 +28,34 @@ static int build_pattern_take_mesh(struct mesh *mesh, const struct garment *garm
     return error->code;
 }
 
+/* The vertices along the edges of a panel, which are one range; the last edge ends at the first
+ * vertex again. */
+static int take_border(struct model_cloth *cloth, const struct garment_panel *panel,
+                       const struct garment_piece *piece, struct cloth_error *error)
+{
+    struct model_border *border =
+        scene_build_add(&cloth->borders, &cloth->n_borders, panel->n_edges, sizeof *border, error);
+    for (uint32_t e = 0; e < panel->n_edges && border && !error->code; e++) {
+        const uint32_t from = piece->start[e], n = piece->start[e + 1] - from + 1;
+        border[e].edge = e;
+        border[e].panel = scene_build_copy(panel->name, error);
+        border[e].vertices = cloth_alloc(n, sizeof *border->vertices, error);
+        for (uint32_t i = 0; i < n && border[e].vertices; i++)
+            border[e].vertices[border[e].n++] =
+                piece->first + (from + i) % piece->start[panel->n_edges];
+    }
+    return error->code;
+}
+
+static int take_borders(struct model_cloth *cloth, const struct garment *garment,
+                        const struct garment_pattern *pattern, struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    for (uint32_t i = 0; i < garment->n_pieces && !code; i++)
+        code = take_border(cloth, pattern->panel + i, garment->piece + i, error);
+    return code;
+}
+
 static int take_seam(struct model_seam *to, const struct garment_seam *from,
                      const struct garment_stitch *stitch, const struct garment_pattern *pattern,
                      struct cloth_error *error)
@@ -231,6 +259,7 @@ int scene_build_pattern(struct model_cloth *cloth, struct scene_tree *tree, int 
         (path && garment_pattern_unusual(&of->pattern, text, sizeof text) &&
          scene_build_warn(tree, file, "mesh: %.200s: %s", path, text)) ||
         build_pattern_take_mesh(&cloth->mesh, &of->garment, &of->pattern, &tree->inner) ||
+        take_borders(cloth, &of->garment, &of->pattern, tree->error) ||
         take_seams(&cloth->seams, &of->garment, &of->pattern, tree->error);
     free(key);
     free(path);

@@ -1,9 +1,10 @@
-/* Vertices of a cloth that the scene chooses: by numbers, a place, a box or a group. Numbers are
- * checked here against the mesh, each with its own place in the file. */
+/* Vertices of a cloth that the scene chooses: by numbers, a place, a box, a group or an edge
+ * of a panel. Numbers are checked here against the mesh, each with its own place in the file. */
 #include "cloth/scene/build/build.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 int scene_build_check_vertices(const uint32_t *vertices, uint32_t n,
                                const struct model_cloth *cloth, const struct scene_tree *tree,
@@ -85,12 +86,62 @@ static int pick_group(struct model_pick *pick, const struct scene_tree *tree, in
     return tree->error->code;
 }
 
+/* The error that a cloth has no such edge of a panel. */
+static int no_border(const struct scene_tree *tree, int node, const struct model_cloth *cloth)
+{
+    const char *panel = scene_tree_text(tree, node, "panel"), **names;
+    size_t n = 0;
+    uint32_t edges = 0;
+    if (!cloth->n_borders)
+        return scene_tree_fail(tree, node,
+                               "the edges of panels are not known in cloth '%.60s'; a "
+                               "mesh.pattern, or seams.file beside an OBJ file, is expected",
+                               cloth->name);
+    names = cloth_alloc(cloth->n_borders, sizeof *names, tree->error);
+    for (uint32_t i = 0; i < cloth->n_borders && names; i++) {
+        const struct model_border *border = cloth->borders + i;
+        if (!n || strcmp(names[n - 1], border->panel) != 0)
+            names[n++] = border->panel;
+        edges += !strcmp(border->panel, panel);
+    }
+    if (edges)
+        scene_tree_fail(tree, scene_tree_get(tree, node, "edge"),
+                        "panel '%.60s' has no edge %.20s; it has the edges 0 to %u", panel,
+                        scene_tree_text(tree, node, "edge"), edges - 1);
+    else if (names)
+        scene_build_no_such(tree, scene_tree_get(tree, node, "panel"), "panel", names, n);
+    free(names);
+    return tree->error->code;
+}
+
+/* The vertices along an edge of a panel, as if they were listed. */
+static int pick_border(struct model_pick *pick, const struct scene_tree *tree, int node,
+                       const struct model_cloth *cloth)
+{
+    const char *panel = scene_tree_text(tree, node, "panel");
+    const uint32_t edge = (uint32_t)scene_tree_number(tree, node, "edge");
+    for (uint32_t i = 0; i < cloth->n_borders; i++) {
+        const struct model_border *border = cloth->borders + i;
+        if (border->edge != edge || strcmp(border->panel, panel) != 0)
+            continue;
+        pick->vertices = cloth_alloc(border->n, sizeof *pick->vertices, tree->error);
+        if (pick->vertices)
+            memcpy(pick->vertices, border->vertices, border->n * sizeof *pick->vertices);
+        pick->n_vertices = pick->vertices ? border->n : 0;
+        return tree->error->code;
+    }
+    return no_border(tree, node, cloth);
+}
+
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth)
 {
     const int group = scene_tree_get(tree, node, "group");
+    const int edge = scene_tree_get(tree, node, "edge");
     if (check_radius(tree, node))
         return tree->error->code;
+    if (edge)
+        return pick_border(pick, tree, edge, cloth);
     if (group)
         return pick_group(pick, tree, group, cloth);
     if (pick->kind == MODEL_PICK_VERTICES)

@@ -1,4 +1,4 @@
-/* Pins become motions and sliders of the model, in the order of the pins. */
+/* Pins become motions, sliders and curves of the model, in the order of the pins. */
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/rules.h"
 
@@ -108,6 +108,37 @@ static int check_follow(enum scene_constraint hold, const struct scene_tree *tre
     return CLOTH_OK;
 }
 
+/* What pulls a vertex to its place never pushes it away. */
+static int check_curve(uint32_t curve, const struct scene_tree *tree, int pin)
+{
+    const struct model *model = tree->model;
+    const struct model_curve *is = model->curves + curve - 1;
+    const int node = scene_tree_get(tree, pin, "curve"), keys = scene_tree_get(tree, node, "keys");
+    if (!is->n)
+        return scene_tree_fail(tree, scene_tree_get(tree, node, "sine"),
+                               "the curve of a pin is a sine, which goes below 0; keys with "
+                               "factors >= 0 are expected");
+    for (uint32_t i = 0; i < is->n; i++)
+        if (model->curve_keys[is->first + i].factor < 0)
+            return scene_tree_fail(tree, scene_tree_item(tree, scene_tree_item(tree, keys, i), 1),
+                                   "the factor of curve.keys[%u] of a pin is %g; one >= 0 is "
+                                   "expected",
+                                   i, model->curve_keys[is->first + i].factor);
+    return CLOTH_OK;
+}
+
+static int build_soft(struct model_pin *pin, enum scene_constraint hold,
+                      const struct scene_tree *tree, int node)
+{
+    if (hold != SCENE_POINT)
+        return scene_tree_fail(tree, scene_tree_get(tree, node, "stiffness"),
+                               "a pin to a %s cannot be soft; to: point is expected",
+                               scene_holds[hold].word);
+    if (scene_build_curve(&pin->curve, tree, node))
+        return tree->error->code;
+    return pin->curve ? check_curve(pin->curve, tree, node) : CLOTH_OK;
+}
+
 int scene_build_constraint(struct model_pin *pin, const struct scene_tree *tree, int node)
 {
     const char *to = scene_tree_text(tree, node, "to");
@@ -116,6 +147,7 @@ int scene_build_constraint(struct model_pin *pin, const struct scene_tree *tree,
     const int motion = scene_tree_get(tree, node, "motion");
     const int follow = scene_tree_get(tree, node, "follow");
     if (check_constraint(hold, tree, node) ||
+        (pin->stiffness > 0 && build_soft(pin, hold, tree, node)) ||
         (follow && (check_follow(hold, tree, node) || build_follow(tree, follow))) ||
         (motion && build_pin_motion(tree, motion)))
         return tree->error->code;

@@ -290,23 +290,26 @@ static void warn_of_unsure(const struct model_cloth *cloth, const struct scene_t
 static int read_seams_file(struct model_cloth *cloth, struct scene_tree *tree, int node)
 {
     char *path = scene_build_path(tree, node);
-    const int code = path ? scene_read_seams(&cloth->seams, &cloth->mesh, path, &tree->inner)
-                          : tree->error->code;
+    const int code = path ? scene_read_seams(cloth, path, &tree->inner) : tree->error->code;
     free(path);
     return scene_build_blame(code, "seams", tree, node);
 }
 
-static int find_seams(struct model_cloth *cloth, struct scene_tree *tree, int of, int node)
+int scene_build_borders(struct model_cloth *cloth, struct scene_tree *tree, int of)
 {
-    const int file = scene_tree_get(tree, node, "file");
+    const int file = scene_tree_at(tree, of, "seams.file");
     const bool pattern = scene_tree_at(tree, of, "mesh.pattern");
     if (file && pattern)
         return scene_tree_fail(tree, file,
                                "seams.file is of OBJ meshes; the seams of a pattern are its "
                                "stitches");
-    if (file)
-        return read_seams_file(cloth, tree, file);
-    if (pattern)
+    return file ? read_seams_file(cloth, tree, file) : CLOTH_OK;
+}
+
+static int check_seams(const struct model_cloth *cloth, const struct scene_tree *tree, int of,
+                       int node)
+{
+    if (scene_tree_get(tree, node, "file") || scene_tree_at(tree, of, "mesh.pattern"))
         return CLOTH_OK;
     return scene_tree_fail(tree, node,
                            "the mesh of cloth '%.60s' has no seams; a mesh.pattern, or seams.file "
@@ -321,7 +324,7 @@ int scene_build_seams(struct scene_tree *tree, uint32_t c, int of)
     const int node = scene_tree_get(tree, of, "seams");
     if (!node)
         return CLOTH_OK;
-    if (find_seams(cloth, tree, of, node) || reverse_some(cloth, tree, node) ||
+    if (check_seams(cloth, tree, of, node) || reverse_some(cloth, tree, node) ||
         take_sewing(cloth, tree, node))
         return tree->error->code;
     warn_of_unsure(cloth, tree, node);

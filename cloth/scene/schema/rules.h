@@ -130,6 +130,7 @@ extern const struct scene_rule scene_quaternion; /* what a SCENE_ROTATION is as 
 /* Words of choices that no field takes as they are. */
 enum scene_constraint { SCENE_POINT, SCENE_LINE, SCENE_PLANE };
 extern const struct model_word scene_holds[];        /* enum scene_constraint, in its order */
+extern const struct model_word scene_columns[];      /* of uv */
 extern const struct model_word scene_units[];        /* tenths of a millimetre */
 extern const struct model_word scene_ups[];          /* an axis */
 extern const struct model_word scene_rests[];        /* whether by uv */

@@ -101,16 +101,12 @@ const struct scene_rule scene_seams_keys[] = {
      "scene's folder"},
     {0}};
 
-static const struct scene_rule fold_edge_keys[] = {
-    {"panel", SCENE_TEXT, .required = true, .about = "its name"},
-    {"edge", SCENE_INTEGER, .required = true, .about = "of its edges, from 0: one that is sewn"},
-    {0}};
 static const struct scene_rule fold_keys[] = {
     {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &scene_vertex,
      ARRAY(struct model_fold, vertices, n),
      .about = "along it: an edge of the mesh joins each with the next"},
-    {"edge", SCENE_MAP, .choice = true, .inside = fold_edge_keys,
-     .about = "of a panel: it folds where the seam is welded"},
+    {"edge", SCENE_MAP, .choice = true, .inside = scene_panel_edge_keys,
+     .about = "of a panel, one that is sewn: it folds where the seam is welded"},
     {"angle", SCENE_NUMBER, "degrees", .required = true, INTO(struct model_fold, angle),
      .about = "at rest, -180 to 180; above 0: a ridge on the front"},
     {0}};

@@ -20,10 +20,34 @@ const struct scene_rule scene_motion_keys[] = {
      .needs = "rotate"},
     {0}};
 
+const struct scene_rule scene_panel_edge_keys[] = {
+    {"panel", SCENE_TEXT, .required = true, .about = "its name"},
+    {"edge", SCENE_INTEGER, .required = true, .about = "of its edges, from 0 as in its pattern"},
+    {0}};
+
+const struct model_word scene_columns[] = {{"u", 0}, {"v", 1}, {0}};
+static const struct scene_rule weight_kinds[] = {
+    {"uv", SCENE_CHOICE, .choice = true, .words = scene_columns,
+     .about = "the first or second number of a vertex's `vt` in the OBJ file"},
+    {"file", SCENE_TEXT, .choice = true,
+     .about = "a text file, relative to the scene's folder: a line for each vertex"},
+    {0}};
 const struct model_word scene_holds[] = {
     {"point", SCENE_POINT}, {"line", SCENE_LINE}, {"plane", SCENE_PLANE}, {0}};
 static const struct scene_rule pin_keys[] = {
     PICK(struct model_pin),
+    {"weights", SCENE_ONE_OF, .choice = true, .inside = weight_kinds,
+     MEANS(struct model_pin, pick.kind, MODEL_PICK_VERTICES),
+     .about = "0 to 1 of each vertex, times stiffness and damping; all above 0 are pinned"},
+    {"stiffness", SCENE_NUMBER, "N/m", .range = SCENE_POSITIVE, INTO(struct model_pin, stiffness),
+     .about = "a soft pin: of the spring that pulls each vertex to where it would be held"},
+    {"damping", SCENE_NUMBER, "kg/s", "0", .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_pin, damping),
+     .about = "a soft pin: of the vertex's velocity against that of its place",
+     .needs = "stiffness"},
+    {"curve", SCENE_ONE_OF, .inside = scene_curve_kinds,
+     .about = "a soft pin: what stiffness and damping are multiplied by in time; never below 0",
+     .needs = "stiffness", .section = "Curves"},
     {"to", SCENE_CHOICE, .fallback = "point", .words = scene_holds,
      .about = "where they are held: each at a point, or on a line or plane through it"},
     {"direction", SCENE_LIST, VECTOR, .about = "of the line, of any length but 0"},

@@ -59,7 +59,11 @@
     {"radius", SCENE_NUMBER, "m", .range = SCENE_NOT_NEGATIVE, INTO(type, pick.radius), \
      .about = "of nearest: and all vertices within it", .shared = "Picking vertices"}, \
     PICK_BOX(type, pick.), \
-    PICK_GROUP(type, pick.)
+    PICK_GROUP(type, pick.), \
+    {"edge", SCENE_MAP, .choice = true, .inside = scene_panel_edge_keys, \
+     MEANS(type, pick.kind, MODEL_PICK_VERTICES), \
+     .about = "all vertices along an edge of a panel, both ends included", \
+     .shared = "Picking vertices"}
 /* clang-format on */
 
 /* Names are compared with each other; a scene is read once for each phase. */
@@ -77,4 +81,5 @@ extern const struct scene_rule scene_seams_keys[], scene_time_keys[], scene_cont
 extern const struct scene_rule scene_solver_keys[], scene_newton_keys[], scene_output_keys[];
 extern const struct scene_rule scene_curve_kinds[], scene_motion_keys[], scene_turn_keys[];
 extern const struct scene_rule scene_curve_key;
+extern const struct scene_rule scene_panel_edge_keys[];
 #endif

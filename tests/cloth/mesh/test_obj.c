@@ -268,10 +268,11 @@ UNIT_TEST(zero_bytes)
         const char *bytes;
         size_t n;
         const char *says;
-    } cases[] = {{"v 0 0 0\nv 1\0 0 0\n", 18, ":2: the line has a zero byte; an OBJ file is text"},
-                 {"\x7f"
-                  "ELF\0\0\0",
-                  7, ":1: the line has a zero byte"}};
+    } cases[] = {
+        {"v 0 0 0\nv 1\0 0 0\n", 18, ":2: the line has a zero byte; a text file is expected"},
+        {"\x7f"
+         "ELF\0\0\0",
+         7, ":1: the line has a zero byte"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct mesh mesh;
         struct file file = file_new(cases[i].bytes, cases[i].n);

@@ -4,9 +4,9 @@
  *
  * a is its start, or where a motion or an obstacle takes that; w is the mean velocity of a over the
  * step, as pins that move have it; s is the curve. a and s are those of the time that forces are
- * of: the end of the step for implicit ones. The force is linear and alike in all directions, so its
- * part of an implicit step's matrix, h c + h^2 k, is exact, and a number >= 0 on the diagonal of
- * its own row. Pins of a row add up, in the order of the scene. */
+ * of: the end of the step for implicit ones. The force is linear and alike in all directions, so
+ * its part of an implicit step's matrix, h c + h^2 k, is exact, and a number >= 0 on the diagonal
+ * of its own row. Pins of a row add up, in the order of the scene. */
 #include "cloth/base/order.h"
 #include "cloth/flow/pins/sliders.h"
 

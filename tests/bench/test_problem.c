@@ -72,11 +72,11 @@ UNIT_TEST(test_marks)
 UNIT_TEST(test_line)
 {
     struct problem_message now = {3, 1}, before = {2, 1}, out = {0};
-    ck_assert_int_eq(problem_line_point(&now, &now, NULL, 1, &out), 0);
+    ck_assert_int_eq(problem_line_point(&now, &now, NULL, &out), 0);
     ck_assert_uint_eq(out.step, 4);
-    ck_assert_int_ne(problem_line_point(&before, &now, NULL, 1, &out), 0);
-    ck_assert_int_ne(problem_line_point(NULL, &before, &now, 1, &out), 0);
-    ck_assert_int_ne(problem_line_point(NULL, &now, &before, 1, &out), 0);
+    ck_assert_int_ne(problem_line_point(&before, &now, NULL, &out), 0);
+    ck_assert_int_ne(problem_line_point(NULL, &before, &now, &out), 0);
+    ck_assert_int_ne(problem_line_point(NULL, &now, &before, &out), 0);
 }
 
 UNIT_TEST(test_fib)

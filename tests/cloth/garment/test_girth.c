@@ -71,8 +71,8 @@ static void tube(void)
     static char front[] = "front", back[] = "back";
     static struct garment_panel panel[2];
     static struct garment_stitch stitch[2];
-    panel[0] = (struct garment_panel){front, 4, 4, corner, edge, {0, 0, 0}, {0, 0, 0.2}};
-    panel[1] = (struct garment_panel){back, 4, 4, corner, edge, {0, 180, 0}, {0, 0, -0.2}};
+    panel[0] = (struct garment_panel){front, 4, 4, corner, edge, {0, 0, 0}, {0, 0, 0.2}, false};
+    panel[1] = (struct garment_panel){back, 4, 4, corner, edge, {0, 180, 0}, {0, 0, -0.2}, false};
     stitch[0] = (struct garment_stitch){{{0, 1}, {1, 3}}, false};
     stitch[1] = (struct garment_stitch){{{0, 3}, {1, 1}}, false};
     pattern = (struct garment_pattern){2, 2, panel, stitch};

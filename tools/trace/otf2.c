@@ -22,15 +22,21 @@ enum { OWN_KINDS = 64, REGIONS_BESIDE = OWN_KINDS + TRACE_KINDS }; /* regions th
 enum { COMM_LOCATIONS, COMM_RANKS, COMM = 0 };                     /* groups; the communicator */
 static const uint64_t TICKS = 1000000000;                          /* of a second */
 
+struct otf2_region {
+    const char *name;
+    bool task;
+};
+
 struct otf2_writer {
     const struct trace_run *run;
     const struct trace_spans *spans;
     OTF2_Archive *archive;
     OTF2_GlobalDefWriter *defs;
-    const char **region; /* by region: its name, or NULL: it has no span */
-    uint64_t *n_events;  /* by worker */
-    uint64_t last;       /* ns */
-    uint32_t n_strings;
+    uint32_t *number;           /* by slot of a kernel or state: that of its region, from 1; or 0 */
+    struct otf2_region *region; /* as they come: readers warn of gaps between numbers */
+    uint64_t *n_events;         /* by worker */
+    uint64_t last;              /* ns */
+    uint32_t n_regions, n_strings;
     OTF2_ErrorCode code; /* of the first failure */
 };
 
@@ -58,7 +64,7 @@ static void otf2_note(struct otf2_writer *w, OTF2_ErrorCode code)
 
 /* ---- Events ---- */
 
-static uint32_t otf2_region(const struct otf2_writer *w, const struct trace_event *event)
+static uint32_t otf2_slot(const struct otf2_writer *w, const struct trace_event *event)
 {
     const uint32_t n = w->run->n_kernels;
     if (event->kind == TRACE_TASK)
@@ -68,19 +74,27 @@ static uint32_t otf2_region(const struct otf2_writer *w, const struct trace_even
     return n + OWN_KINDS + event->kind;
 }
 
+static uint32_t otf2_number(struct otf2_writer *w, const struct trace_span *span)
+{
+    uint32_t *number = &w->number[otf2_slot(w, span->event)];
+    if (!*number) {
+        w->region[w->n_regions] = (struct otf2_region){span->name, span->event->kind == TRACE_TASK};
+        *number = ++w->n_regions;
+    }
+    return *number - 1;
+}
+
 static void otf2_put_moment(struct otf2_writer *w, OTF2_EvtWriter *events,
                             const struct trace_moment *m)
 {
     const uint64_t time = m->time > 0 ? (uint64_t)llrint((double)TICKS * m->time) : 0;
-    const uint32_t region = m->span ? otf2_region(w, m->span->event) : 0;
     w->last = time > w->last ? time : w->last;
     switch (m->what) {
     case MOMENT_BEGIN:
-        w->region[region] = m->span->name;
-        otf2_note(w, OTF2_EvtWriter_Enter(events, NULL, time, region));
+        otf2_note(w, OTF2_EvtWriter_Enter(events, NULL, time, otf2_number(w, m->span)));
         break;
     case MOMENT_END:
-        otf2_note(w, OTF2_EvtWriter_Leave(events, NULL, time, region));
+        otf2_note(w, OTF2_EvtWriter_Leave(events, NULL, time, otf2_number(w, m->span)));
         break;
     case MOMENT_SENT:
         otf2_note(w, OTF2_EvtWriter_MpiSend(events, NULL, time, m->message->to_rank, COMM, 0,
@@ -143,14 +157,11 @@ static uint32_t otf2_string(struct otf2_writer *w, const char *text)
 
 static void otf2_put_regions(struct otf2_writer *w, uint32_t none)
 {
-    for (uint32_t r = 0; r < w->run->n_kernels + REGIONS_BESIDE && !w->code; r++) {
-        if (!w->region[r])
-            continue;
-        const bool task = r < w->run->n_kernels;
-        const uint32_t name = otf2_string(w, w->region[r]);
+    for (uint32_t r = 0; r < w->n_regions && !w->code; r++) {
+        const uint32_t name = otf2_string(w, w->region[r].name);
         otf2_note(w, OTF2_GlobalDefWriter_WriteRegion(
                          w->defs, r, name, name, none,
-                         task ? OTF2_REGION_ROLE_TASK : OTF2_REGION_ROLE_ARTIFICIAL,
+                         w->region[r].task ? OTF2_REGION_ROLE_TASK : OTF2_REGION_ROLE_ARTIFICIAL,
                          OTF2_PARADIGM_USER, OTF2_REGION_FLAG_NONE, none, 0, 0));
     }
 }
@@ -255,9 +266,10 @@ static int otf2_write(const struct trace_run *run, const char *folder)
         code = trace_messages_find(run, &messages);
     if (!code)
         code = trace_moments_find(&spans, &messages, &moment, &n);
+    w.number = base_alloc_zero((run->n_kernels + REGIONS_BESIDE) * sizeof *w.number);
     w.region = base_alloc_zero((run->n_kernels + REGIONS_BESIDE) * sizeof *w.region);
     w.n_events = base_alloc_zero((spans.n_workers + 1) * sizeof *w.n_events);
-    if (!code && (!w.region || !w.n_events))
+    if (!code && (!w.number || !w.region || !w.n_events))
         code = base_no_memory("an OTF2 archive");
     if (!code)
         otf2_put_all(&w, folder, moment, n);
@@ -266,6 +278,7 @@ static int otf2_write(const struct trace_run *run, const char *folder)
                           "the OTF2 archive %s cannot be written (a folder that has one already is "
                           "refused): %s",
                           folder, OTF2_Error_GetDescription(w.code));
+    base_free(w.number);
     base_free(w.region);
     base_free(w.n_events);
     base_free(moment);

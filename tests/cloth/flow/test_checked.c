@@ -212,6 +212,18 @@ UNIT_TEST(cloths)
     }
 }
 
+/* Shapes at rest that change in time, and pins that give. */
+UNIT_TEST(sizes)
+{
+    static const char *const springs = "materials.springs.size={warp: [[0, 1], [0.002, 0.9]]}";
+    static const char *const triangles = "materials.triangles.size=[[0, 1], [0.002, 1.1]]";
+    static const char *const soft =
+        "cloths[0].pins=[{vertices: [0, 5], stiffness: 5, damping: 0.1}]";
+    for (size_t i = 0; i < integrators.n; i++)
+        run(SETS(integrators.set[i], springs, i % 2 ? soft : NULL));
+    run(SETS("cloths[0].material=triangles", triangles, soft));
+}
+
 /* Joints that are there in the first step, that begin in the second one, and that end before it. */
 UNIT_TEST(timed_joints)
 {

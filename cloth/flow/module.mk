@@ -10,6 +10,7 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/run/memory.c \
     cloth/flow/run/neighbours.c \
     cloth/flow/run/particles.c \
+    cloth/flow/run/particles.h \
     cloth/flow/run/picks.c \
     cloth/flow/run/run.c \
     cloth/flow/run/settle.c \

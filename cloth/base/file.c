@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -32,4 +33,26 @@ const char *cloth_file_why(void)
 {
     return errno == ESPIPE ? "it is no plain file, but a pipe, a device or the like"
                            : strerror(errno);
+}
+
+int cloth_file_read(FILE *file, size_t most, char **bytes, size_t *size)
+{
+    size_t room = 0;
+    *bytes = NULL;
+    *size = 0;
+    for (size_t got = 1; got; *size += got) {
+        if (*size > most)
+            return CLOTH_E_INPUT;
+        if (*size + 1 >= room) { /* one is for the zero */
+            room = room ? 2 * room : 65536;
+            char *more = realloc(*bytes, room);
+            if (!more)
+                return CLOTH_E_MEMORY;
+            *bytes = more;
+        }
+        errno = 0;
+        got = fread(*bytes + *size, 1, room - 1 - *size, file);
+    }
+    (*bytes)[*size] = 0;
+    return ferror(file) ? CLOTH_E_IO : CLOTH_OK;
 }

@@ -68,33 +68,25 @@ int dxf_text_number(struct dxf_text *text, double *value)
 
 int dxf_text_open(struct dxf_text *text, const struct dxf *dxf, struct cloth_error *error)
 {
+    const char *path = dxf->path;
+    size_t n;
     *text = (struct dxf_text){.dxf = dxf, .error = error};
-    const char *path = text->dxf->path;
-    size_t n = 0, room = 1 << 16, got;
     FILE *file = cloth_file_open(path);
     if (!file)
-        return cloth_fail(text->error, CLOTH_E_IO, "%s: cannot be read: %s", path,
-                          cloth_file_why());
-    do {
-        char *bytes = realloc(text->bytes, room *= 2);
-        if (!bytes || room > MOST_BYTES)
-            cloth_fail(text->error, bytes ? CLOTH_E_INPUT : CLOTH_E_MEMORY,
-                       "%s: it is too large, more than %zu bytes", path, room / 2);
-        text->bytes = bytes ? bytes : text->bytes;
-        got = text->error->code ? 0 : fread(bytes + n, 1, room - n - 1, file);
-        n += got;
-    } while (got > 0);
-    if (ferror(file))
-        cloth_fail(text->error, CLOTH_E_IO, "%s: cannot be read: %s", path, strerror(errno));
+        return cloth_fail(error, CLOTH_E_IO, "%s: cannot be read: %s", path, cloth_file_why());
+    const int code = cloth_file_read(file, MOST_BYTES, &text->bytes, &n);
+    if (code == CLOTH_E_INPUT)
+        cloth_fail(error, code, "%s: it has more than %d bytes", path, MOST_BYTES);
+    else if (code)
+        cloth_fail(error, code, "%s: cannot be read: %s", path, strerror(errno));
     fclose(file);
-    if (text->error->code)
-        return text->error->code;
-    text->bytes[n] = '\0';
+    if (code)
+        return code;
     text->next = text->bytes;
     if (!strncmp(text->bytes, "AutoCAD Binary DXF", 18))
-        return cloth_fail(text->error, CLOTH_E_INPUT,
+        return cloth_fail(error, CLOTH_E_INPUT,
                           "%s: a binary DXF file; one as text (ASCII) is expected", path);
-    return memchr(text->bytes, '\0', n) ? cloth_fail(text->error, CLOTH_E_INPUT,
-                                                     "%s: it has zero bytes: no DXF as text", path)
-                                        : CLOTH_OK;
+    return memchr(text->bytes, 0, n)
+               ? cloth_fail(error, CLOTH_E_INPUT, "%s: it has zero bytes: no DXF as text", path)
+               : CLOTH_OK;
 }

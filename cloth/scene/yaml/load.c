@@ -12,26 +12,6 @@
 /* No file is larger; a device that never ends stops here. */
 static const size_t MAX_BYTES = (size_t)256 << 20;
 
-static int read_all(FILE *file, char **bytes, size_t *size)
-{
-    size_t room = 0, n = 0;
-    for (size_t got = 1; got; n += got) {
-        if (n > MAX_BYTES)
-            return CLOTH_E_INPUT;
-        if (n == room) {
-            room = room ? 2 * room : 65536;
-            char *more = realloc(*bytes, room);
-            if (!more)
-                return CLOTH_E_MEMORY;
-            *bytes = more;
-        }
-        errno = 0;
-        got = fread(*bytes + n, 1, room - n, file);
-    }
-    *size = n;
-    return ferror(file) ? CLOTH_E_IO : CLOTH_OK;
-}
-
 /* A scene may come through a pipe, too. */
 static int yaml_load_read_bytes(const struct scene_tree *tree, char **bytes, size_t *size)
 {
@@ -40,7 +20,7 @@ static int yaml_load_read_bytes(const struct scene_tree *tree, char **bytes, siz
     if (!file)
         return cloth_fail(tree->error, CLOTH_E_INPUT, "%s: cannot open the %s file: %s", path, noun,
                           cloth_file_why());
-    const int code = read_all(file, bytes, size);
+    const int code = cloth_file_read(file, MAX_BYTES, bytes, size);
     if (code == CLOTH_E_MEMORY)
         cloth_fail(tree->error, code, "%s: out of memory", path);
     else if (code == CLOTH_E_INPUT)

@@ -203,30 +203,38 @@ static void find_bounds(const char *trace, double *path, double *lower)
     trace_run_free(traced);
 }
 
-/* On rank 0. workers, peak: of all ranks, the summary's. */
-static void report_run(struct run *run, uint64_t workers, uint64_t peak, struct cloth_error *error)
+struct summary simulate_sum_up(const struct run *run, const struct flow_report *report)
+{
+    struct rusage usage = {0};
+    getrusage(RUSAGE_SELF, &usage);
+    uint64_t workers = run->threads, peak = 1024 * (uint64_t)usage.ru_maxrss; /* Linux counts KiB */
+    MPI_Allreduce(MPI_IN_PLACE, &workers, 1, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, &peak, 1, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
+    return (struct summary){.options = run->options,
+                            .model = run->model,
+                            .report = report,
+                            .phases = &run->phases,
+                            .untangled = &run->untangled,
+                            .elastic = run->elastic,
+                            .ranks = run->ranks,
+                            .threads = run->threads,
+                            .cores = run->cores,
+                            .cores_from = run->cores_from,
+                            .workers = workers,
+                            .memory_bytes = peak,
+                            .critical_path = NAN,
+                            .lower_bound = NAN};
+}
+
+/* On rank 0. */
+static void report_run(struct run *run, struct summary *summary, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
     struct outputs *outputs = &run->outputs;
-    struct summary summary = {.options = options,
-                              .model = run->model,
-                              .report = &run->phases.total,
-                              .phases = &run->phases,
-                              .untangled = &run->untangled,
-                              .elastic = run->elastic,
-                              .intersections =
-                                  options->check_intersections ? &outputs->found : NULL,
-                              .drape = outputs->drape.n ? &outputs->drapes : NULL,
-                              .ranks = run->ranks,
-                              .threads = run->threads,
-                              .cores = run->cores,
-                              .cores_from = run->cores_from,
-                              .workers = workers,
-                              .memory_bytes = peak,
-                              .critical_path = NAN,
-                              .lower_bound = NAN};
+    summary->intersections = options->check_intersections ? &outputs->found : NULL;
+    summary->drape = outputs->drape.n ? &outputs->drapes : NULL;
     if (options->runtime.trace)
-        find_bounds(options->runtime.trace, &summary.critical_path, &summary.lower_bound);
+        find_bounds(options->runtime.trace, &summary->critical_path, &summary->lower_bound);
     if (run->report.stopped || run->stopped_before)
         say_stopped(run);
     intersections_say(&outputs->found, "duite-cloth");
@@ -234,26 +242,22 @@ static void report_run(struct run *run, uint64_t workers, uint64_t peak, struct 
         warn_of_motion(run);
     simulate_warn_of_edges(run);
     if (options->report)
-        summary_write(&summary, options->report, error);
+        summary_write(summary, options->report, error);
     if (!options->quiet)
-        summary_print(stdout, &summary);
+        summary_print(stdout, summary);
 }
 
 static int simulate_conclude(struct run *run)
 {
     struct cloth_error error = {0};
-    struct rusage usage = {0};
-    getrusage(RUSAGE_SELF, &usage);
-    uint64_t workers = run->threads, peak = 1024 * (uint64_t)usage.ru_maxrss; /* Linux counts KiB */
-    MPI_Allreduce(MPI_IN_PLACE, &workers, 1, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
-    MPI_Allreduce(MPI_IN_PLACE, &peak, 1, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
+    struct summary summary = simulate_sum_up(run, &run->phases.total);
     int intersects = run->outputs.found.bad > 0;
     MPI_Bcast(&intersects, 1, MPI_INT, 0, MPI_COMM_WORLD);
     run->intersects = intersects;
     if (run->outputs.drape.n)
         drape_find(&run->outputs.drape, &run->outputs.drapes, &error);
     if (run->rank == 0)
-        report_run(run, workers, peak, &error);
+        report_run(run, &summary, &error);
     const int code = simulate_agree(run, &error);
     const int unwritten = simulate_agree(run, &run->outputs.hdf5.unwritten);
     const int untraced = simulate_agree(run, &run->untraced);

@@ -4,9 +4,7 @@
 
 #include "cloth/base/clock.h"
 
-#include <mpi.h>
 #include <stdio.h>
-#include <sys/resource.h>
 
 static const double TRIAL = 2; /* s of the clock */
 
@@ -31,24 +29,11 @@ int simulate_check_ends(void *context)
 int simulate_check(struct run *run)
 {
     struct cloth_error error = {0};
-    struct rusage usage = {0};
     const int code = simulate_execute(run);
-    getrusage(RUSAGE_SELF, &usage);
-    uint64_t workers = run->threads, peak = 1024 * (uint64_t)usage.ru_maxrss; /* Linux counts KiB */
     if (code)
         return code;
-    MPI_Allreduce(MPI_IN_PLACE, &workers, 1, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
-    MPI_Allreduce(MPI_IN_PLACE, &peak, 1, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
+    const struct summary summary = simulate_sum_up(run, &run->report);
     if (run->rank == 0) {
-        const struct summary summary = {.options = run->options,
-                                        .model = run->model,
-                                        .report = &run->report,
-                                        .phases = &run->phases,
-                                        .ranks = run->ranks,
-                                        .threads = run->threads,
-                                        .cores = run->cores,
-                                        .workers = workers,
-                                        .memory_bytes = peak};
         forecast_end(&run->forecast, &summary);
         forecast_print(stdout, &run->forecast, &summary);
         if (run->options->report)

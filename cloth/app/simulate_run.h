@@ -52,6 +52,10 @@ int simulate_prepare(struct run *run);
 /* Goes on to the next phase, unless that is asked to stop: stopped_before. Collective; as above. */
 int simulate_next(struct run *run);
 
+/* A summary of a report, with the workers of all ranks and the largest memory of any. Collective.
+ */
+struct summary simulate_sum_up(const struct run *run, const struct flow_report *report);
+
 /* Runs the phase that is prepared; with --check its first steps alone. Collective; as above. */
 int simulate_execute(struct run *run);
 

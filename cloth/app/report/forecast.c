@@ -89,7 +89,7 @@ static void forecast_advise_contact(FILE *file, const struct forecast *forecast,
     if (model_seeks(model) && forecast->edge > 0 && thickness > 0.5 * forecast->edge)
         fprintf(file,
                 "  slow             contact.thickness %g m is above half a cell, %.3g m: each "
-                "triangle meets many; below that it is fastest\n",
+                "triangle meets many; a smaller one is faster\n",
                 thickness, forecast->edge);
 }
 

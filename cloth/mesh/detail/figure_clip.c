@@ -53,25 +53,39 @@ static void vector_at(const struct aiVectorKey *key, unsigned n, double ticks, d
         to[c] = one[c] + part * (two[c] - one[c]);
 }
 
-/* Shoemake 1985: of length 1, w x y z. n > 0. */
+static void make_unit(double q[4])
+{
+    const double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (int c = 0; c < 4 && length > 0; c++)
+        q[c] /= length;
+}
+
+/* Slerp (Shoemake 1985), w x y z of length 1. The arc is halved, since sines of the C library
+ * differ between processors. n > 0. */
 static void rotation_at(const struct aiQuatKey *key, unsigned n, double ticks, double q[4])
 {
-    double part, dot = 0, length = 0;
+    enum { HALVINGS = 50 }; /* the arc that is left is below rounding */
+    double part, dot = 0;
     const struct aiQuatKey *from = key + find_key(&key->mTime, sizeof *key, n, ticks, &part);
     const struct aiQuaternion *a = &from->mValue, *b = &from[part > 0].mValue;
-    const double one[4] = {(double)a->w, (double)a->x, (double)a->y, (double)a->z},
-                 two[4] = {(double)b->w, (double)b->x, (double)b->y, (double)b->z};
+    double low[4] = {(double)a->w, (double)a->x, (double)a->y, (double)a->z},
+           high[4] = {(double)b->w, (double)b->x, (double)b->y, (double)b->z};
     for (int c = 0; c < 4; c++)
-        dot += one[c] * two[c];
-    const double angle = acos(fmin(fabs(dot), 1)), sine = sin(angle);
-    const double of_one = sine > 1e-9 ? sin((1 - part) * angle) / sine : 1 - part;
-    const double of_two = (sine > 1e-9 ? sin(part * angle) / sine : part) * (dot < 0 ? -1 : 1);
-    for (int c = 0; c < 4; c++) {
-        q[c] = of_one * one[c] + of_two * two[c];
-        length += q[c] * q[c];
+        dot += low[c] * high[c];
+    for (int c = 0; c < 4 && dot < 0; c++)
+        high[c] = -high[c];
+    make_unit(low);
+    make_unit(high);
+    for (int k = 0; k < HALVINGS; k++) {
+        double middle[4];
+        for (int c = 0; c < 4; c++)
+            middle[c] = low[c] + high[c];
+        make_unit(middle);
+        const bool beyond = part >= 0.5;
+        memcpy(beyond ? low : high, middle, sizeof middle);
+        part = 2 * part - beyond;
     }
-    for (int c = 0; c < 4 && length > 0; c++)
-        q[c] /= sqrt(length);
+    memcpy(q, low, sizeof low);
 }
 
 static struct figure_matrix compose(const double scale[3], const double q[4], const double x[3])

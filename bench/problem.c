@@ -1,4 +1,4 @@
-/* Nothing here knows who calls it. */
+/* Bodies and answers alone: the callers, ours and rivals, bring the tasks. */
 #include "bench/problem.h"
 
 #include <stdlib.h>

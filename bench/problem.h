@@ -4,8 +4,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What the tasks compute, in one place for us, the sequential twins and the rivals: unsigned
- * integers, so that a wrong order shows in the last bit. All bodies are called through pointers. */
+/* The tasks of all benches, one text for us, the sequential twins and the rivals: they compute
+ * unsigned integers, so that a wrong order shows in the last bit. All bodies are called through
+ * pointers. */
 
 struct problem_cell {
     _Alignas(64) uint64_t value; /* a line of its own */
@@ -38,7 +39,7 @@ uint64_t problem_chain(uint64_t n, problem_link *const volatile *body);
 /* Independent tasks: task i leaves its mark. */
 typedef void problem_mark_body(uint64_t *mark, uint64_t i);
 problem_mark_body problem_mark;
-/* Whether a mark is missing or made twice; clears them. */
+/* Returns nonzero if a mark is missing or made twice; clears them. */
 int problem_marks_wrong(uint64_t *mark, uint64_t n);
 
 /* Fibonacci numbers by the book: a call of n makes one of n - 1 and one of n - 2. */

@@ -1,4 +1,4 @@
-/* What the cases measure that run scenes, or a state of one. Runs are long: the first of a case
+/* Cases that run scenes, or a state of one, and their measures. Runs are long: the first of a case
  * counts, too, where it says `cold`. */
 #include "bench/contact/contact.h"
 

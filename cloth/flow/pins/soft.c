@@ -1,12 +1,14 @@
-/* Soft pins are a spring and a damper from a vertex to the place a where a pin would hold it:
+/* A soft pin pulls a vertex by a spring and a damper to the place a where a pin would hold it:
  *
  *     f = -s (k (x - a) + c (v - w))
  *
- * a is its start, or where a motion or an obstacle takes that; w is the mean velocity of a over the
- * step, as pins that move have it; s is the curve. a and s are those of the time that forces are
- * of: the end of the step for implicit ones. The force is linear and alike in all directions, so
- * its part of an implicit step's matrix, h c + h^2 k, is exact, and a number >= 0 on the diagonal
- * of its own row. Pins of a row add up, in the order of the scene. */
+ * a is its start, or the place to which a motion or an obstacle takes that; s is the curve; both
+ * are those of the forces' time, the end of the step for implicit ones. w is the mean velocity of a
+ * over the step, as pins that move have it.
+ *
+ * The force is linear, and alike in all directions. So its part of an implicit step's matrix, h c +
+ * h^2 k, is exact: a number >= 0 on the diagonal of its own row. Pins of a row add up, in the order
+ * of the scene. */
 #include "cloth/base/order.h"
 #include "cloth/flow/pins/sliders.h"
 

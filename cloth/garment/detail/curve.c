@@ -199,8 +199,8 @@ double curve_turning(const struct curve *curve)
 }
 
 /* Half the integral of x dy - y dx along the curve, m^2: those of a counterclockwise loop are its
- * area. Of a Bezier curve Gauss and Legendre's rule is
- * exact, an arc has its circle's segment beside the chord. */
+ * area. Gauss and Legendre's rule is exact for a Bezier curve; an arc has its circle's segment
+ * beside the chord. */
 static double curve_area(const struct curve *curve)
 {
     const double *begin = curve->point[0];

@@ -78,7 +78,7 @@ static bool go_on(const struct making *making, struct dxf_loop *loop, enum dxf_l
     return false;
 }
 
-/* Whether it ends where it begins: its last place is dropped then. */
+/* True if it ends where it begins: its last place is dropped then. */
 static bool close_loop(const struct making *making, struct dxf_loop *loop, bool joined)
 {
     if (loop->stop.n < 3 ||

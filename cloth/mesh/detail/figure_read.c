@@ -1,5 +1,5 @@
-/* What Assimp read is checked before it is used: indices, and places that are no numbers. No step
- * of its own changes the meshes. */
+/* Indices and places that Assimp read are checked before they are used. Its own steps that change
+ * meshes are not asked for. */
 #include "cloth/mesh/detail/figure_scene.h"
 
 #include "cloth/base/file.h"

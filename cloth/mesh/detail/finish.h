@@ -18,8 +18,8 @@ const char *mesh_path_shown(const char *path);
 
 /* Checks faces and lone edges (indices, repeated corners), cuts the faces into mesh->triangle, and
  * looks for edges with more than two triangles and lone edges that stand twice. Errors:
- * CLOTH_E_INPUT with the file and line, or the entry; CLOTH_E_MEMORY. What is built belongs to the
- * mesh, also after an error. Local. */
+ * CLOTH_E_INPUT with the file and line, or the entry; CLOTH_E_MEMORY. The mesh owns all that
+ * is built, also after an error. Local. */
 int mesh_finish(struct mesh *mesh, const struct mesh_source *source, struct cloth_error *error);
 
 /* ---- Polygons ---- */

@@ -12,7 +12,7 @@ struct phys_plane2 {
     phys_vec uu, uv, vu, vv;
 };
 
-/* Of a membrane each: as good as always of the same as the four before. */
+/* A membrane a lane; four triangles in a row nearly always have that of the four before. */
 struct phys_moduli {
     uint32_t of[PHYS_WIDE];               /* number of the membrane; at first none's */
     phys_vec c11, c12, c22, c33, damping; /* N/m; s */
@@ -164,8 +164,8 @@ PHYS_INLINE void phys_frame_beyond(const struct phys_frame *f, int d, int k, phy
     phys_positive(&beyond, over);
 }
 
-/* Adds what the strain beyond knees adds to the stress. rise: what K gets along warp and weft,
- * N/m; or NULL. */
+/* Adds the stress of the strain beyond knees. rise: NULL, or gets the moduli (N/m) that K has more
+ * of along warp and weft. */
 PHYS_INLINE void phys_frame_stiffen(const struct phys_frame *f, struct phys_plane2 *t,
                                     phys_vec rise[2])
 {

@@ -1,5 +1,5 @@
-/* Values of a fabric are filled in as defaults are, and checked as if the scene had them. A tree of
- * another shape does no harm here: the check finds its faults. */
+/* Values of a fabric are filled in as defaults are, and checked as if the scene had them: the check
+ * finds the faults of a tree of another shape, too. */
 #include "cloth/scene/schema/check.h"
 
 #include <stdbool.h>
@@ -58,12 +58,14 @@ struct value {
  *     white swim solid      47.97   104.62    6.83   60.77            40.37  169.67
  *
  * ARCSim doubles these, and its shear force is C33 e12, twice ours. So E = 2 C (1 - nu12 nu21),
- * nu12 = C12 / C22 (0 where that is below 0), G = C33; the stiffer direction is the warp, of the
- * sweatshirt where it is stretched. Of the knits the curve is 2 (C + 6 e (C' - C)) e, as ARCSim
- * mixes both rows, at e = 1/48, 1/12, 1/6. Its hinge has the energy k L^2 theta^2 / (8 (A1 + A2)),
- * ours with D = k / 4, k the mean of the three directions at the least curvature: 46.24, 30.02,
- * 32.24; 64.20, 73.38, 96.95; 125.41, 108.00, 125.41; 51.71, 40.66, 31.28; 23.19, 24.75, 14.27;
- * 36.35, 33.01, 37.16; 59.47, 40.07, 45.63; 60.24, 58.80, 51.02 uN m.
+ * nu12 = C12 / C22 (0 where that is below 0), G = C33. The warp is the stiffer direction; the
+ * sweatshirt's is the one that is stiffer at 1/6. Knits have the curve 2 (C + 6 e (C' - C)) e at
+ * e = 1/48, 1/12, 1/6, as ARCSim mixes both rows.
+ *
+ * Its hinge has the energy k L^2 theta^2 / (8 (A1 + A2)), which is ours with D = k / 4. k is the
+ * mean of three directions at the least curvature, in the order above, uN m: 46.24, 30.02, 32.24;
+ * 64.20, 73.38, 96.95; 125.41, 108.00, 125.41; 51.71, 40.66, 31.28; 23.19, 24.75, 14.27; 36.35,
+ * 33.01, 37.16; 59.47, 40.07, 45.63; 60.24, 58.80, 51.02.
  *
  * ---- Instruments ----
  *
@@ -71,8 +73,8 @@ struct value {
  * 2HB of cotton broadcloth, wool tropical and polyester faille; W, G, EMT and LT are chosen, as
  * such fabrics have them. Kumari & Khurana 2016 (Journal of Textiles, 4614168, table 5): their
  * denim B, all but W, which is printed as 109 mg/cm^2, thrice that of any denim; here that of the
- * denim above. The wool is of a plain weave, all of one published FAST report (bartleby.com, Fabric
- * Assurance by Simple Testing, 2014). */
+ * denim above. The plain wool is that of one published FAST report (Fabric Assurance by Simple
+ * Testing, 2014). */
 static const struct value fabrics[][KEYS] = {
     /* ivory rib knit, 95 % cotton and 5 % spandex */
     [RIB_KNIT] = {{"model", "triangles"},

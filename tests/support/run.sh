@@ -1,6 +1,6 @@
 #!/bin/sh
 # run.sh TEST: runs one test for automake's TAP driver, which takes the 77 of a skipped test for a failure. A test that is
-# stuck ends after an hour, a long one after eight; one of ten seconds and more says how long it took. Temporary files are in a
+# stuck ends after half an hour, a long one after eight hours; one of ten seconds and more says how long it took. Temporary files are in a
 # folder of the test's own, those of Open MPI too: programs of several tests that start at the same moment trip over each other
 # in the one that all runs of a user share.
 . "${0%/*}/mpi.sh"
@@ -18,7 +18,7 @@ trap 'rm -rf "$folder"' EXIT
 trap 'exit 99' HUP INT TERM
 case $1 in
     *_long.sh) seconds=28800 ;;
-    *) seconds=3600 ;;
+    *) seconds=1800 ;;
 esac
 began=$(date +%s)
 TMPDIR=$folder timeout --kill-after=10 $seconds "$@"

@@ -15,19 +15,16 @@ awaits $xvfb test -s "$scratch/display" || skip_all "Xvfb does not start"
 display=:$(cat "$scratch/display")
 
 # is_like PICTURE: the screen is like it: colours differ by 2 of 255 in the mean, and at most 0.5 % of the pixels by more than 16.
-# shows, comes_to_differ: it comes to be, or not to be, within a minute, which is long for a busy machine.
+# comes COMMAND: it passes within a minute, which is long for a busy machine. shows, comes_to_differ: the screen comes to be, or
+# not to be, like a picture.
 is_like() { ./tests/cloth/view/alike "$1" "$screen" | awk '{ print; alike = $1 <= 2 && $2 <= 0.5 } END { exit !alike }'; }
-shows() {
+differs() { ! is_like "$1"; }
+comes() {
     for try in $(seq 60); do
-        is_like "$1" && return 0
+        "$@" && return 0
         sleep 1
     done
     return 1
 }
-comes_to_differ() {
-    for try in $(seq 60); do
-        is_like "$1" || return 0
-        sleep 1
-    done
-    return 1
-}
+shows() { comes is_like "$1"; }
+comes_to_differ() { comes differs "$1"; }

@@ -27,7 +27,7 @@ stops() {
 }
 picture() { limited "$DUITE_VIEW" --connect 127.0.0.1:$port --size $size --png "$scratch/live.png"; }
 says() { # SENTENCE: on standard error, before the window opens
-    awaits $viewer grep -q "$1" "$scratch/window"
+    comes grep -q "$1" "$scratch/window"
 }
 simulate
 tap_run picture
@@ -54,7 +54,7 @@ simulate
 ok "and shows the next one" shows "$scratch/live.png"
 if command -v xdotool > /dev/null; then
     named() { DISPLAY=$display xdotool search --name "$1" | grep -c .; }
-    ok "its title names the frame" awaits $viewer named "frame [0-9]*, [0-9.]* s, live from 127.0.0.1:$port"
+    ok "its title names the frame" comes named "frame [0-9]*, [0-9.]* s, live from 127.0.0.1:$port"
     DISPLAY=$display xdotool mousemove 300 150 sleep 0.3 mousedown 1 sleep 0.3 mousemove 180 130 sleep 0.3 mouseup 1
     ok "a drag turns it" comes_to_differ "$scratch/live.png"
     DISPLAY=$display xdotool key r sleep 2

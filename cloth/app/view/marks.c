@@ -135,7 +135,8 @@ void view_marks_place(const struct view_marks *marks, double *position)
 {
     for (int i = 0; i < VIEW_MARKS; i++) {
         const size_t n = 3 * (size_t)marks->mesh[i].n_vertices;
-        memcpy(position, marks->mesh[i].position, n * sizeof *position);
+        if (n) /* no marks, no memory */
+            memcpy(position, marks->mesh[i].position, n * sizeof *position);
         position += n;
     }
 }

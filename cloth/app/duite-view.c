@@ -146,12 +146,12 @@ static const struct cli_option OPTIONS[] = {
     {"mp4", 'm', "FILE", "Write a film to FILE, encoded by ffmpeg", CLI_FILE, TO(mp4), NULL, NULL,
      0},
     {"export", 'x', "FILE",
-     "Write frames for other programs to FILE: .usda (USD, all of --frames), or one --frame as "
-     ".glb "
-     "(glTF) or .obj",
-     CLI_OTHER, 0, "a FILE that ends in .usda, .usd, .glb or .obj", read_export, 0},
+     "Write frames for other programs to FILE: all of --frames as .usda (USD) or .abc (Alembic), "
+     "or one --frame as .glb (glTF) or .obj",
+     CLI_OTHER, 0, "a FILE that ends in .usda, .usd, .abc, .glb or .obj", read_export, 0},
     {"frames", 'n', "A:B",
-     "Frames of the film, of USD or of the check, from A to B; either may be left out (all)",
+     "Frames of the film, of USD, of Alembic or of the check, from A to B; either may be left out "
+     "(all)",
      CLI_OTHER, 0, "A:B, A up to B, such as 0:24, 10: or :24", read_frames, RANGED},
     {"fps", 'r', "RATE", "Frames a second of the film (those of the scene: its own time)",
      CLI_OTHER, 0, "a rate from 0.1 to 1000 frames a second", read_fps, FILMED},
@@ -226,8 +226,8 @@ static void check_together(void *to, struct argp_state *state)
         !(options->export && view_frames_exports_many(options->export)))
         argp_error(
             state,
-            "--frames is of films, of USD and of the check: --mp4 FILE, --export FILE.usda or "
-            "--check-intersections");
+            "--frames is of films, of USD, of Alembic and of the check: --mp4 FILE, --export "
+            "FILE.usda or FILE.abc, or --check-intersections");
     if (options->trace && !options->png && !options->svg)
         argp_error(state, "say where the chart goes: --svg FILE or --png FILE");
     if (!options->trace && !options->host && !options->folder)

@@ -187,13 +187,6 @@ static int gltf_make_json(struct gltf *gltf, struct cloth_error *error)
 
 /* ---- The file ---- */
 
-static void gltf_put_whole(FILE *file, uint32_t value)
-{
-    unsigned char bytes[4];
-    cloth_put_u32(bytes, value);
-    fwrite(bytes, sizeof bytes, 1, file);
-}
-
 static void gltf_put_floats(FILE *file, const float *value, size_t n)
 {
     unsigned char bytes[4];
@@ -211,10 +204,10 @@ static int gltf_fill(void *context, const char *path, FILE *file, struct cloth_e
         return cloth_fail(error, CLOTH_E_INPUT, "%s: glTF holds no more than 4 GiB", path);
     const uint32_t head[] = {GLTF_MAGIC, 2, (uint32_t)size, (uint32_t)gltf->n_json, GLTF_JSON};
     for (size_t i = 0; i < sizeof head / sizeof *head; i++)
-        gltf_put_whole(file, head[i]);
+        view_export_u32(file, head[i]);
     fwrite(gltf->json, 1, gltf->n_json, file);
-    gltf_put_whole(file, (uint32_t)gltf->bytes);
-    gltf_put_whole(file, GLTF_BIN);
+    view_export_u32(file, (uint32_t)gltf->bytes);
+    view_export_u32(file, GLTF_BIN);
     for (uint32_t m = 0; m < gltf->n; m++) {
         const struct gltf_mesh *mesh = gltf->mesh + m;
         gltf_put_floats(file, mesh->point[0], 3 * (size_t)mesh->n_points);
@@ -222,7 +215,7 @@ static int gltf_fill(void *context, const char *path, FILE *file, struct cloth_e
             gltf_put_floats(file, mesh->uv[0], 2 * (size_t)mesh->n_points);
         for (uint32_t t = 0; t < mesh->n_triangles; t++)
             for (int k = 0; k < 3; k++)
-                gltf_put_whole(file, mesh->corner[t][k]);
+                view_export_u32(file, mesh->corner[t][k]);
     }
     return 0;
 }

@@ -8,6 +8,7 @@ libduite_view_a_SOURCES = \
 	cloth/view/colour.h cloth/view/colour.c \
 	cloth/view/colours.h cloth/view/colours.c \
 	cloth/view/export.h cloth/view/export.c cloth/view/gltf.c cloth/view/usd.c \
+	cloth/view/abc.h cloth/view/abc.c cloth/view/abc_groups.c cloth/view/ogawa.h cloth/view/ogawa.c \
 	cloth/view/film.h cloth/view/film.c \
 	cloth/view/legend.h cloth/view/legend.c \
 	cloth/view/obstacles.c \

@@ -45,20 +45,8 @@ static void usd_put_mesh(FILE *file, const char *name)
 
 /* ---- Cloths ---- */
 
-/* Vertices and faces of a cloth among those of all. */
-struct usd_cloth {
-    uint32_t first, end, first_face, end_face;
-};
-
-static uint32_t usd_first_corner(const struct mesh *mesh, uint32_t f)
-{
-    uint32_t room[3];
-    const uint32_t *corner;
-    mesh_face(mesh, f, room, &corner);
-    return *corner;
-}
-
-static void usd_put_faces(FILE *file, const struct mesh *mesh, const struct usd_cloth *cloth)
+static void usd_put_faces(FILE *file, const struct mesh *mesh,
+                          const struct view_export_cloth *cloth)
 {
     uint32_t room[3];
     const uint32_t *corner;
@@ -80,7 +68,7 @@ static void usd_put_faces(FILE *file, const struct mesh *mesh, const struct usd_
 }
 
 /* uv of corners, since a vertex has several where islands of uv meet. */
-static void usd_put_uv(FILE *file, const struct mesh *mesh, const struct usd_cloth *cloth)
+static void usd_put_uv(FILE *file, const struct mesh *mesh, const struct view_export_cloth *cloth)
 {
     double uv[2];
     size_t at = 0;
@@ -100,12 +88,12 @@ static void usd_put_uv(FILE *file, const struct mesh *mesh, const struct usd_clo
     fputs("] (\n            interpolation = \"faceVarying\"\n        )\n", file);
 }
 
-static int usd_put_cloth(FILE *file, struct usd *usd, const struct usd_cloth *cloth,
-                         const char *name, struct cloth_error *error)
+static int usd_put_cloth(FILE *file, struct usd *usd, const struct view_export_cloth *cloth,
+                         struct cloth_error *error)
 {
     const struct output_cache *cache = usd->from.cache;
     int code = 0;
-    usd_put_mesh(file, name);
+    usd_put_mesh(file, cloth->name);
     usd_put_faces(file, &cache->mesh, cloth);
     usd_put_uv(file, &cache->mesh, cloth);
     fputs("        point3f[] points.timeSamples = {\n", file);
@@ -122,36 +110,14 @@ static int usd_put_cloth(FILE *file, struct usd *usd, const struct usd_cloth *cl
 
 static int usd_put_cloths(FILE *file, struct usd *usd, struct cloth_error *error)
 {
-    const struct output_cache *cache = usd->from.cache;
-    const uint32_t n = cache->apart.end ? cache->apart.n_cloths : 1;
-    struct usd_cloth cloth = {0};
+    struct view_export_cloth cloth = {.n = 0};
     int code = 0;
-    for (uint32_t i = 0; i < n && !code; i++) {
-        char name[32] = "cloth";
-        if (n > 1)
-            snprintf(name, sizeof name, "cloth_%" PRIu32, i);
-        cloth.end = cache->apart.end ? cache->apart.end[i] : cache->mesh.n_vertices;
-        while (cloth.end_face < cache->mesh.n_faces &&
-               usd_first_corner(&cache->mesh, cloth.end_face) < cloth.end)
-            cloth.end_face++;
-        code = usd_put_cloth(file, usd, &cloth, name, error);
-        cloth.first = cloth.end;
-        cloth.first_face = cloth.end_face;
-    }
+    while (!code && view_export_next(usd->from.cache, &cloth))
+        code = usd_put_cloth(file, usd, &cloth, error);
     return code;
 }
 
 /* ---- Obstacles ---- */
-
-static bool usd_moves(const struct output_cache *cache)
-{
-    bool moves = false;
-    for (uint32_t i = 0; i < cache->n_obstacles; i++)
-        moves = moves || cache->obstacles[i].n;
-    for (uint32_t i = 0; i < cache->n_bodies; i++)
-        moves = moves || cache->posed[i];
-    return moves;
-}
 
 static void usd_put_obstacle_points(FILE *file, const struct view_obstacles *all)
 {
@@ -165,7 +131,7 @@ static int usd_put_obstacles(FILE *file, struct usd *usd, struct cloth_error *er
 {
     const struct output_cache *cache = usd->from.cache;
     const struct view_obstacles *all = usd->from.obstacles;
-    const bool moves = usd_moves(cache);
+    const bool moves = view_export_moves(cache);
     const uint64_t last = moves ? usd->last : usd->first;
     int code = 0;
     if (!all->n_triangles)

@@ -114,4 +114,97 @@ def check_obj():
     same('the faces', (faces, corners), obj(folder + '/cloth.obj')[1:])
 
 
-{'usda': check_usd, 'usd': check_usd, 'glb': check_gltf, 'obj': check_obj}[path.rsplit('.')[-1]]()
+def check_abc():
+    """Reads groups and blocks of bytes by the places that they are referred to with."""
+    data = open(path, 'rb').read()
+    same('the head', data[:8], b'Ogawa\xff\0\1')
+    _, faces, corners = obj(folder + '/cloth.obj')
+    times = [float(line.split(',')[1]) for line in open(folder + '/frames.csv').read().split()[1:]]
+
+    def group(place):
+        n = struct.unpack_from('<Q', data, place)[0]
+        return struct.unpack_from('<%dQ' % n, data, place + 8)
+
+    def block(reference):
+        place = reference & ~(1 << 63)
+        same('the mark of a block', reference >> 63, 1)
+        return data[place + 8:place + 8 + struct.unpack_from('<Q', data, place)[0]] if place else b''
+
+    def words(head, at):
+        n = struct.unpack_from('<I', head, at)[0]
+        return head[at + 4:at + 4 + n].decode(), at + 4 + n
+
+    def properties(place):
+        """name: (info, count, words, reference)"""
+        *parts, last = group(place)
+        head, at, found = block(last), 0, {}
+        for part in parts:
+            info, at = struct.unpack_from('<I', head, at)[0], at + 4
+            count = 0
+            if info & 3:
+                count, which = struct.unpack_from('<II', head, at)
+                same('the times of a property', which, 1)
+                at += 8
+            name, at = words(head, at)
+            meta, at = words(head, at) if info >> 20 else ('', at)
+            found[name] = info & ~(0xff << 20), count, meta, part
+        same('the end of a head', at, len(head))
+        return found
+
+    def samples(entry, form, step):
+        info, count, _, part = entry
+        stored = [block(reference)[16:] for reference in group(part)[::step]]
+        same('the count of frames', count, last + 1 - first)
+        same('the count of samples', len(stored), 1 if info & 0x800 else count)
+        return [struct.unpack('<%d%s' % (len(one) // struct.calcsize(form), form), one) for one in stored]
+
+    def tuples(flat, n):
+        return [tuple(flat[i:i + n]) for i in range(0, len(flat), n)]
+
+    version, library, top, meta, timing, shared = group(struct.unpack_from('<Q', data, 8)[0])
+    same('the versions', [struct.unpack('<I', block(one))[0] for one in (version, library)], [0, 10500])
+    same('the rate', b'_ai_DCC_FPS=25' in block(meta), True)
+    same('the shared words', block(shared), b'')
+    timing = block(timing)
+    same('the first times', struct.unpack_from('<IdId', timing), (last + 1 - first, 1, 1, 0))
+    count, period, n = struct.unpack_from('<IdI', timing, 24)
+    same('the counts of times', (count, period, n), (last + 1 - first, sys.float_info.max / 32, last + 1 - first))
+    same('the times', list(struct.unpack_from('<%dd' % n, timing, 40)), times[first:last + 1])
+    none, *objects, names = group(top)
+    names, at, meshes = block(names), 0, {}
+    for place in objects:
+        name, at = words(names, at)
+        same('the mark of a mesh', names[at], 255)
+        meta, at = words(names, at + 1)
+        same('the schema', 'schemaObjTitle=AbcGeom_PolyMesh_v1:.geom' in meta, True)
+        meshes[name] = properties(properties(group(place)[0])['.geom'][3])
+    same('the list of meshes', list(meshes), ['cloth_0', 'cloth_1', 'obstacles'])
+    same('the end of the names', (none, at), (0, len(names) - 32))
+    begin = 0
+    for name, mesh in meshes.items():
+        points = [tuples(one, 3) for one in samples(mesh['P'], 'f', 2)]
+        same('the kind of points', mesh['P'][:1] + mesh['P'][2:3],
+             ((0x35aa if len(points) > 1 else 0x3daa), 'geoScope=vtx;interpretation=point'))
+        for k, box in enumerate(samples(mesh['.selfBnds'], 'd', 1)):
+            same('a box', tuples(box, 3), [tuple(f(p[c] for p in points[k]) for c in range(3)) for f in (min, max)])
+        counts, = samples(mesh['.faceCounts'], 'i', 2)
+        index, = samples(mesh['.faceIndices'], 'i', 2)
+        if name == 'obstacles':
+            same('the triangles', (set(counts), min(index), max(index)), ({3}, 0, len(points[0]) - 1))
+            for k, one in enumerate(points):
+                check_ball(one, first + k)
+            continue
+        for k, one in enumerate(points):
+            same('frame %d of %s' % (first + k, name), one, folder_frame(first + k)[begin:begin + len(one)])
+        mine = [i for i, face in enumerate(faces) if begin <= face[0] < begin + len(points[0])]
+        same('the counts of ' + name, list(counts), [len(faces[i]) for i in mine])
+        same('the faces of ' + name, list(index), [v - begin for i in mine for v in reversed(faces[i])])
+        uv = properties(mesh['uv'][3])
+        values, numbers = tuples(samples(uv['.vals'], 'f', 2)[0], 2), samples(uv['.indices'], 'I', 2)[0]
+        wanted = [pair for i in mine for pair in reversed(corners[i])]
+        if len(numbers) != len(wanted) or any(abs(a - b) > 1e-6 for n, p in zip(numbers, wanted) for a, b in zip(values[n], p)):
+            sys.exit('uv of %s differ' % name)
+        begin += len(points[0])
+
+
+{'abc': check_abc, 'usda': check_usd, 'usd': check_usd, 'glb': check_gltf, 'obj': check_obj}[path.rsplit('.')[-1]]()

@@ -1,5 +1,5 @@
 #!/bin/sh
-# duite-view --export: frames of two cloths and a moving ball as USD, glTF and OBJ have the state's positions as float32, and the mesh.
+# duite-view --export: frames of two cloths and a moving ball as USD, Alembic, glTF and OBJ have the state's positions as float32, and the mesh.
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
 skip_unless "$DUITE_VIEW"
@@ -24,7 +24,7 @@ sees() { # a coordinate that differs by its last bit
     sed 's/-0\.100000001,/-0.100000009,/' "$scratch/a.usda" > "$scratch/b.usda" && ! cmp -s "$scratch/a.usda" "$scratch/b.usda" && ! reads b.usda 0:3
 }
 ok "a run of two cloths" "$DUITE_CLOTH" "$scratch/two.yaml" --quiet --output "$scratch/frames"
-for frames in a.usda-:-0:3 some.usd-1:2-1:2; do
+for frames in a.usda-:-0:3 some.usd-1:2-1:2 a.abc-:-0:3 some.abc-1:2-1:2 one.abc-3:3-3:3; do
     file=${frames%%-*} rest=${frames#*-}
     ok "writes $file, frames ${rest%-*}" export_to "$file" --frames "${rest%-*}"
     ok "$file has the cloths and the ball of each frame" reads "$file" "${rest#*-}"
@@ -46,9 +46,13 @@ again() { # the same vertices, in the same order
         grep '^v ' "$scratch/again.obj" > "$scratch/vertices" && grep '^v ' "$scratch/a.obj" | head -n "$(wc -l < "$scratch/vertices")" | cmp - "$scratch/vertices"
 }
 if grep -q 'define HAVE_ASSIMP 1' config.h; then ok "a cloth of glTF is read back" again; fi
-ok "another ending is refused" refuses "ends in .usda, .usd, .glb or .obj, not" export_to a.fbx
+ok "another ending is refused" refuses "ends in .usda, .usd, .abc, .glb or .obj, not" export_to a.fbx
 ok "a frame that is not there is refused" refuses "4 frames, 0 to 3: no frame 9" export_to c.glb --frame 9
 ok "frames that are not there are refused" refuses "4 frames, 0 to 3: no frame 9" export_to c.usda --frames 2:9
-ok "several frames in one of glTF are refused" refuses "--frames is of films, of USD and of the check" export_to c.glb --frames 1:2
+ok "several frames in one of glTF are refused" refuses "--frames is of films, of USD, of Alembic and of the check" export_to c.glb --frames 1:2
 exits 1 "a file that cannot be written" "$DUITE_VIEW" "$scratch/frames" --export "$scratch/nowhere/c.glb"
+full() { ln -s /dev/full "$scratch/full.abc" && ! export_to full.abc 2> "$scratch/said" && cat "$scratch/said" && grep -q "cannot write .*full.abc: No space left" "$scratch/said"; }
+if test -w /dev/full; then ok "a full disk is said" full; fi
+pipe() { mkfifo "$scratch/p.abc" && { cat "$scratch/p.abc" > /dev/null & } && export_to p.abc; }
+ok "a pipe is refused" refuses "p.abc: Alembic goes to a file, not to a pipe" pipe
 ok "what was refused left no file" test ! -e "$scratch/c.glb" -a ! -e "$scratch/c.usda"

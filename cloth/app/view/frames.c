@@ -131,7 +131,7 @@ static bool ends_with(const char *path, const char *ending)
 
 bool view_frames_exports_many(const char *path)
 {
-    return ends_with(path, ".usda") || ends_with(path, ".usd");
+    return ends_with(path, ".usda") || ends_with(path, ".usd") || ends_with(path, ".abc");
 }
 
 bool view_frames_can_export(const char *path)
@@ -165,7 +165,11 @@ int view_frames_export(struct output_cache *cache, const char *folder,
     }
     int code = find_frame(cache, folder, frames->last, &last, error);
     code = code ? code : find_frame(cache, folder, frames->first, &first, error);
-    return code ? code : view_export_usd(cache, first, last, frames->path, error);
+    if (code)
+        return code;
+    return ends_with(frames->path, ".abc")
+               ? view_export_abc(cache, first, last, frames->path, error)
+               : view_export_usd(cache, first, last, frames->path, error);
 }
 
 /* ---- The check ---- */

@@ -31,9 +31,9 @@ struct view_frames {
 int view_frames_film(struct view_show *show, const struct view_frames *frames,
                      struct cloth_error *error);
 
-/* Writes a file for other programs, whose ending says of which kind: .usd or .usda the frames from
- * first to last, .glb or .obj one frame. view_frames_can_export: there is such a kind. Errors: as
- * of pictures, and of cloth/view/export.h. */
+/* Writes a file for other programs, whose ending says of which kind: .usd, .usda or .abc the frames
+ * from first to last, .glb or .obj one frame. view_frames_can_export: there is such a kind. Errors:
+ * as of pictures, and of cloth/view/export.h. */
 bool view_frames_can_export(const char *path);
 bool view_frames_exports_many(const char *path);
 int view_frames_export(struct output_cache *cache, const char *folder,

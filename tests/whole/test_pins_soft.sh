@@ -171,6 +171,15 @@ along() {
 }
 ok "an edge of a panel of a pattern" along
 ok "of an OBJ file with its seams" along --set 'cloths[0].mesh={file: skirt.obj}' --set 'cloths[0].seams={file: skirt.seams.json, state: open}'
+band() { # SETTING...: an elastic along the edge is the one along its vertices, and another one than none
+    for how in "edge: {panel: skirt, edge: 3}" "vertices: [$(paste -sd, wanted)]"; do
+        run skirt.yaml "$@" --set "cloths[0].bands=[{$how, length: 0.1, ea: 20}]" --report report.json && value state_hash >> hashes || return 1
+    done
+    run skirt.yaml "$@" --report report.json && value state_hash >> hashes && cat hashes && test "$(sed -n 1p hashes)" = "$(sed -n 2p hashes)" &&
+        test "$(sort -u hashes | wc -l)" = 2 && rm hashes
+}
+ok "a band along it" band
+ok "and along that of the OBJ file" band --set 'cloths[0].mesh={file: skirt.obj}' --set 'cloths[0].seams={file: skirt.seams.json, state: open}'
 
 # ---- All of it at once: a sheet that falls on a moving ball by weights, is led, and let go; with contact, on ranks, after a restart.
 awk 'BEGIN { for (v = 0; v < 400; v++) { w = 1 - int(v / 20) / 6; print (w > 0 ? w : 0) } }' > sheet.txt

@@ -29,11 +29,14 @@ static int build_band(struct model_band *band, uint32_t c, const struct mesh_edg
                       const struct scene_tree *tree, int node)
 {
     const struct model_cloth *cloth = tree->model->cloths + c;
-    const uint32_t *vertex = band->pick.vertices, n = band->pick.n_vertices;
+    const int edge = scene_tree_get(tree, node, "edge");
     double all = 0;
-    int code = scene_build_check_path(vertex, n, "a band", cloth, edges, tree,
-                                      scene_tree_get(tree, node, "vertices")) ||
-               scene_build_size(&band->size, tree, scene_tree_get(tree, node, "size"));
+    int code = scene_build_pick(&band->pick, tree, node, cloth);
+    const uint32_t *vertex = band->pick.vertices, n = band->pick.n_vertices;
+    code = code ||
+           scene_build_check_path(vertex, n, "a band", cloth, edges, tree,
+                                  edge ? edge : scene_tree_get(tree, node, "vertices")) ||
+           scene_build_size(&band->size, tree, scene_tree_get(tree, node, "size"));
     for (uint32_t i = 1; i < n && !code; i++)
         all += edge_length(cloth, edges, vertex + i - 1);
     for (uint32_t i = 1; i < n && !code; i++)

@@ -17,7 +17,10 @@ int scene_build_check_path(const uint32_t *vertices, uint32_t n, const char *wha
         return tree->error->code;
     for (uint32_t i = 1; i < n; i++)
         if (!mesh_edges_get(edges, vertices[i - 1], vertices[i]))
-            return scene_tree_fail(tree, scene_tree_item(tree, list, i),
+            return scene_tree_fail(tree,
+                                   scene_tree_is(tree, list, YAML_MAPPING_NODE)
+                                       ? list
+                                       : scene_tree_item(tree, list, i),
                                    "there is no edge between vertices %u and %u of cloth '%.60s', "
                                    "which %s has one after the other; such two are expected",
                                    vertices[i - 1], vertices[i], cloth->name, what);

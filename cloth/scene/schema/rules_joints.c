@@ -115,6 +115,7 @@ const struct scene_rule scene_fold = {
 
 static const struct scene_rule band_keys[] = {
     PICK_VERTICES(struct model_band, pick.),
+    PICK_EDGE(struct model_band, pick.),
     {"length", SCENE_NUMBER, "m", .required = true, .range = SCENE_POSITIVE,
      INTO(struct model_band, length),
      .about = "at rest, of all of it; its parts have it as edges have theirs"},

@@ -51,6 +51,11 @@
     {"group", SCENE_TEXT, .choice = true, MEANS(type, pick kind, MODEL_PICK_VERTICES), \
      .about = "all vertices of a group of the mesh's faces: of an OBJ file, or a panel", \
      .shared = "Picking vertices"}
+#define PICK_EDGE(type, pick) \
+    {"edge", SCENE_MAP, .choice = true, .inside = scene_panel_edge_keys, \
+     MEANS(type, pick kind, MODEL_PICK_VERTICES), \
+     .about = "all vertices along an edge of a panel, both ends included", \
+     .shared = "Picking vertices"}
 #define PICK(type) \
     PICK_VERTICES(type, pick.), \
     {"nearest", SCENE_LIST, "m", .choice = true, VECTOR, \
@@ -60,10 +65,7 @@
      .about = "of nearest: and all vertices within it", .shared = "Picking vertices"}, \
     PICK_BOX(type, pick.), \
     PICK_GROUP(type, pick.), \
-    {"edge", SCENE_MAP, .choice = true, .inside = scene_panel_edge_keys, \
-     MEANS(type, pick.kind, MODEL_PICK_VERTICES), \
-     .about = "all vertices along an edge of a panel, both ends included", \
-     .shared = "Picking vertices"}
+    PICK_EDGE(type, pick.)
 /* clang-format on */
 
 /* Names are compared with each other; a scene is read once for each phase. */

@@ -22,6 +22,7 @@ enum {
     CHECK,
     CHECK_INTERSECTIONS,
     CHECKPOINT,
+    FRAMES,
     OUTPUT,
     QUIET,
     REPORT,
@@ -76,6 +77,10 @@ static const struct argp_option OPTIONS[] = {
      1},
     {"quiet", QUIET, NULL, 0, "neither progress nor summary", 1},
     {"end", END, "SECONDS", 0, "simulated time, instead of the scene's time.end", 2},
+    {"frames", FRAMES, "A:B", 0,
+     "make frames from A to B only, and end with B; either may be left out. The run begins at time "
+     "0 all the same; frame A is the first one in the folder",
+     2},
     {"grain", GRAIN, "VERTICES", 0, "vertices a block, instead of the scene's grain", 2},
     {"set", SET, "KEY=VALUE", 0,
      "change a value of the scene, such as time.h=0.002 or cloths[0].mesh.grid.nx=40; may be "
@@ -172,25 +177,30 @@ static error_t add_key(struct simulate_options *run, const char *option, const c
     return ENOMEM;
 }
 
-/* A number up to the character, or the default if there is none. */
-static const char *parse_step(const char *text, uint64_t otherwise, uint64_t *step)
-{
-    char *end = (char *)text;
-    errno = 0;
-    *step = *text >= '0' && *text <= '9' ? strtoull(text, &end, 10) : otherwise;
-    return errno ? NULL : end;
-}
-
 static error_t parse_steps(duite_options *runtime, struct argp_state *state, const char *text)
 {
-    const char *colon = parse_step(text, 0, &runtime->trace_first);
-    const char *end =
-        colon && *colon == ':' ? parse_step(colon + 1, UINT64_MAX, &runtime->trace_end) : NULL;
-    if (end && !*end && runtime->trace_first < runtime->trace_end)
+    runtime->trace_first = 0;
+    runtime->trace_end = UINT64_MAX;
+    if (options_range(text, &runtime->trace_first, &runtime->trace_end) &&
+        runtime->trace_first < runtime->trace_end)
         return 0;
     argp_failure(state, 0, 0,
                  "--trace-steps %s: two steps with a colon between them are expected, the first "
                  "one smaller, such as 10:20, 10: or :20",
+                 text);
+    return EINVAL;
+}
+
+static error_t parse_frames(struct simulate_options *run, struct argp_state *state,
+                            const char *text)
+{
+    run->first_frame = 0;
+    run->last_frame = UINT64_MAX;
+    if (options_range(text, &run->first_frame, &run->last_frame))
+        return 0;
+    argp_failure(state, 0, 0,
+                 "--frames %s: two numbers of frames with a colon between them are expected, the "
+                 "second one not smaller, such as 24:48, 24: or :48",
                  text);
     return EINVAL;
 }
@@ -289,6 +299,8 @@ static error_t cloth_cli_parse(int key, char *value, struct argp_state *state)
         return parse_name(state, "--save-system", value, &run->save_system);
     case CHECKPOINT:
         return parse_checkpoint(&run->checkpoint, state, value);
+    case FRAMES:
+        return parse_frames(run, state, value);
     case CHECK_INTERSECTIONS:
         run->check_intersections = true;
         return 0;

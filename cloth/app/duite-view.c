@@ -2,6 +2,7 @@
 #include "config.h"
 
 #include "cloth/app/cli.h"
+#include "cloth/app/run/options.h"
 #include "cloth/app/view/frames.h"
 #include "cloth/app/view/live.h"
 #include "cloth/app/view/start.h"
@@ -39,36 +40,23 @@ struct options {
 
 /* ---- The command line ---- */
 
-/* A number of a frame, up to *end. */
-static bool read_number(const char *text, uint64_t *frame, char **end)
-{
-    errno = 0;
-    *frame = strtoull(text, end, 10);
-    return *text >= '0' && *text <= '9' && !errno && *frame <= INT64_MAX;
-}
-
 static bool read_frame(const char *text, void *to, struct argp_state *state)
 {
-    struct options *options = to;
+    uint64_t *frame = &((struct options *)to)->frame;
     char *end = NULL;
     (void)state;
-    options->frame = VIEW_LAST_FRAME;
-    return strcmp(text, "last") == 0 || (read_number(text, &options->frame, &end) && !*end);
+    errno = 0;
+    *frame = strcmp(text, "last") == 0 ? VIEW_LAST_FRAME : strtoull(text, &end, 10);
+    return !end || (*text >= '0' && *text <= '9' && !errno && !*end && *frame <= INT64_MAX);
 }
 
-/* A:B, where A or B may be left out. */
 static bool read_frames(const char *text, void *to, struct argp_state *state)
 {
     struct options *options = to;
-    char *end = (char *)(uintptr_t)text;
     (void)state;
     options->first = 0;
     options->last = VIEW_LAST_FRAME;
-    if ((*text != ':' && !read_number(text, &options->first, &end)) || *end++ != ':')
-        return false;
-    text = end;
-    return (!*text || (read_number(text, &options->last, &end) && !*end)) &&
-           options->first <= options->last;
+    return options_range(text, &options->first, &options->last);
 }
 
 static bool read_export(const char *text, void *to, struct argp_state *state)

@@ -84,6 +84,8 @@ static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
     const struct simulate_options *options = run->options;
     const bool last = phases_is_last(&run->phases), goes_on = run->phases.n > 1;
     struct flow_output output = {.before = phases_before(&run->phases),
+                                 .first_frame = options->first_frame,
+                                 .end_frame = options->last_frame + 1, /* 0: none */
                                  .end = last ? NULL : run->phases.end};
     outputs_receive(&run->outputs, options, run->wants_frames, last, &output);
     const bool wants = run->wants_frames || options->save_system || goes_on;
@@ -174,13 +176,13 @@ int simulate_execute(struct run *run)
 static int run_phases(struct run *run)
 {
     int code = simulate_execute(run);
-    while (!code && !run->report.stopped && !phases_is_last(&run->phases)) {
+    while (!code && !run->report.stopped && !phases_are_over(&run->phases)) {
         code = simulate_next(run);
         if (code || run->stopped_before)
             break;
         code = simulate_execute(run);
     }
-    if (run->stopped_before) { /* between two phases: nothing else closed them */
+    if (!code && !phases_is_last(&run->phases)) { /* between two phases: nothing else closed them */
         struct cloth_error error = {0};
         outputs_close(&run->outputs, &error);
         return simulate_agree(run, &error);
@@ -226,13 +228,28 @@ struct summary simulate_sum_up(const struct run *run, const struct flow_report *
                             .lower_bound = NAN};
 }
 
+/* True, on rank 0, if the run ended before the first frame that was asked for. */
+static bool made_no_frame(const struct run *run)
+{
+    const uint64_t first = run->options->first_frame, n = run->phases.total.frames;
+    if (!first || n > first)
+        return false;
+    fprintf(
+        stderr,
+        "duite-cloth: warning: the run ended before frame %llu, where --frames begins: no frame "
+        "was made\n",
+        (unsigned long long)first);
+    return true;
+}
+
 /* On rank 0. */
 static void report_run(struct run *run, struct summary *summary, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
     struct outputs *outputs = &run->outputs;
     summary->intersections = options->check_intersections ? &outputs->found : NULL;
-    summary->drape = outputs->drape.n ? &outputs->drapes : NULL;
+    const bool none = made_no_frame(run);
+    summary->drape = outputs->drape.n && !none ? &outputs->drapes : NULL;
     if (options->runtime.trace)
         find_bounds(options->runtime.trace, &summary->critical_path, &summary->lower_bound);
     if (run->report.stopped || run->stopped_before)

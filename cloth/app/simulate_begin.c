@@ -38,6 +38,8 @@ static int check_same(const struct run *run, struct cloth_error *error)
     for (size_t i = 0; i < options->n_sets; i++)
         asked = XXH64(options->sets[i].text, strlen(options->sets[i].text), asked);
     asked = XXH64(&options->checkpoint, sizeof options->checkpoint, asked + !options->restart);
+    asked = XXH64(&options->first_frame, sizeof options->first_frame, asked);
+    asked = XXH64(&options->last_frame, sizeof options->last_frame, asked);
     first = asked;
     MPI_Bcast(&first, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
     int other = asked == first ? run->ranks : run->rank;
@@ -46,7 +48,7 @@ static int check_same(const struct run *run, struct cloth_error *error)
         return CLOTH_OK;
     return cloth_fail(error, CLOTH_E_INPUT,
                       "ranks 0 and %d were started with different scenes, or different values for "
-                      "them (--set, --checkpoint and the like): give all ranks the same",
+                      "them (--set, --frames, --checkpoint and the like): give all ranks the same",
                       other);
 }
 
@@ -64,6 +66,7 @@ static int find_elastic(struct run *run, struct cloth_error *error)
 static int simulate_begin_cut(struct run *run, struct cloth_error *error)
 {
     struct untangle_result untangled = {0}, *all = &run->untangled;
+    phases_begin(&run->phases);
     int code = flow_prepare(&run->flow, run->model, run->ranks, error);
     if (!code)
         code = start_untangle(run->model, &run->flow, run->ranks, !run->options->quiet, &untangled,
@@ -87,6 +90,8 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
     const struct simulate_options *options = run->options;
     int code = phases_read(&run->phases, options->scene, options->n_sets, options->sets, error);
     run->phases.keeps_start = options->checkpoint > 0;
+    if (!code)
+        code = phases_end_with(&run->phases, options->first_frame, options->last_frame, error);
     if (!code && options->restart)
         code = outputs_lock(&run->outputs, options, error);
     if (!code && options->restart)

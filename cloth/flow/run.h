@@ -54,7 +54,7 @@ struct flow_report {
         contact_cut_momentum; /* kg m/s: changed by pushes and cuts, summed over the steps made */
     uint64_t steps_retaken;   /* how often one by BDF2 gained energy and was made again by implicit
                                  Euler */
-    uint64_t frames;          /* with those before the run */
+    uint64_t frames;          /* with those before the run, and before flow_output.first_frame */
     uint64_t cg_iterations_total, cg_iterations_max; /* iterations: of the steps made */
     double shortest_step;                            /* s */
     double simulated_seconds, wall_seconds;          /* wall: from the first step on */
@@ -86,7 +86,7 @@ struct flow_report {
         energy_lowest_unlent, energy_gained_unlent, /* of it less energy_lent */
         energy_gained; /* the most that it rose above an earlier one; NaN but with energy_steps */
     uint64_t state_hash;
-    uint64_t last_frame;        /* the last frame written */
+    uint64_t last_frame;        /* the last frame written, as it was numbered */
     bool stopped;               /* a stop was requested before the end */
     double rest_seconds;        /* when the run was found at rest, s; NaN: it was not */
     uint64_t seams, seams_open; /* that are pulled; of these, open at the end by more than the
@@ -133,6 +133,9 @@ struct flow_output {
     /* On rank 0: room for 6 numbers a vertex, the end of the run, as model_cloth.start has them.
      * NULL: it is not wanted. */
     double (*end)[6];
+    /* The first of the run's frames that is handed over, whose number is 0 then, and the one before
+     * which they end; 0: there is no end. The same on all ranks. */
+    uint64_t first_frame, end_frame;
     /* Frames in their order; NULL: none are wanted. */
     /* position: vertices x 3 in the numbering of the input meshes, cloth after cloth. time in
      * seconds. Returns 0 or a code and fills error. */

@@ -211,6 +211,7 @@ static void print_effort(FILE *file, const struct summary *summary)
 static void print_results(FILE *file, const struct summary *summary)
 {
     const struct flow_report *report = summary->report;
+    const uint64_t first = summary->options->first_frame;
     fprintf(file, "  largest stretch  %.6f times the length at rest at the end",
             report->max_stretch);
     if (!isnan(report->stretch_highest))
@@ -218,8 +219,8 @@ static void print_results(FILE *file, const struct summary *summary)
     fputc('\n', file);
     fprintf(file, "  state hash       %016" PRIx64 "\n", report->state_hash);
     if (summary->options->output)
-        fprintf(file, "  frames           %" PRIu64 " in %s\n", report->frames,
-                summary->options->output);
+        fprintf(file, "  frames           %" PRIu64 " in %s\n",
+                report->frames > first ? report->frames - first : 0, summary->options->output);
     else
         fprintf(file, "  frames           not written (--output DIR)\n");
     if (summary->drape)

@@ -5,11 +5,32 @@
 #include "cloth/base/file.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+/* ---- Values ---- */
+
+/* A number up to *end, if one begins there. */
+static bool read_end(const char *text, uint64_t *number, char **end)
+{
+    *end = (char *)(uintptr_t)text;
+    if (*text < '0' || *text > '9')
+        return true;
+    errno = 0;
+    *number = strtoull(text, end, 10);
+    return !errno && *number <= INT64_MAX;
+}
+
+bool options_range(const char *text, uint64_t *first, uint64_t *last)
+{
+    char *end;
+    return read_end(text, first, &end) && *end == ':' && read_end(end + 1, last, &end) && !*end &&
+           *first <= *last;
+}
 
 /* ---- The environment ---- */
 
@@ -22,6 +43,7 @@ static const char *option_name_of(const char *variable, const char *const *names
 void environment_begin(struct simulate_options *run)
 {
     run->runtime = duite_options_default();
+    run->last_frame = UINT64_MAX;
     run->report = run->runtime.report; /* ours has more */
     run->runtime.report = NULL;
     run->scheduler_name = option_name_of("DUITE_SCHEDULER", duite_scheduler_names());

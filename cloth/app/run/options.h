@@ -13,17 +13,21 @@ struct simulate_options {
     size_t n_sets;     /* changes to it, in the order given */
     struct scene_set *sets;
     const char *output, *report; /* folder of frames, JSON file; NULL: none */
-    const char *restart;     /* the folder of frames of a run to go on with, which is `output`, too;
-                              * NULL:     none */
-    double checkpoint;       /* s: between two checkpoints; 0: none */
-    const char *save_system; /* folder; NULL: none */
-    const char *live;        /* address of the live view (live_is_address); NULL: none */
-    duite_options runtime;   /* policies are never NULL when it runs */
+    const char *restart; /* the folder of frames of a run to go on with, which is `output`, too;
+                          * NULL:     none */
+    double checkpoint;   /* s: between two checkpoints; 0: none */
+    uint64_t first_frame, last_frame; /* that are made; UINT64_MAX: up to the end of the scene */
+    const char *save_system;          /* folder; NULL: none */
+    const char *live;                 /* address of the live view (live_is_address); NULL: none */
+    duite_options runtime;            /* policies are never NULL when it runs */
     const char *scheduler_name, *mapping_name, *balance_name;
     bool check_intersections; /* of each frame */
     bool check;               /* only says what the run would take */
     bool quiet;               /* neither progress nor summary */
 };
+
+/* Reads A:B, where A or B may be left out: digits, A <= B. What is left out stays. Pure. */
+bool options_range(const char *text, uint64_t *first, uint64_t *last);
 
 /* Sets the defaults of options: the environment, else the built-in values. environment_check looks
  * for errors after the options, which may replace a value. Local. */

@@ -79,6 +79,13 @@ static int open_forces(struct outputs *to, const struct model *model, const stru
                : output_forces_forget(folder, error);
 }
 
+/* How many of the run's first frames are in the folder. */
+static uint64_t outputs_count(const struct outputs *to, uint64_t frames)
+{
+    const uint64_t first = to->options->first_frame;
+    return frames > first ? frames - first : 0;
+}
+
 /* Opens the files, of the first phase of this run. resumed: an earlier run's files go on. */
 static int open_output(struct outputs *to, const struct phases *phases, const struct flow *flow,
                        struct output_setup *setup, const struct flow_resumed *resumed,
@@ -86,7 +93,8 @@ static int open_output(struct outputs *to, const struct phases *phases, const st
 {
     const struct model *model = phases_model(phases);
     const uint64_t rows = phases_before(phases).steps + (resumed ? resumed->steps : 0) + 1;
-    const uint64_t *n_frames = resumed ? &resumed->frames : NULL;
+    const uint64_t stay = resumed ? outputs_count(to, resumed->frames) : 0;
+    const uint64_t *n_frames = resumed ? &stay : NULL;
     setup->n_frames = n_frames;
     int code = output_settler_open(&to->settler, error);
     setup->settler = to->settler;
@@ -198,7 +206,7 @@ int outputs_go_on(struct outputs *to, const struct phases *phases,
     int code = open_check(to, phases, apart, error);
     if (!code)
         code = outputs_colours_rest(&to->colours, phases_model(phases),
-                                    phases_before(phases).frames, error);
+                                    outputs_count(to, phases_before(phases).frames), error);
     if (!code)
         code = outputs_hdf5_go_on(&to->hdf5, phases_model(phases), error);
     return code || !(to->frames || to->live) ? code

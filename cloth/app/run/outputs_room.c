@@ -20,11 +20,13 @@ static double room_of_colours(const struct model *model, uint64_t n_vertices)
 }
 
 /* Each phase writes its colours. */
-static void extent_add(struct outputs_extent *all, const struct model *model,
+static void extent_add(struct outputs_extent *all, const struct phases *phases, uint32_t phase,
                        const struct flow *flow)
 {
-    all->steps += round(model->end / model->h);
-    all->seconds += model->end;
+    const struct model *model = phases->models + phase;
+    const double seconds = phases_seconds(phases, phase, all->seconds);
+    all->steps += round(seconds / model->h);
+    all->seconds += seconds;
     all->bytes += room_of_colours(model, flow_vertices(flow));
     all->may_end = all->may_end || model->rest.speed > 0 || model->sewn > 0;
 }
@@ -46,10 +48,12 @@ int outputs_extent_find(struct outputs_extent *all, const struct simulate_option
     const struct model *model = phases_model(phases);
     struct outputs_setup made;
     double frame = 0;
-    *all = (struct outputs_extent){.frames = 1};
+    *all = (struct outputs_extent){0};
     for (uint32_t i = 0; i < phases->n; i++)
-        extent_add(all, phases->models + i, flow);
-    all->frames += floor(model->fps * all->seconds);
+        extent_add(all, phases, i, flow);
+    all->frames = options->last_frame < UINT64_MAX ? (double)options->last_frame
+                                                   : floor(model->fps * all->seconds);
+    all->frames += 1 - (double)options->first_frame;
     const int code = outputs_setup_make(&made, options, phases, apart, error);
     if (!code)
         all->bytes += output_begin_bytes(&made.setup, &frame);
@@ -82,7 +86,7 @@ int outputs_check_room(const struct outputs_extent *all, const struct model *mod
             stderr,
             "duite-cloth: warning: %.300s: %s: frames and probes take up to %.3g GB in %.200s\n",
             place, what, 1e-9 * bytes, folder);
-    if (frames > OFTEN * steps)
+    if (frames > OFTEN * fmax(steps, 1))
         fprintf(stderr,
                 "duite-cloth: warning: %.300s: %s, but there are %.0f steps: each is shown %.0f "
                 "times; time.fps = %g shows each once\n",

@@ -4,6 +4,7 @@
 
 #include "cloth/base/memory.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <mpi.h>
 #include <stdio.h>
@@ -40,6 +41,53 @@ int phases_share(struct phases *phases, struct cloth_error *error)
     if (of[0] && !phases->done)
         phases->done = cloth_alloc(of[0], sizeof *phases->done, error);
     return error->code;
+}
+
+/* ---- The end ---- */
+
+int phases_end_with(struct phases *phases, uint64_t first, uint64_t last, struct cloth_error *error)
+{
+    const double ROUNDED = 1e-9; /* of the time: more than rounding comes to */
+    const double fps = phases->models->fps;
+    double seconds = 0;
+    for (uint32_t i = 0; i < phases->n; i++)
+        seconds += phases->models[i].end;
+    const double most = floor(fps * seconds * (1 + ROUNDED));
+    const uint64_t named = last == UINT64_MAX ? first : last;
+    if ((double)named > most)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "--frames: there is no frame %" PRIu64
+                          ", as the scene ends at %g s, with "
+                          "frame %.0f (time.fps is %g): frames up to it are expected, or a later "
+                          "--end",
+                          named, seconds, most, fps);
+    phases->first_frame = first;
+    phases->until = last == UINT64_MAX ? (double)INFINITY : (double)last / fps;
+    return CLOTH_OK;
+}
+
+/* The step whose end is nearest to the last frame is the last one, as frames show steps. */
+double phases_seconds(const struct phases *phases, uint32_t phase, double begin)
+{
+    const double ROUNDED = 1e-6; /* of a step: as flow/observe/frames.c has it */
+    const struct model *model = phases->models + phase;
+    const double steps = floor((phases->until - begin) / model->h + 0.5 + ROUNDED);
+    return fmax(0, fmin(model->end, steps * model->h));
+}
+
+void phases_begin(struct phases *phases)
+{
+    struct model *model = phases_model(phases);
+    phases->done[phases->now].end = model->end;
+    model->end = phases_seconds(phases, phases->now, phases->total.simulated_seconds);
+}
+
+bool phases_are_over(const struct phases *phases)
+{
+    const double now = phases->total.simulated_seconds;
+    int over = phases_is_last(phases) || !(phases_seconds(phases, phases->now + 1, now) > 0);
+    MPI_Bcast(&over, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    return over;
 }
 
 struct flow_before phases_before(const struct phases *phases)
@@ -176,7 +224,6 @@ void phases_add(struct phases *phases, const struct flow_report *report)
                                    : NAN;
     done->simulated_seconds = report->simulated_seconds;
     done->wall_seconds = report->wall_seconds;
-    done->end = phases_model(phases)->end;
     snprintf(done->ended, sizeof done->ended, "%s", ended(report, phases_model(phases)->sewn > 0));
     *total = *report;
     if (!phases->now)

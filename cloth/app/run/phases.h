@@ -13,7 +13,7 @@ struct phase_done {
     uint64_t steps;
     double cg_iterations_mean; /* a step; NaN: of an explicit phase */
     double simulated_seconds, wall_seconds;
-    double end;     /* s: its time.end */
+    double end;     /* s: its time.end in the scene */
     char ended[16]; /* a word for the report; empty: it did not begin, is not over, or failed */
 };
 
@@ -24,6 +24,8 @@ struct phases {
     struct phase_done *done;
     double (*end)[6];         /* rank 0, of several: of each vertex, as model_cloth.start has it */
     uint32_t n_vertices;      /* rank 0: of all cloths; meshes are forgotten when a phase runs */
+    uint64_t first_frame;     /* of the run, that is made */
+    double until;             /* s, of all of them, on rank 0: all is over then, or before */
     bool keeps_start;         /* where the phase of now started is kept, too, for checkpoints: */
     double (*start)[6];       /* then: alike; NULL in the first one */
     struct flow_report total; /* of those that are over, as phases_add says */
@@ -68,6 +70,17 @@ static inline bool phases_is_last(const struct phases *phases)
 {
     return phases->now + 1 == phases->n;
 }
+/* Ends all phases with a frame (UINT64_MAX: with the last of the scene), whose number counts from
+ * 0. Error: CLOTH_E_INPUT, there is no such frame, or `first` is none. On rank 0. Local. */
+int phases_end_with(struct phases *phases, uint64_t first, uint64_t last,
+                    struct cloth_error *error);
+/* s: how long a phase is at most that begins at a time, whole steps; 0: it does not begin. */
+double phases_seconds(const struct phases *phases, uint32_t phase, double begin);
+/* Before the next phase, whose model gets that end. On rank 0. Local. */
+void phases_begin(struct phases *phases);
+/* True if none begins after those that are done. Collective. */
+bool phases_are_over(const struct phases *phases);
+
 /* The state that the next phase starts from. The same on all ranks. */
 struct flow_before phases_before(const struct phases *phases);
 

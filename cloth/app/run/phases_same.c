@@ -9,6 +9,7 @@
 
 #include <config.h>
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -177,6 +178,8 @@ char *phases_settings(const struct phases *phases, struct cloth_error *error)
     FILE *to = open_memstream(&text, &size);
     if (to)
         fprintf(to, "version: %s\n", PACKAGE_STRING);
+    if (to && phases->first_frame) /* which is the first one in the folder */
+        fprintf(to, "first of --frames: %" PRIu64 "\n", phases->first_frame);
     for (uint32_t i = 0; to && i < phases->n && !code; i++)
         code = put_phase(to, phases, i, error);
     const int bad = !to || ferror(to), closed = to ? fclose(to) : 0;

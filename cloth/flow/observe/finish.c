@@ -219,9 +219,10 @@ int flow_last_frame(struct flow_state *state)
     uint64_t broadcast[FLOW_BROADCAST] = {[FLOW_BROADCAST_FRAMES] = state->next_frame};
     if (flow_shows(state) && broadcast_result(state, broadcast))
         return state->code;
-    state->report->frames = broadcast[FLOW_BROADCAST_FRAMES];
-    state->report->last_frame =
-        broadcast[FLOW_BROADCAST_FRAMES] ? broadcast[FLOW_BROADCAST_FRAMES] - 1 : 0;
+    const uint64_t first = flow_first_frame(state), frames = broadcast[FLOW_BROADCAST_FRAMES];
+    const uint64_t before = first < state->next_frame ? first : state->next_frame;
+    state->report->frames = frames > before ? frames : before;
+    state->report->last_frame = frames > first ? frames - first - 1 : 0;
     return DUITE_OK;
 }
 

@@ -100,10 +100,10 @@ FLOW_KERNEL_WITH(frame, FLOW_OUTPUT, struct frame_args, (RW(token), ALL(x)), .si
     if (!places)
         put_unused(flow, false);
     if (failed && flow->output->written)
-        flow->frames = flow->output->written(flow->output->context);
+        flow->frames = flow->output->first_frame + flow->output->written(flow->output->context);
     if (failed)
         return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
-    flow->frames = on->args->frame + 1;
+    flow->frames = flow->output->first_frame + on->args->frame + 1;
     return 0;
 }
 
@@ -129,18 +129,18 @@ static int fork_frame(struct flow_state *state, double tick, bool kept)
 {
     int64_t token;
     const struct flow_before before = flow_before(state);
-    const uint64_t number = state->next_frame++;
+    const uint64_t number = state->next_frame++, first = flow_first_frame(state);
     const struct frame_args args = {
-        .frame = number, .time = before.time + tick * state->flow->model->h / FLOW_TICKS};
+        .frame = number - first, .time = before.time + tick * state->flow->model->h / FLOW_TICKS};
     state->shown = tick;
-    if (!flow_shows(state)) /* only counted */
+    if (!flow_shows(state) || number < first) /* only counted */
         return DUITE_OK;
     if (number > before.frames && flow_get(state, FLOW_FIELD_token, &token))
         return state->code;
     if (flow_shows_places(state))
         find_homes(state);
     fork_vector(state, args, POSITIONS, kept ? FLOW_FIELD_kept_x : FLOW_FIELD_x);
-    if (flow_shows_beside(state, number))
+    if (flow_shows_beside(state, args.frame))
         fork_vector(state, args, BESIDE, kept ? FLOW_FIELD_kept_v : FLOW_FIELD_v);
     if (flow_shows_contact(state))
         fork_vector(state, args, FORCES,
@@ -148,17 +148,23 @@ static int fork_frame(struct flow_state *state, double tick, bool kept)
     return state->code;
 }
 
+static bool are_over(const struct flow_state *state)
+{
+    const uint64_t end = state->output ? state->output->end_frame : 0;
+    return end && state->next_frame >= end;
+}
+
 int flow_frame_last(struct flow_state *state)
 {
     const double now = (double)state->grid.now;
-    return state->shown < now ? fork_frame(state, now, false) : DUITE_OK;
+    return state->shown < now && !are_over(state) ? fork_frame(state, now, false) : DUITE_OK;
 }
 
 /* Forks the frames that the step shows. Its end shows frames up to `behind` ticks after it. */
 static int fork_frames(struct flow_state *state, double begin, double behind)
 {
     const double now = (double)state->grid.now, middle = (begin + now) / 2;
-    while (!state->code) {
+    while (!state->code && !are_over(state)) {
         const double tick = frame_tick(state, state->next_frame);
         if (!(tick < now + behind))
             break;

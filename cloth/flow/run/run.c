@@ -298,7 +298,7 @@ static int explain(struct flow_state *state, int code)
     state->code = DUITE_OK;
     if (!flow_shows(state))
         return cloth_fail(state->error, why.code, "%s", why.text);
-    if (!state->begun || flow_last_frame(state) || !state->report->frames)
+    if (!state->begun || flow_last_frame(state) || state->report->frames <= flow_first_frame(state))
         return cloth_fail(state->error, why.code, "%.900s; no frame was written", why.text);
     return cloth_fail(state->error, why.code, "%.900s; the last frame is %llu", why.text,
                       (unsigned long long)state->report->last_frame);

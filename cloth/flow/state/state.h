@@ -334,6 +334,12 @@ static inline struct flow_before flow_before(const struct flow_state *state)
     return state->output ? state->output->before : (struct flow_before){0};
 }
 
+/* The run's number of the first frame that is handed over. */
+static inline uint64_t flow_first_frame(const struct flow_state *state)
+{
+    return state->output ? state->output->first_frame : 0;
+}
+
 static inline bool flow_shows(const struct flow_state *state)
 {
     return state->output && state->output->frame;

@@ -28,7 +28,7 @@ struct options {
 
     const struct garment_own *own; /* in place of a pattern */
     const struct garment_own *listed;
-    const char *size;                      /* NULL: it is not given */
+    struct garment_choice choice;          /* the size of an own garment, too */
     const char *measure[GARMENT_MEASURES]; /* NAME=VALUE */
     int n_measures;
 };
@@ -69,7 +69,7 @@ static bool read_listed(const char *text, void *to, struct argp_state *state)
 static bool read_size(const char *text, void *to, struct argp_state *state)
 {
     (void)state;
-    ((struct options *)to)->size = text;
+    ((struct options *)to)->choice.size = text;
     return *text;
 }
 
@@ -99,6 +99,9 @@ static const struct cli_option OPTIONS[] = {
     {"size", 258, "SIZE",
      "The size of an own garment: XS, S, M, L or XL (M); of a DXF file (its sample size)",
      CLI_OTHER, 0, "a size", read_size, 0},
+    {"notches", 263, NULL,
+     "Let edges of a DXF file's panels end at notches, too, so stitches can begin there", CLI_FLAG,
+     TO(choice.notches), NULL, NULL, 0},
     {"measure", 259, "NAME=VALUE",
      "A measure of an own garment that differs from its size's; once for each", CLI_OTHER, 0, NULL,
      read_measure, 0},
@@ -120,10 +123,13 @@ static void garment_cli_finish(void *to, struct argp_state *state)
     if (options->pattern && options->own)
         argp_error(state, "a pattern and --own exclude each other: `%s' is one too many",
                    options->pattern);
+    if (options->own && options->choice.notches)
+        argp_error(state, "--notches is of a DXF file; own garments have none");
     if (!options->own && options->n_measures)
         argp_error(state, "--measure needs --own GARMENT");
-    if (options->own && options->size && garment_size_find(options->size) < 0)
-        argp_error(state, "--size takes one of %s, not `%s'", garment_size_words, options->size);
+    if (options->own && options->choice.size && garment_size_find(options->choice.size) < 0)
+        argp_error(state, "--size takes one of %s, not `%s'", garment_size_words,
+                   options->choice.size);
     if (!options->output && !options->written)
         argp_error(state, "say where the mesh goes: --output FILE");
     if (!options->output && options->body)
@@ -250,13 +256,15 @@ static int garment_cli_take_pattern(struct garment_pattern *pattern, const struc
 {
     double value[GARMENT_MEASURES];
     char unusual[200];
-    int code = options->own ? CLOTH_OK
-                            : scene_read_pattern(pattern, options->pattern, options->size, error);
+    int code = options->own
+                   ? CLOTH_OK
+                   : scene_read_pattern(pattern, options->pattern, &options->choice, error);
     if (!options->own && !code && garment_pattern_unusual(pattern, unusual, sizeof unusual))
         fprintf(stderr, "duite-garment: warning: %s: %s\n", options->pattern, unusual);
     if (!options->own)
         return code;
-    garment_own_size(options->own, garment_size_find(options->size ? options->size : "M"), value);
+    garment_own_size(options->own,
+                     garment_size_find(options->choice.size ? options->choice.size : "M"), value);
     for (int i = 0; i < options->n_measures && !code; i++)
         code = set_measure(options->own, options->measure[i], value, error);
     return code ? code : garment_own_make(pattern, options->own, value, error);

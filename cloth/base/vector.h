@@ -65,13 +65,20 @@ static inline double cloth_angle(const double a[2], const double b[2], const dou
     return (p[0] * p[0] + p[1] * p[1]) * (q[0] * q[0] + q[1] * q[1]);
 }
 
+/* How far along the segment from a to b, 0 to 1, its place nearest to x is. */
+static inline double cloth_segment_part(const double x[2], const double a[2], const double b[2])
+{
+    const double along[2] = {b[0] - a[0], b[1] - a[1]}, to[2] = {x[0] - a[0], x[1] - a[1]};
+    const double length = along[0] * along[0] + along[1] * along[1];
+    const double s = length > 0 ? (to[0] * along[0] + to[1] * along[1]) / length : 0;
+    return s < 0 ? 0 : s > 1 ? 1 : s;
+}
+
 /* Square of the distance from x to the segment from a to b. */
 static inline double cloth_segment_square(const double x[2], const double a[2], const double b[2])
 {
     const double along[2] = {b[0] - a[0], b[1] - a[1]}, to[2] = {x[0] - a[0], x[1] - a[1]};
-    const double length = along[0] * along[0] + along[1] * along[1];
-    double s = length > 0 ? (to[0] * along[0] + to[1] * along[1]) / length : 0;
-    s = s < 0 ? 0 : s > 1 ? 1 : s;
+    const double s = cloth_segment_part(x, a, b);
     const double d[2] = {to[0] - s * along[0], to[1] - s * along[1]};
     return d[0] * d[0] + d[1] * d[1];
 }

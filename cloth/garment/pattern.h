@@ -59,12 +59,18 @@ struct garment_pattern {
 
 void garment_pattern_free(struct garment_pattern *pattern);
 
-/* Reads a DXF file in the profile of AAMA or ASTM (docs/garments.md): the pieces of one size, NULL:
- * of the sample size, or of the only one. Each stands with its grain line upright, the middle of
+/* What is taken of a DXF file. Zeroed, or NULL in its place: the usual. */
+struct garment_choice {
+    const char *size; /* NULL: the sample size, or the only one */
+    bool notches;     /* edges end at notches, too */
+};
+
+/* Reads a DXF file in the profile of AAMA or ASTM (docs/garments.md): the pieces of one size. Each
+ * stands with its grain line upright, the middle of
  * the box around it at the origin. The caller frees the pattern, also after an error. Errors:
  * CLOTH_E_INPUT, with file and line where there is one; CLOTH_E_IO, CLOTH_E_MEMORY. Local. */
-int garment_read_dxf(struct garment_pattern *pattern, const char *path, const char *size,
-                     struct cloth_error *error);
+int garment_read_dxf(struct garment_pattern *pattern, const char *path,
+                     const struct garment_choice *choice, struct cloth_error *error);
 
 /* Checks that it can be sewn from flat cloth. The edges of each panel, in order, are a closed loop
  * through every corner once. Each has a length, and no arc has too small a radius. No edge meets

@@ -45,7 +45,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct garment garment = {0};
     const bool dxf = size > 0 && *data != '{'; /* no JSON begins otherwise */
     const char *path = fuzz_file(dxf ? "panels.dxf" : "panels.json", data, size);
-    if (!scene_read_pattern(&pattern, path, NULL, &error)) {
+    const struct garment_choice choice = {.notches = dxf};
+    if (!scene_read_pattern(&pattern, path, &choice, &error)) {
         const struct garment_fineness fineness = {.edge = fineness_of(&pattern)};
         garment_make(&garment, &pattern, &fineness, &error);
     }

@@ -138,6 +138,44 @@ if test -x "$cloth"; then
 else
     skip "the default T-shirt is sewn" "no duite-cloth"
 fi
+
+# ---- Two squares of a DXF file, which are sewn up to their notches
+
+square() { # NAME: of 0.2 m, notches in the middle of its right and its left side
+    echo "0 BLOCK|8 0|2 $1|0 TEXT|8 1|1 Piece Name: $1|0 TEXT|8 1|1 Size: 38|0 POLYLINE|8 1|70 1|0 VERTEX|8 1|10 0|20 0|0 VERTEX|8 1|10 200|20 0|"
+    echo "0 VERTEX|8 1|10 200|20 200|0 VERTEX|8 1|10 0|20 200|0 SEQEND|8 1|0 POINT|8 4|10 200|20 100|0 POINT|8 4|10 0|20 100|0 ENDBLK|"
+}
+{ echo "0 SECTION|2 BLOCKS|" && square front && square back && echo "0 ENDSEC|0 EOF"; } | tr '|' '\n' | awk 'NF { print $1; sub(/^[0-9]+ /, ""); print }' > bag.dxf
+cat > bag.yaml << 'END'
+schema: 1
+cloths:
+  - mesh:
+      pattern:
+        {file: bag.dxf, size: '38', notches: on, edge: 0.025, place: {front: {translation: [0, 0, 0.01]}, back: {rotation: [0, 180, 0], translation: [0, 0, -0.01]}},
+         stitches: [[{panel: front, edge: 1}, {panel: back, edge: 5}], [{panel: front, edge: 5}, {panel: back, edge: 1}]]}
+    material: m
+    seams: {state: pulled, stiffness: 300, damping: 10}
+materials: {m: {density: 0.2, model: triangles, stretch: 500, shear: 100, damping: {mass: 5}}}
+gravity: [0, 0, 0]
+time: {h: 0.01, end: 0.4, fps: 25}
+END
+bag() { # RANKS: 0.1 m of each side come together, and no more
+    ranks "$1" "$cloth" bag.yaml --quiet --grain 20 --output "bag$1" --report "bag$1.json" --set 'time.sewn={distance: 0.002}' && cat "bag$1.json" &&
+        test "$(value state_hash "bag$1.json")" = "$(value state_hash bag1.json)"
+}
+open_above() { # the upper corners are where they were, the lower ones have met
+    "$DUITE_VIEW" bag1 --export bag.obj && awk '$1 == "v" && ($2 * $2 > 0.0099) { if ($3 > 0.09) up += $4 * $4 > 0.005 * 0.005; if ($3 < -0.09) down += $4 * $4 > 0.002 * 0.002 }
+        END { print up, down; exit up == 0 || down > 0 }' bag.obj
+}
+if test -x "$cloth"; then
+    ok "a bag of DXF pieces is sewn up to its notches" bag 1
+    ok "with the same bits on two ranks" bag 2
+    if test -x "$DUITE_VIEW"; then ok "and is open above them" open_above; fi
+fi
+no_rules() { echo x > bag.rul && refuses "no piece has the size '40'; there are 38; export all sizes as pieces, since grade rules are not read: bag.rul" run bag.dxf --size 40 -e 0.1 -o x.obj; }
+ok "grade rules beside a file of one size are named" no_rules
+ok "notches of an own garment" refuses "--notches is of a DXF file" run --own skirt --notches -e 0.1 -o x.obj
+
 ok "no such body" refuses "none.obj: cannot be opened" run --own skirt -e 0.05 -o x.obj --body none.obj
 ok "a body without a mesh" refuses "--body needs --output" run --own skirt --write-pattern x.json --body box.obj
 ok "no such garment" refuses "there is no own garment \`kilt'; there are tshirt, trousers, skirt" run --own kilt -e 0.1 -o x.obj

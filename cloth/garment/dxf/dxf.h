@@ -10,9 +10,12 @@
 enum dxf_layer {
     DXF_BOUNDARY = 1,
     DXF_TURN_POINTS = 2,
+    DXF_NOTCHES = 4,
     DXF_MIRROR = 6,
     DXF_GRAIN = 7,
-    DXF_SEW = 14
+    DXF_SEW = 14,
+    DXF_OTHER_NOTCHES = 80, /* T; castles, checks and round ones follow */
+    DXF_LAST_NOTCHES = 83
 };
 
 enum { DXF_PIECES = 1 << 14, DXF_LINES = 1 << 11, DXF_PLACES = 1 << 16 }; /* at most; of a piece */
@@ -33,6 +36,7 @@ struct dxf_piece {
     struct cloth_list line;    /* struct dxf_line */
     struct cloth_list place;   /* double[2], in the file's unit, of lines */
     struct cloth_list turn;    /* double[2]: points where edges meet */
+    struct cloth_list notch;   /* double[2] */
 };
 
 struct dxf {
@@ -70,18 +74,19 @@ int dxf_text_number(struct dxf_text *text, double *value);
 /* A closed loop of places in the file's unit; corner: where edges of the panel meet. */
 struct dxf_loop {
     struct cloth_list stop; /* struct dxf_stop */
-    bool closed;
+    bool closed, unfolded;
 };
 struct dxf_stop {
     double x[2];
-    bool corner;
+    bool corner, notch; /* notch: it may become a corner */
 };
 
 /* The loop of a piece's sew line, or of its boundary if it has none that closes; unfolded at the
- * mirror line, with two corners or more. The caller frees loop->stop.items in any case. Errors:
- * CLOTH_E_INPUT for a boundary that is open, CLOTH_E_MEMORY. */
+ * mirror line, with two corners or more. notches: these are corners, too. The caller frees
+ * loop->stop.items in any case. Errors: CLOTH_E_INPUT for a boundary that is open, CLOTH_E_MEMORY.
+ */
 int dxf_loop_make(struct dxf_loop *loop, const struct dxf *dxf, const struct dxf_piece *piece,
-                  struct cloth_error *error);
+                  bool notches, struct cloth_error *error);
 
 /* The first line of a layer; NULL: there is none. */
 const struct dxf_line *dxf_line_of(const struct dxf_piece *piece, enum dxf_layer layer);

@@ -9,6 +9,8 @@
 
 static const double NEAR = 1e-4;        /* m: ends of lines that meet; files round to 0.01 mm */
 static const double SAME = 1e-5;        /* m: places that are one */
+static const double REACH = 0.03;       /* m: from a notch at the boundary to a sew line inside */
+static const double BESIDE = 1e-3;      /* m: notches so near to a corner are at it */
 static const double SHARP = 0.86602540; /* cos 30 degrees: a corner turns by more */
 
 struct making {
@@ -95,6 +97,7 @@ static void make_chain(const struct making *making, struct dxf_loop *loop,
 {
     bool joined = false;
     loop->stop.n = 0;
+    loop->unfolded = false;
     put_line(making, loop, line, false);
     loop->closed = line->closed;
     if (loop->closed)
@@ -116,8 +119,10 @@ static void drop_slits(const struct making *making, struct dxf_loop *loop)
     size_t n = 0;
     for (size_t i = 0; i < loop->stop.n; i++) {
         stop[n++] = stop[i];
-        while (n >= 3 && distance(stop[n - 3].x, stop[n - 1].x) <= making->near)
+        while (n >= 3 && distance(stop[n - 3].x, stop[n - 1].x) <= making->near) {
             n -= 2;
+            stop[n - 1].notch = true;
+        }
     }
     loop->stop.n = n;
 }
@@ -193,6 +198,13 @@ static double beside(const struct mirror *mirror, const double x[2])
            mirror->along[1] * (x[0] - mirror->from[0]);
 }
 
+static void reflect(const struct mirror *mirror, double x[2])
+{
+    const double off = 2 * beside(mirror, x);
+    x[0] += off * mirror->along[1];
+    x[1] -= off * mirror->along[0];
+}
+
 static bool is_on(const struct making *making, const struct mirror *mirror,
                   const struct dxf_loop *loop, size_t i)
 {
@@ -240,17 +252,65 @@ static void unfold(const struct making *making, struct dxf_loop *loop)
     const size_t half = loop->stop.n;
     for (size_t i = half - 1; i-- > 1 && !making->error->code;) {
         struct dxf_stop stop = *stop_at(loop, i);
-        const double off = 2 * beside(&mirror, stop.x);
-        stop.x[0] += off * mirror.along[1];
-        stop.x[1] -= off * mirror.along[0];
+        reflect(&mirror, stop.x);
         cloth_list_put(&loop->stop, &stop, sizeof stop, making->error);
     }
-    loop->closed = true;
+    loop->closed = loop->unfolded = true;
     for (size_t k = 0; k < 2; k++) {
         const size_t i = k ? half - 1 : 0, all = loop->stop.n;
         stop_at(loop, i)->corner =
             is_sharp(stop_at(loop, i + all - 1)->x, stop_at(loop, i)->x, stop_at(loop, i + 1)->x);
     }
+}
+
+/* ---- Notches ---- */
+
+/* Marks the place of the loop that is nearest to a notch, unless it is far from all of it. */
+static void put_notch(const struct making *making, struct dxf_loop *loop, const double x[2])
+{
+    size_t at = 0;
+    double least = INFINITY;
+    for (size_t i = 0; i < loop->stop.n; i++) {
+        const double square = cloth_segment_square(x, stop_at(loop, i)->x, stop_at(loop, i + 1)->x);
+        at = square < least ? i : at;
+        least = fmin(least, square);
+    }
+    if (sqrt(least) > REACH / making->dxf->unit)
+        return;
+    struct dxf_stop *end[2] = {stop_at(loop, at), stop_at(loop, at + 1)};
+    struct dxf_stop notch = {.notch = true};
+    const double part = cloth_segment_part(x, end[0]->x, end[1]->x);
+    for (int c = 0; c < 2; c++)
+        notch.x[c] = end[0]->x[c] + part * (end[1]->x[c] - end[0]->x[c]);
+    for (int k = 0; k < 2; k++)
+        if (distance(notch.x, end[k]->x) <=
+            (end[k]->corner ? BESIDE / making->dxf->unit : making->same)) {
+            end[k]->notch = true;
+            return;
+        }
+    if (cloth_list_put(&loop->stop, &notch, sizeof notch, making->error))
+        return;
+    struct dxf_stop *stop = loop->stop.items;
+    memmove(stop + at + 2, stop + at + 1, (loop->stop.n - at - 2) * sizeof *stop);
+    stop[at + 1] = notch;
+}
+
+/* All notches, and of a half piece their images, become corners. */
+static void mark_notches(const struct making *making, struct dxf_loop *loop)
+{
+    const double(*notch)[2] = (const double(*)[2])making->piece->notch.items;
+    struct mirror mirror;
+    const bool both = loop->unfolded && take_mirror(making, &mirror);
+    for (size_t i = 0; i < making->piece->notch.n && !making->error->code; i++) {
+        double image[2] = {notch[i][0], notch[i][1]};
+        put_notch(making, loop, image);
+        if (!both)
+            continue;
+        reflect(&mirror, image);
+        put_notch(making, loop, image);
+    }
+    for (size_t i = 0; i < loop->stop.n; i++)
+        stop_at(loop, i)->corner |= stop_at(loop, i)->notch;
 }
 
 /* ---- The loop ---- */
@@ -294,7 +354,7 @@ static void find_loop(const struct making *making, enum dxf_layer layer, struct 
 }
 
 int dxf_loop_make(struct dxf_loop *loop, const struct dxf *dxf, const struct dxf_piece *piece,
-                  struct cloth_error *error)
+                  bool notches, struct cloth_error *error)
 {
     struct making making = {dxf, piece, NEAR / dxf->unit, SAME / dxf->unit, NULL, error};
     const struct dxf_line *open = NULL;
@@ -313,5 +373,7 @@ int dxf_loop_make(struct dxf_loop *loop, const struct dxf *dxf, const struct dxf
                         "layer 1 do not lead back to where they begin",
                         piece->name);
     find_corners(loop);
-    return CLOTH_OK;
+    if (notches)
+        mark_notches(&making, loop);
+    return error->code;
 }

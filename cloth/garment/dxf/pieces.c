@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { MOST_PANELS = 1 << 16, NAME = 200 }; /* bytes of a panel's name */
 
@@ -57,14 +58,31 @@ static const char *only_size(const struct dxf *dxf)
     return size;
 }
 
+/* The table of grade rules that some programs write beside a file with one size, if it is there. */
+static bool find_rules(const struct dxf *dxf, char *path, size_t room)
+{
+    static const char *const endings[] = {"rul", "RUL"};
+    const size_t n = strlen(dxf->path);
+    for (int k = 0; k < 2 && n > 3 && n < room; k++) {
+        snprintf(path, room, "%.*s%s", (int)(n - 3), dxf->path, endings[k]);
+        if (access(path, F_OK) == 0)
+            return true;
+    }
+    return false;
+}
+
 /* *size: that of the pieces that are taken; NULL: none has one. */
 static int choose_size(const struct dxf *dxf, const char **size, struct cloth_error *error)
 {
-    char sizes[200] = "";
+    char sizes[200] = "", rules[200];
     list_sizes(dxf, sizes, sizeof sizes);
     if (*size && !has_size(dxf, *size))
-        return cloth_fail(error, CLOTH_E_INPUT, "%s: no piece has the size '%.40s'; there %s%s",
-                          dxf->path, *size, *sizes ? "are " : "is none", sizes);
+        return cloth_fail(error, CLOTH_E_INPUT, "%s: no piece has the size '%.40s'; there %s%s%s%s",
+                          dxf->path, *size, *sizes ? "are " : "is none", sizes,
+                          find_rules(dxf, rules, sizeof rules)
+                              ? "; export all sizes as pieces, since grade rules are not read: "
+                              : "",
+                          find_rules(dxf, rules, sizeof rules) ? rules : "");
     if (*size || !*sizes)
         return CLOTH_OK;
     *size = dxf->sample && has_size(dxf, dxf->sample) ? dxf->sample : only_size(dxf);
@@ -194,12 +212,12 @@ static int make_panel(struct garment_panel *panel, const struct dxf_loop *loop,
 
 /* All copies of a piece. panels: a list of struct garment_panel, which the pattern has. */
 static int take_piece(struct garment_pattern *pattern, struct cloth_list *panels,
-                      const struct dxf *dxf, const struct dxf_piece *piece,
+                      const struct dxf *dxf, const struct dxf_piece *piece, bool notches,
                       struct cloth_error *error)
 {
     struct dxf_loop loop;
     const uint32_t drawn = piece->copies + piece->mirrored ? piece->copies : 1;
-    int code = dxf_loop_make(&loop, dxf, piece, error);
+    int code = dxf_loop_make(&loop, dxf, piece, notches, error);
     for (uint32_t k = 0; k < drawn + piece->mirrored && !code; k++) {
         const struct placing placing = place_piece(dxf, piece, k >= drawn);
         struct garment_panel *panel = cloth_list_add(panels, sizeof *panel, 1, error);
@@ -218,9 +236,10 @@ static int take_piece(struct garment_pattern *pattern, struct cloth_list *panels
     return error->code;
 }
 
-int garment_read_dxf(struct garment_pattern *pattern, const char *path, const char *size,
-                     struct cloth_error *error)
+int garment_read_dxf(struct garment_pattern *pattern, const char *path,
+                     const struct garment_choice *choice, struct cloth_error *error)
 {
+    const char *size = choice ? choice->size : NULL;
     struct cloth_error own = {0};
     struct cloth_list panels = {0};
     struct dxf dxf;
@@ -228,7 +247,8 @@ int garment_read_dxf(struct garment_pattern *pattern, const char *path, const ch
     int code = dxf_read(&dxf, path, &own) || choose_size(&dxf, &size, &own);
     for (size_t i = 0; i < dxf.piece.n && !code; i++)
         if (is_of(piece_at(&dxf, i), size))
-            code = take_piece(pattern, &panels, &dxf, piece_at(&dxf, i), &own);
+            code = take_piece(pattern, &panels, &dxf, piece_at(&dxf, i), choice && choice->notches,
+                              &own);
     dxf_free(&dxf);
     return own.code ? cloth_fail(error, own.code, "%s", own.text) : CLOTH_OK;
 }

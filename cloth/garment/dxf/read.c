@@ -148,15 +148,31 @@ static int refuse_curve(struct reader *reader, const char *what)
                     what, reader->entity.layer);
 }
 
+/* The list that takes an entity's first place; NULL: none. Notches are points, or lines from the
+ * boundary on. */
+static struct cloth_list *points_of(struct dxf_piece *piece, const struct entity *entity)
+{
+    const long layer = entity->layer;
+    const bool point = !strcmp(entity->type, "POINT");
+    if (point && layer == DXF_TURN_POINTS)
+        return &piece->turn;
+    return (point || !strcmp(entity->type, "LINE")) &&
+                   (layer == DXF_NOTCHES ||
+                    (layer >= DXF_OTHER_NOTCHES && layer <= DXF_LAST_NOTCHES))
+               ? &piece->notch
+               : NULL;
+}
+
 static int take_drawing(struct reader *reader, struct dxf_piece *piece)
 {
     static const char *const curves[] = {"ARC", "CIRCLE", "ELLIPSE", "SPLINE"};
     const struct entity *entity = &reader->entity;
     const bool of_use = is_of_use(entity->layer);
-    if (!strcmp(entity->type, "POINT") && entity->layer == DXF_TURN_POINTS)
-        return piece->turn.n >= DXF_LINES
+    struct cloth_list *points = points_of(piece, entity);
+    if (points)
+        return points->n >= DXF_LINES
                    ? CLOTH_OK
-                   : cloth_list_put(&piece->turn, entity->x[0], sizeof entity->x[0], reader->error);
+                   : cloth_list_put(points, entity->x[0], sizeof entity->x[0], reader->error);
     if (!strcmp(entity->type, "LINE") && of_use)
         return open_line(reader, piece) || put_place(reader, piece, entity->x[0]) ||
                put_place(reader, piece, entity->x[1]);
@@ -180,6 +196,7 @@ static void free_piece(struct dxf_piece *piece)
     free(piece->line.items);
     free(piece->place.items);
     free(piece->turn.items);
+    free(piece->notch.items);
 }
 
 static int begin_block(struct reader *reader)

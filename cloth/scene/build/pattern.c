@@ -105,15 +105,16 @@ static int build_pattern_check_fineness(const struct scene_pattern *asked,
 }
 
 /* A file has its own measures. */
-static int read_file(struct garment_pattern *pattern, const char *path, const char *size,
-                     struct scene_tree *tree, int node)
+static int read_file(struct garment_pattern *pattern, const char *path,
+                     const struct scene_pattern *asked, struct scene_tree *tree, int node)
 {
     const int measures = scene_tree_get(tree, node, "measures");
     if (measures)
         return scene_tree_fail(tree, measures,
                                "mesh.pattern.measures is of an own garment, which this pattern is "
                                "not: it is a file");
-    return scene_read_pattern(pattern, path, size, &tree->inner);
+    const struct garment_choice choice = {asked->size, asked->notches};
+    return scene_read_pattern(pattern, path, &choice, &tree->inner);
 }
 
 /* ---- What the scene says of a pattern's panels ---- */
@@ -207,6 +208,9 @@ static int make_own(struct garment_pattern *pattern, const struct scene_pattern 
 {
     const struct garment_own *own = garment_own_find(asked->garment);
     double value[GARMENT_MEASURES];
+    if (asked->notches)
+        return scene_tree_fail(tree, scene_tree_get(tree, node, "notches"),
+                               "mesh.pattern.notches is of a DXF file; own garments have none");
     if (!own)
         return scene_tree_fail(tree, scene_tree_get(tree, node, "garment"),
                                "mesh.pattern.garment is %s; one of %s is expected", asked->garment,
@@ -231,7 +235,7 @@ static int make_garment(struct scene_made_part *to, const char *path, struct sce
     struct scene_pattern asked = {0};
     int code = scene_fill(&asked, &scene_pattern, tree, node) ||
                build_pattern_check_fineness(&asked, tree, node) ||
-               (path ? read_file(&to->pattern, path, asked.size, tree, node)
+               (path ? read_file(&to->pattern, path, &asked, tree, node)
                      : make_own(&to->pattern, &asked, tree, node)) ||
                place_panels(&to->pattern, tree, scene_tree_get(tree, node, "place")) ||
                add_stitches(&to->pattern, tree, scene_tree_get(tree, node, "stitches"));

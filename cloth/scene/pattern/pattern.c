@@ -159,16 +159,21 @@ static int read_pattern_tree(struct pattern_reader *reader)
            read_stitches(reader, pattern[1], pattern[0]);
 }
 
-static void read_json(struct garment_pattern *pattern, const char *path, const char *size,
-                      struct cloth_error *error)
+static void read_json(struct garment_pattern *pattern, const char *path,
+                      const struct garment_choice *choice, struct cloth_error *error)
 {
     struct scene_tree tree;
     struct pattern_reader reader = {.tree = &tree, .pattern = pattern, .edge = -1, .stitch = -1};
-    if (size) {
+    if (choice && choice->size) {
         cloth_fail(error, CLOTH_E_INPUT,
                    "%s: a pattern as JSON has one size, so that '%.40s' chooses nothing: leave it "
                    "out",
-                   path, size);
+                   path, choice->size);
+        return;
+    }
+    if (choice && choice->notches) {
+        cloth_fail(error, CLOTH_E_INPUT, "%s: a pattern as JSON has no notches: leave them out",
+                   path);
         return;
     }
     if (!scene_tree_load(&tree, path, &WORDS, error))
@@ -176,16 +181,16 @@ static void read_json(struct garment_pattern *pattern, const char *path, const c
     scene_tree_free(&tree);
 }
 
-int scene_read_pattern(struct garment_pattern *pattern, const char *path, const char *size,
-                       struct cloth_error *error)
+int scene_read_pattern(struct garment_pattern *pattern, const char *path,
+                       const struct garment_choice *choice, struct cloth_error *error)
 {
     struct cloth_error own = {0}; /* the caller may want none, the steps below rely on one */
     const char *dot = strrchr(path, '.');
     *pattern = (struct garment_pattern){0};
     if (dot && !strcasecmp(dot, ".dxf"))
-        garment_read_dxf(pattern, path, size, &own);
+        garment_read_dxf(pattern, path, choice, &own);
     else
-        read_json(pattern, path, size, &own);
+        read_json(pattern, path, choice, &own);
     if (own.code)
         return cloth_fail(error, own.code, "%s", own.text);
     const int code = garment_pattern_check(pattern, &own);

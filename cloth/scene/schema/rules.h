@@ -105,6 +105,7 @@ struct scene_pattern {
     double edge;          /* m; 0: it is not given */
     uint32_t vertices;    /* 0: they are not given */
     char *garment, *size; /* NULL: it is not given */
+    bool notches;
     uint32_t n_measures;
     struct scene_measure *measures;
 };

@@ -70,6 +70,10 @@ static const struct scene_rule pattern_keys[] = {
     {"size", SCENE_TEXT, INTO(struct scene_pattern, size),
      .about = "of the garment: XS, S, M, L or XL; M unless told. Of a DXF file: one of its sizes; its "
      "sample size unless told"},
+    {"notches", SCENE_CHOICE, .fallback = "off", INTO(struct scene_pattern, notches),
+     WORDS({"on", true}, {"off", false}),
+     .about = "of a DXF file: edges end at notches, too, so stitches can begin there; the numbers of "
+     "edges change"},
     {"measures", SCENE_NAMED, .inside = &measure,
      ARRAY(struct scene_pattern, measures, n_measures), .name = FIELD(struct scene_measure, name),
      .about = "NAME: VALUE of those of the garment that differ from its size's"},

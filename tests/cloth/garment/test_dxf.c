@@ -23,8 +23,8 @@
 #define SQUARE(layer, a)        LOOP(layer, V(layer, 0, 0) V(layer, a, 0) V(layer, a, a) V(layer, 0, a))
 
 /* Reads a text, in a file in memory. Returns the code. */
-static int read_dxf(struct garment_pattern *pattern, const char *pairs, const char *size,
-                    struct cloth_error *error)
+static int read_dxf(struct garment_pattern *pattern, const char *pairs,
+                    const struct garment_choice *choice, struct cloth_error *error)
 {
     char path[64];
     const int file = memfd_create("dxf", 0);
@@ -37,7 +37,7 @@ static int read_dxf(struct garment_pattern *pattern, const char *pairs, const ch
     }
     fclose(to);
     snprintf(path, sizeof path, "/proc/self/fd/%d", file);
-    int code = garment_read_dxf(pattern, path, size, error);
+    int code = garment_read_dxf(pattern, path, choice, error);
     code = code ? code : garment_pattern_check(pattern, error);
     close(file);
     return code;
@@ -45,8 +45,9 @@ static int read_dxf(struct garment_pattern *pattern, const char *pairs, const ch
 
 static struct garment_pattern read_right(const char *pairs, const char *size)
 {
+    const struct garment_choice choice = {.size = size};
     struct garment_pattern pattern;
-    UNIT_FINE(read_dxf(&pattern, pairs, size, &error));
+    UNIT_FINE(read_dxf(&pattern, pairs, &choice, &error));
     return pattern;
 }
 
@@ -180,6 +181,46 @@ UNIT_TEST(slits_and_corners)
     lengths_are(pattern.panel, 4, (double[]){0.2, 0.1, 0.2, 0.1});
 }
 
+/* The edges of the piece with its notches as corners. */
+static void notched_lengths_are(const char *pairs, uint32_t n, const double *length)
+{
+    const struct garment_choice choice = {.notches = true};
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_FINE(read_dxf(&pattern, pairs, &choice, &error));
+    lengths_are(pattern.panel, n, length);
+}
+
+/* Notches of each kind cut the edge that they are at, or the sew line inside of them; one at a
+ * corner, or far inside, cuts nothing. Without notches edges are as ever. */
+#define NOTCHES                                                                                    \
+    POINT(4, 30, 0) LINE(80, 100, 60, 95, 60) POINT(83, 0, 0.5) POINT(4, 50, 50) POINT(3, 70, 0)
+UNIT_TEST(notches_cut_edges)
+{
+    UNIT_OWNED(garment_pattern_free)
+    struct garment_pattern pattern =
+        read_right(BEGIN BLOCK("") SQUARE(1, 100) NOTCHES END OVER, NULL);
+    lengths_are(pattern.panel, 4, (double[]){0.1, 0.1, 0.1, 0.1});
+    notched_lengths_are(BEGIN BLOCK("") SQUARE(1, 100) NOTCHES END OVER, 6,
+                        (double[]){0.03, 0.07, 0.06, 0.04, 0.1, 0.1});
+    notched_lengths_are(BEGIN BLOCK("") SQUARE(1, 100)
+                            LOOP(14, V(14, 10, 10) V(14, 90, 10) V(14, 90, 90) V(14, 10, 90))
+                                NOTCHES END OVER,
+                        6, (double[]){0.02, 0.06, 0.05, 0.03, 0.08, 0.08});
+}
+
+/* A half piece has the images of its notches, and a slit is a notch. */
+UNIT_TEST(notches_of_half_pieces_and_slits)
+{
+    notched_lengths_are(BEGIN BLOCK("") LINE(6, 0, 0, 0, 300)
+                            LOOP(1, V(1, 0, 0) V(1, 100, 0) V(1, 100, 300) V(1, 0, 300))
+                                POINT(4, 100, 200) END OVER,
+                        6, (double[]){0.2, 0.1, 0.2, 0.1, 0.2, 0.2});
+    notched_lengths_are(BEGIN BLOCK("") LOOP(1, V(1, 0, 0) V(1, 200, 0) V(1, 200, 100) V(1, 80, 100)
+                                                    V(1, 80, 90) V(1, 80, 100) V(1, 0, 100))
+                            END OVER,
+                        5, (double[]){0.2, 0.1, 0.12, 0.08, 0.1});
+}
+
 #define SIZES                                                                                      \
     BEGIN BLOCK(NAME("a") TEXT("SIZE: S")) SQUARE(1, 100) END BLOCK(NAME("a") TEXT("SIZE: L"))     \
         SQUARE(1, 300) END                                                                         \
@@ -219,8 +260,9 @@ static const struct {
 UNIT_TEST(files_that_are_wrong)
 {
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        const struct garment_choice choice = {.size = wrong[i].size};
         UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
-        UNIT_REFUSED(read_dxf(&pattern, wrong[i].pairs, wrong[i].size, &error), CLOTH_E_INPUT,
+        UNIT_REFUSED(read_dxf(&pattern, wrong[i].pairs, &choice, &error), CLOTH_E_INPUT,
                      wrong[i].sentence);
     }
 }

@@ -4,7 +4,7 @@ FUZZ_FILES = tests/fuzz/fit.h tests/fuzz/fuzz.h tests/fuzz/fuzz.c tests/fuzz/dri
 FUZZ_LIBS = $(CHART_LIBS) libduite_tools.a $(CLOTH_LIBS)
 FUZZ_HARNESSES = tests/fuzz/fuzz_checkpoint tests/fuzz/fuzz_colours tests/fuzz/fuzz_live tests/fuzz/fuzz_obj tests/fuzz/fuzz_output \
 	tests/fuzz/fuzz_pattern tests/fuzz/fuzz_pc2 tests/fuzz/fuzz_resume tests/fuzz/fuzz_scene tests/fuzz/fuzz_seams \
-	tests/fuzz/fuzz_trace
+	tests/fuzz/fuzz_trace tests/fuzz/fuzz_weights
 ASAN_SH += tests/fuzz/test_corpus.sh
 LONG_SH += tests/fuzz/test_programs_long.sh
 check_PROGRAMS += $(FUZZ_HARNESSES) tests/fuzz/mutate
@@ -32,6 +32,8 @@ tests_fuzz_fuzz_seams_SOURCES = tests/fuzz/fuzz_seams.c $(FUZZ_FILES)
 tests_fuzz_fuzz_seams_LDADD = $(FUZZ_LIBS)
 tests_fuzz_fuzz_trace_SOURCES = tests/fuzz/fuzz_trace.c $(FUZZ_FILES)
 tests_fuzz_fuzz_trace_LDADD = $(FUZZ_LIBS)
+tests_fuzz_fuzz_weights_SOURCES = tests/fuzz/fuzz_weights.c $(FUZZ_FILES)
+tests_fuzz_fuzz_weights_LDADD = $(FUZZ_LIBS)
 dist_check_SCRIPTS += tests/fuzz/run.sh
 EXTRA_DIST += tests/fuzz/corpus
 

@@ -25,3 +25,4 @@ tests_cloth_mesh_test_figure_SOURCES = tests/cloth/mesh/test_figure.c tests/supp
 tests_cloth_mesh_test_figure_LDADD = $(CLOTH_TEST_LIBS) -lm
 endif
 endif
+EXTRA_DIST += tests/cloth/mesh/column.fbx

@@ -73,6 +73,31 @@ UNIT_TEST(a_cylinder_that_bends)
     free(place);
 }
 
+/* By FBX, whose column bends as the cylinder does; each vertex has one bone. */
+UNIT_TEST(a_column_of_fbx)
+{
+    const char *top = getenv("srcdir");
+    UNIT_OWNED(mesh_free) struct mesh mesh;
+    char path[4096];
+    uint32_t n_frames;
+    double *place;
+    snprintf(path, sizeof path, "%s/tests/cloth/mesh/column.fbx", top ? top : ".");
+    UNIT_FINE(mesh_read_surface(&mesh, path, &error));
+    ck_assert_uint_eq(mesh.n_vertices, 8);
+    ck_assert_uint_eq(mesh.n_faces, 6);
+    UNIT_FINE(mesh_read_clip(path, 8, "bend", 8, &n_frames, &place, &error));
+    ck_assert_uint_eq(n_frames, 9);
+    for (uint32_t k = 0; k < n_frames; k++)
+        for (uint32_t v = 0; v < 8; v++) {
+            double x[3];
+            memcpy(x, mesh.position + 3 * v, sizeof x);
+            skinned_bend(k / 8.0, x);
+            for (uint32_t c = 0; c < 3; c++)
+                ck_assert_double_eq_tol(place[3 * (8 * k + v) + c], x[c], NEAR);
+        }
+    free(place);
+}
+
 /* All of it turns about z at y = 0.5 m times the scale of the root. */
 UNIT_TEST(a_mesh_that_hangs_at_a_node)
 {

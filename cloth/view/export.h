@@ -28,7 +28,7 @@ int view_export_abc(struct output_cache *cache, uint64_t first, uint64_t last, c
 int view_export_gltf(struct output_cache *cache, uint64_t frame, const char *path,
                      struct cloth_error *error);
 
-/* What they share: the obstacles, and room for a frame. */
+/* The writers share the obstacles, and room for a frame. */
 struct view_export {
     struct output_cache *cache;
     struct view_obstacles *obstacles;

@@ -22,7 +22,7 @@ struct contact_spring {
     double stiffness, damping; /* k, c */
     double hold;               /* the most that friction resists a velocity by, k h or less */
     double spare;
-    double band; /* m, >= 0 */
+    double reach; /* thicknesses, >= 1: to the end of the band */
 };
 
 /* The force on the first side, and its negative derivatives: by the point stiffness n n', by its
@@ -39,11 +39,12 @@ PHYS_INLINE void contact_repel(const struct contact_spring *spring, const struct
                                struct contact_repelled *to)
 {
     const double depth = row->thickness - contact_row_gap(row, point);
+    const double band = spring->reach * row->thickness - row->thickness;
     const double along = phys_dot(&row->normal, speed);
     const double push = spring->stiffness * depth - spring->damping * along;
     *to = (struct contact_repelled){0};
-    if (depth > -spring->band)
-        to->stiffness = spring->stiffness * (depth < 0 ? 1 + depth / spring->band : 1);
+    if (depth > -band)
+        to->stiffness = spring->stiffness * (depth < 0 ? 1 + depth / band : 1);
     if (!(depth > 0 && push > 0))
         return;
     const phys_vec across = *speed - along * row->normal;

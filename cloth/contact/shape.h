@@ -24,6 +24,7 @@ struct contact_shape {
     uint32_t body;   /* number of a body of the scene, from 1; 0: its parameters are all there is */
     double about[3]; /* m: the point that its motion rotates about */
     double friction; /* coefficient, >= 0: of contact that is certified */
+    double thickness; /* m, >= 0: of contact, half of it on its side; 0: that of all contact */
     struct contact_view view; /* of a body that is met by maps (image.h); width 0: by its tree */
     double value[CONTACT_VALUES]; /* its parameters, one after the other as its kind lists them */
 };

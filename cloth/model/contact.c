@@ -58,21 +58,50 @@ bool model_meets(const struct model *model, uint32_t cloth, uint32_t other)
            (cloth != other || model->contact.self);
 }
 
-double model_friction(const struct model *model, uint32_t cloth, uint32_t other)
+/* What a side has, by its number among materials, then obstacles. */
+static struct model_sides find_side(const struct model *model, uint32_t of)
+{
+    const struct model_contact *all = &model->contact;
+    struct model_sides side = {0};
+    if (of < model->n_materials) {
+        const struct model_material *is = model->materials + of;
+        side = (struct model_sides){is->friction, is->thickness, is->pressure};
+    } else {
+        const struct contact_shape *is = model->obstacles + (of - model->n_materials);
+        side = (struct model_sides){is->friction, is->thickness, 0};
+    }
+    side.thickness = side.thickness > 0 ? side.thickness : all->thickness;
+    side.pressure = side.pressure > 0 ? side.pressure : all->pressure;
+    return side;
+}
+
+/* Half of a, compressed by q, is a / 2 / (1 + q / p). The halves of both together are half as thick
+ * by the q > 0 with q^2 - uneven (p_a - p_b) q - p_a p_b = 0, where uneven is (a - b) / (a + b). */
+static double press_together(const struct model_sides *a, const struct model_sides *b)
+{
+    const double uneven = (a->thickness - b->thickness) / (a->thickness + b->thickness);
+    const double half = uneven * (a->pressure - b->pressure) / 2;
+    return half + sqrt(half * half + a->pressure * b->pressure);
+}
+
+struct model_sides model_sides(const struct model *model, uint32_t cloth, uint32_t other)
 {
     const bool is_cloth = other < model->n_cloths;
     const uint32_t a = model->cloths[cloth].material;
     const uint32_t b =
         is_cloth ? model->cloths[other].material : model->n_materials + (other - model->n_cloths);
-    double friction = sqrt(model->materials[a].friction *
-                           (is_cloth ? model->materials[b].friction
-                                     : model->obstacles[other - model->n_cloths].friction));
+    const struct model_sides own = find_side(model, a);
+    struct model_sides that = find_side(model, b);
+    that.pressure = is_cloth ? that.pressure : own.pressure;
+    struct model_sides both = {.friction = sqrt(own.friction * that.friction),
+                               .thickness = (own.thickness + that.thickness) / 2,
+                               .pressure = press_together(&own, &that)};
     for (uint32_t i = 0; i < model->contact.n_pairs; i++) {
         const struct model_rub *pair = model->contact.pairs + i;
         if ((pair->of[0] == a && pair->of[1] == b) || (pair->of[0] == b && pair->of[1] == a))
-            friction = pair->friction;
+            both.friction = pair->friction;
     }
-    return friction;
+    return both;
 }
 
 const char *model_contact_name(const struct model *model)

@@ -45,8 +45,8 @@ struct model_contact {
     bool self;        /* a cloth touches itself, too */
     bool untangle;    /* a start that is not free is made so */
     bool force;       /* frames have the force of contact on each vertex */
-    double thickness; /* m, > 0: of cloth that touches something, half of it on each side */
-    double pressure;  /* Pa, >= 0: halves the thickness; 0: nothing is compressed */
+    double thickness; /* m, > 0, of materials and obstacles that have none of their own */
+    double pressure;  /* Pa, >= 0, likewise: halves the thickness; 0: nothing is compressed */
     double friction;  /* coefficient, >= 0, of materials and obstacles that have none of their own;
                          sides a and b rub on each other by sqrt(a b), */
     uint32_t n_pairs; /* unless one of these is of them: the last counts */
@@ -67,10 +67,20 @@ bool model_feels_contact(const struct model *model);
 /* True if an obstacle is a body that is met by maps (cloth/contact/image.h). */
 bool model_has_maps(const struct model *model);
 
-/* True if a cloth meets another side of contact.apart: an obstacle, another cloth, or itself. The
- * coefficient by which the two rub on each other. On the rank that has the cloths. */
+/* True if a cloth meets another side of contact.apart: an obstacle, another cloth, or itself. On
+ * the rank that has the cloths. */
 bool model_meets(const struct model *model, uint32_t cloth, uint32_t other);
-double model_friction(const struct model *model, uint32_t cloth, uint32_t other);
+
+/* The contact of two sides, by what each of them has. Each brings half of its thickness, so both
+ * are (a + b) / 2 apart. Their pressure leaves half of that, as each half is compressed by its own
+ * law (cloth/contact/row.h); an obstacle is as hard as the cloth on it. On the rank that has the
+ * cloths. */
+struct model_sides {
+    double friction;  /* by which they rub on each other */
+    double thickness; /* m, > 0 */
+    double pressure;  /* Pa, >= 0; 0: they are not compressed */
+};
+struct model_sides model_sides(const struct model *model, uint32_t cloth, uint32_t other);
 
 const char *model_contact_name(const struct model *model);
 /* The end of a sentence that refuses something: how to do without this mode; empty if the scene

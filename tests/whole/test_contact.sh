@@ -68,7 +68,7 @@ sunk() { # is refused, and nothing says that a step puts it out
 ok "a start in the floor" sunk
 sed 's/mode: certified, //; s/nx: 6, ny: 6/nx: 60, ny: 60/; s/thickness: 0.002/thickness: 0.03/' sunk.yaml > coarse.yaml
 likewise() { # what nobody asked for says how to do without
-    ! limited "$DUITE_CLOTH" coarse.yaml > said 2>&1 && grep "cloth 'a': more than 1024 triangles are nearer at rest than 0.039 m to a corner of triangle [0-9]* .counted from 0.; contact.thickness, 0.03 m, should be smaller.*contact: {mode: project} is the way without$" said &&
+    ! limited "$DUITE_CLOTH" coarse.yaml > said 2>&1 && grep "cloth 'a': more than 1024 triangles are nearer at rest than 0.039 m to a corner of triangle [0-9]* .counted from 0.; contact.thickness, or that of a material, 0.03 m, should be smaller.*contact: {mode: project} is the way without$" said &&
         ! limited "$DUITE_CLOTH" coarse.yaml --set contact.thickness=0.002 > said 2>&1 && grep 'go through each other.*contact: {mode: project} is the way without$' said &&
         limited "$DUITE_CLOTH" coarse.yaml --set contact.mode=project > said 2>&1 && grep -qx '  contact          project' said &&
         limited "$DUITE_CLOTH" coarse.yaml --set contact.thickness=0.002 --set 'obstacles=[]' > said 2>&1 && grep -qx '  contact          certified, by default' said

@@ -85,12 +85,15 @@ static void forecast_print_time(FILE *file, const struct forecast *forecast,
 static void forecast_advise_contact(FILE *file, const struct forecast *forecast,
                                     const struct model *model)
 {
-    const double thickness = model->contact.thickness;
+    double thickness = 0;
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        thickness = fmax(thickness, model_sides(model, c, c).thickness);
     if (model_seeks(model) && forecast->edge > 0 && thickness > 0.5 * forecast->edge)
-        fprintf(file,
-                "  slow             contact.thickness %g m is above half a cell, %.3g m: each "
-                "triangle meets many; a smaller one is faster\n",
-                thickness, forecast->edge);
+        fprintf(
+            file,
+            "  slow             a thickness of contact, %g m, is above half a cell, %.3g m: each "
+            "triangle meets many; a smaller one is faster\n",
+            thickness, forecast->edge);
 }
 
 static void forecast_advise_solve(FILE *file, const struct summary *trial)

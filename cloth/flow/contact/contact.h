@@ -42,6 +42,7 @@ struct flow_near {
     double part[4];      /* then: how far each corner may go, */
     double along[4];     /* and where it ends, m, along the normal that it has in the pair; of a
                           * shape: how far it is to be pushed along the row's normal */
+    double apart;        /* m: and how far apart pushes end the step (cloth/contact/push.h) */
 };
 
 /* A list in an object of bytes that changes its size: the head, then the items. */
@@ -64,12 +65,19 @@ size_t flow_contact_index(struct flow_list *list, uint32_t n_blocks);
 const uint32_t *flow_contact_of(const struct flow_list *list, uint32_t block, uint32_t n_blocks,
                                 size_t *n);
 
-/* The coefficient of a cloth and another side, as flow->friction has them. */
-static inline double flow_friction_of(const struct flow *flow, uint32_t cloth, uint32_t other)
+/* A cloth and another side, as flow->sides has them. */
+static inline const struct model_sides *flow_sides_of(const struct flow *flow, uint32_t cloth,
+                                                      uint32_t other)
 {
-    return flow
-        ->friction[(size_t)cloth * ((size_t)flow->n_cloths + flow->model->n_obstacles) + other];
+    return flow->sides + (size_t)cloth * ((size_t)flow->n_cloths + flow->model->n_obstacles) +
+           other;
 }
+/* m: of all pairs of a cloth of block a and one of another block, or an obstacle. Where least is
+ * most, each pair has that. Local. (modes.c) */
+struct flow_thickness {
+    double least, most;
+};
+struct flow_thickness flow_thickness_of(const struct flow *flow, uint32_t a, uint32_t b);
 /* The cloth of n points of a feature. A point that is welded from several cloths belongs to the
  * first of them. */
 static inline uint32_t flow_cloth_of(const struct contact_skin *skin, uint32_t n,
@@ -211,7 +219,7 @@ void flow_contact_speed(const struct flow_ties *ties, const struct flow_view *vi
 /* N/m: the k of cloth/contact/row.h in a step of h. */
 double flow_contact_stiffness(const struct flow *flow, double h);
 
-/* m: nearer features are contacts, as the mode says. Local. (modes.c) */
+/* Thicknesses: nearer features are contacts, as the mode says. Local. (modes.c) */
 double flow_contact_reach(const struct model *model);
 
 #endif

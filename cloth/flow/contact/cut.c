@@ -15,7 +15,7 @@
 #include <string.h>
 
 /* A row counts as halved if it loses more than this part of its way, and that is more than this
- * part of the thickness: shorter losses do not show. */
+ * part of the cloth's thickness: shorter losses do not show. */
 static const double HALF = 0.5, COUNTS = 0.1;
 
 struct cut_args {
@@ -36,10 +36,11 @@ struct moving {
     double *counts;
 };
 
-static struct moving moving_of(const struct cut_args *args, double counts_from,
+static struct moving moving_of(const duite_call *call, const struct cut_args *args,
                                const phys_vec *from, phys_vec *x, phys_vec *v, double *counts)
 {
-    return (struct moving){&args->step, counts_from, from, x, v, counts};
+    const double own = flow_thickness_of(flow_of(call), args->block, args->block).least;
+    return (struct moving){&args->step, COUNTS * own, from, x, v, counts};
 }
 
 /* Moves a row to where its way ends now. */
@@ -66,13 +67,12 @@ FLOW_KERNEL(push, FLOW_COLLIDE, struct cut_args,
 
 /* Finds the pushes that part a pair where the step ends, m, along the row's normal, as that is
  * where the step begins. They are 0 if none do. */
-static void part_pair(const struct flow_near *near, double thickness, double push[4])
+static void part_pair(const struct flow_near *near, double push[4])
 {
     const struct flow_contact *contact = &near->contact;
     const bool turned = contact->kind == CONTACT_TV;
-    struct contact_pushed pushed = {.n = 4,
-                                    .first = contact->kind == CONTACT_EE ? 2 : 1,
-                                    .gap = contact_push_gap(contact->row.gap, thickness)};
+    struct contact_pushed pushed = {
+        .n = 4, .first = contact->kind == CONTACT_EE ? 2 : 1, .gap = near->apart};
     double of[4] = {0};
     memcpy(push, near->along, sizeof near->along);
     if (contact->kind == FLOW_CONTACT_SHAPE)
@@ -98,40 +98,38 @@ static void add_push(const struct flow_near *near, double by, phys_vec *push)
 }
 
 /* Adds the pushes of a pair to the rows of the block. */
-static void cut_add_pair(const struct push_fields *on, const struct flow_near *near,
-                         double thickness, phys_vec *push)
+static void cut_add_pair(const struct push_fields *on, const struct flow_near *near, phys_vec *push)
 {
     const struct flow_tie_corners *corners = &near->contact.at;
     double by[4];
-    part_pair(near, thickness, by);
+    part_pair(near, by);
     for (uint32_t k = 0; k < corners->n; k++)
         if (corners->block[k] == on->args->block && by[k] != 0)
             add_push(near, by[k], push + corners->row[k]);
 }
 
-static void find_pushes(const struct push_fields *on, double thickness, phys_vec *push)
+static void find_pushes(const struct push_fields *on, phys_vec *push)
 {
     for (size_t at = 0; at < on->n_meetings; at++) {
         const struct flow_list *list = on->meetings[at].data;
         const struct flow_near *near = (const struct flow_near *)(list + 1);
         for (uint64_t i = 0; i < list->n; i++)
             if (near[i].fails)
-                cut_add_pair(on, near + i, thickness, push);
+                cut_add_pair(on, near + i, push);
     }
 }
 
 static int push_body(const duite_call *call, const struct push_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
-    const double thickness = flow_of(call)->model->contact.thickness;
     const struct moving moving =
-        moving_of(on->args, COUNTS * thickness, on->kept_x, on->x, on->v, on->cut_counts);
+        moving_of(call, on->args, on->kept_x, on->x, on->v, on->cut_counts);
     phys_vec *push = aligned_alloc(sizeof *push, (table.n + 1) * sizeof *push);
     if (!push)
         return duite_fail(call, FLOW_NO_MEMORY, "out of memory for the pushes of a block");
     on->cut_counts[FLOW_CUT_STOP] += flow_stop_is_asked(flow_of(call));
     memset(push, 0, (table.n + 1) * sizeof *push);
-    find_pushes(on, thickness, push);
+    find_pushes(on, push);
     for (uint32_t i = 0; i < table.n; i++) {
         const phys_vec to = on->x[i] + push[i];
         if (phys_dot(push + i, push + i) > 0)
@@ -169,10 +167,8 @@ static int cut_body(const duite_call *call, const struct cut_fields *on)
 {
     const struct cut_args *args = on->args;
     const struct flow_table table = flow_table_in(call, on->table);
-    const double thickness = flow_of(call)->model->contact.thickness;
     struct flow_cut_run *runs = (struct flow_cut_run *)(void *)on->cut_runs;
-    const struct moving moving =
-        moving_of(args, COUNTS * thickness, on->kept_x, on->x, on->v, on->cut_counts);
+    const struct moving moving = moving_of(call, args, on->kept_x, on->x, on->v, on->cut_counts);
     double *part = malloc((table.n + 1) * sizeof *part);
     if (!part)
         return duite_fail(call, FLOW_NO_MEMORY, "out of memory for the ways of a block");

@@ -8,6 +8,7 @@
 
 #include "cloth/base/memory.h"
 #include "cloth/base/order.h"
+#include "cloth/base/sets.h"
 #include "cloth/mesh/detail/sides.h"
 
 #include <math.h>
@@ -24,11 +25,13 @@ struct kin_mesh {
     uint32_t (*corner)[3];  /* n: places */
     double (*length)[3];    /* n: of sides at rest, m */
     uint32_t *beside;       /* 3 n: the next side with the same ends; in a ring */
+    double *reach;          /* by place, m: of contacts between cloths that are joined there */
     uint32_t *start, *star; /* n_places + 1: where the sides that go from a place begin; 3 n */
 };
 
 static void kin_free_mesh(struct kin_mesh *mesh)
 {
+    free(mesh->reach);
     free(mesh->corner);
     free(mesh->length);
     free(mesh->beside);
@@ -38,12 +41,13 @@ static void kin_free_mesh(struct kin_mesh *mesh)
 
 static int kin_make_room(struct kin_mesh *mesh, struct cloth_error *error)
 {
+    mesh->reach = cloth_alloc(mesh->n_places, sizeof *mesh->reach, error);
     mesh->corner = cloth_alloc(mesh->n, sizeof *mesh->corner, error);
     mesh->length = cloth_alloc(mesh->n, sizeof *mesh->length, error);
     mesh->beside = cloth_alloc(3 * (size_t)mesh->n, sizeof *mesh->beside, error);
     mesh->start = cloth_alloc((size_t)mesh->n_places + 2, sizeof *mesh->start, error);
     mesh->star = cloth_alloc(3 * (size_t)mesh->n, sizeof *mesh->star, error);
-    return mesh->corner && mesh->length && mesh->beside && mesh->start && mesh->star
+    return mesh->reach && mesh->corner && mesh->length && mesh->beside && mesh->start && mesh->star
                ? CLOTH_OK
                : CLOTH_E_MEMORY;
 }
@@ -105,6 +109,60 @@ static int kin_join_sides(struct kin_mesh *mesh, struct cloth_error *error)
     free(order);
     free(ends);
     return code;
+}
+
+/* ---- How far contacts reach ---- */
+
+/* The reach of contacts of a cloth with itself, m. */
+static double kin_reach_of(const struct model *model, uint32_t cloth)
+{
+    return flow_contact_reach(model) * model_sides(model, cloth, cloth).thickness;
+}
+
+/* Finds the longest reach of each cloth: of the thickest one that is joined with it. A pair of both
+ * reaches no farther. */
+static int kin_find_reach(const struct flow_source *source, double *reach,
+                          struct cloth_error *error)
+{
+    const struct model *model = source->model;
+    const uint32_t n = model->n_cloths;
+    bool alike = true;
+    for (uint32_t c = 0; c < n; c++) {
+        reach[c] = kin_reach_of(model, c);
+        alike = alike && !(reach[c] < reach[0]) && !(reach[c] > reach[0]);
+    }
+    if (alike)
+        return CLOTH_OK;
+    uint32_t *parent = cloth_alloc((size_t)n + source->blocks.n_places, sizeof *parent, error);
+    if (!parent)
+        return CLOTH_E_MEMORY;
+    cloth_sets_start(parent, n + source->blocks.n_places); /* cloths, then places */
+    for (uint32_t c = 0; c < n; c++) {
+        const uint32_t *place = source->blocks.place + model_first(model, c);
+        for (uint32_t v = 0; v < model->cloths[c].mesh.n_vertices; v++)
+            if (place[v] != MESH_NO_PLACE)
+                cloth_sets_join(parent, c, n + kin_joined(source, place[v]));
+    }
+    for (uint32_t c = 0; c < n; c++) {
+        double *most = reach + cloth_sets_root(parent, c);
+        *most = reach[c] > *most ? reach[c] : *most;
+    }
+    for (uint32_t c = 0; c < n; c++)
+        reach[c] = reach[cloth_sets_root(parent, c)];
+    free(parent);
+    return CLOTH_OK;
+}
+
+/* reach: of each cloth. */
+static void kin_take_reach(const struct flow_source *source, const double *reach,
+                           struct kin_mesh *mesh)
+{
+    for (uint32_t c = 0; c < source->model->n_cloths; c++) {
+        const uint32_t *place = source->blocks.place + model_first(source->model, c);
+        for (uint32_t v = 0; v < source->model->cloths[c].mesh.n_vertices; v++)
+            if (place[v] != MESH_NO_PLACE)
+                mesh->reach[kin_joined(source, place[v])] = reach[c];
+    }
 }
 
 /* ---- A flood ---- */
@@ -237,32 +295,34 @@ void flow_find_low(const struct model *model, uint32_t cloth, struct mesh_low *l
 {
     *low = (struct mesh_low){0};
     if (model_seeks(model))
-        mesh_find_low(model_rest(model->cloths + cloth), flow_contact_reach(model), low);
+        mesh_find_low(model_rest(model->cloths + cloth), kin_reach_of(model, cloth), low);
 }
 
-static bool kin_is_needed(const struct model *model)
+/* reach: of each cloth. */
+static bool kin_is_needed(const struct model *model, const double *reach)
 {
     bool is = false;
-    for (uint32_t c = 0; c < model->n_cloths && !is; c++) {
+    for (uint32_t c = 0; c < model->n_cloths && !is && model_seeks(model); c++) {
         struct mesh_low low;
-        flow_find_low(model, c, &low);
+        mesh_find_low(model_rest(model->cloths + c), reach[c], &low);
         is = low.n > 0;
     }
     return is;
 }
 
-static int kin_refuse(const struct model *model, uint32_t triangle, struct cloth_error *error)
+/* reach: m. */
+static int kin_refuse(const struct model *model, uint32_t triangle, double reach,
+                      struct cloth_error *error)
 {
     uint32_t c = 0;
     while (triangle >= model->cloths[c].mesh.n_triangles)
         triangle -= model->cloths[c++].mesh.n_triangles;
     return model_fail(model->cloths[c].place, error,
                       "cloth '%.60s': more than %d triangles are nearer at rest than %g m to a "
-                      "corner of triangle %u (counted from 0); contact.thickness, %g m, should be "
-                      "smaller%s",
-                      model->cloths[c].name ? model->cloths[c].name : "", MOST,
-                      flow_contact_reach(model), triangle, model->contact.thickness,
-                      model_contact_cure(model));
+                      "corner of triangle %u (counted from 0); contact.thickness, or that of a "
+                      "material, %g m, should be smaller%s",
+                      model->cloths[c].name ? model->cloths[c].name : "", MOST, reach, triangle,
+                      reach / flow_contact_reach(model), model_contact_cure(model));
 }
 
 /* Lists the kin of all places, one after the other. */
@@ -276,8 +336,9 @@ static int kin_list(const struct flow_source *source, const struct kin_mesh *mes
         kin->clear[p] = INFINITY;
         if (mesh->start[p] == mesh->start[p + 1])
             continue;
+        flood->reach = mesh->reach[p];
         if (!flood_from(flood, p)) {
-            code = kin_refuse(source->model, mesh->star[mesh->start[p]] / 3, error);
+            code = kin_refuse(source->model, mesh->star[mesh->start[p]] / 3, flood->reach, error);
             continue;
         }
         kin->clear[p] = flood->clear;
@@ -291,12 +352,12 @@ static int kin_list(const struct flow_source *source, const struct kin_mesh *mes
     return code;
 }
 
-int flow_kin_make(struct flow_source *source, uint32_t n_triangles, struct cloth_error *error)
+/* reach: of each cloth. */
+static int kin_make_all(struct flow_source *source, uint32_t n_triangles, const double *reach,
+                        struct cloth_error *error)
 {
     struct flow_kin *kin = &source->skins.kin;
     struct kin_mesh mesh = {.n_places = source->blocks.n_places, .n = n_triangles};
-    if (!kin_is_needed(source->model))
-        return CLOTH_OK;
     struct flood *flood = cloth_alloc(1, sizeof *flood, error);
     uint32_t *seen = cloth_alloc(n_triangles, sizeof *seen, error);
     kin->start = cloth_alloc((size_t)mesh.n_places + 1, sizeof *kin->start, error);
@@ -304,19 +365,29 @@ int flow_kin_make(struct flow_source *source, uint32_t n_triangles, struct cloth
     int code = flood && seen && kin->start && kin->clear ? CLOTH_OK : CLOTH_E_MEMORY;
     code = code ? code : kin_make_room(&mesh, error);
     if (!code) {
+        kin_take_reach(source, reach, &mesh);
         kin_take_triangles(source, &mesh);
         kin_list_stars(&mesh);
         code = kin_join_sides(&mesh, error);
     }
     if (!code) {
         flood->mesh = &mesh;
-        flood->reach = flow_contact_reach(source->model);
         flood->seen = seen;
         code = kin_list(source, &mesh, flood, kin, error);
     }
     kin_free_mesh(&mesh);
     free(flood);
     free(seen);
+    return code;
+}
+
+int flow_kin_make(struct flow_source *source, uint32_t n_triangles, struct cloth_error *error)
+{
+    double *reach = cloth_alloc(source->model->n_cloths, sizeof *reach, error);
+    int code = reach ? kin_find_reach(source, reach, error) : CLOTH_E_MEMORY;
+    if (!code && kin_is_needed(source->model, reach))
+        code = kin_make_all(source, n_triangles, reach, error);
+    free(reach);
     return code;
 }
 

@@ -31,18 +31,19 @@ static void begin_meeting(const duite_call *call, size_t near, struct flow_list 
 {
     const struct flow *flow = flow_of(call);
     const struct flow_skin own = flow_skin_open(skin);
+    const struct flow_thickness thickness = flow_thickness_of(flow, args->side[0], args->side[1]);
     *m = (struct meeting){.flow = flow,
                           .model = flow->model,
                           .args = args,
-                          .reach = flow_contact_reach(flow->model),
+                          .thickness = thickness,
+                          .reach = flow_contact_reach(flow->model) * thickness.most,
                           .leaves_out =
                               flow_leaves_out(flow->model, args->side[1] >= flow->tables.n_blocks),
                           .attached = own.attached};
     flow_findings_open(call, near, list, args, counts, &m->findings);
     open_side(m, 0, &own, points, boxes);
-    m->side[0].parts = flow_contact_mode(flow->model)->sweeps
-                           ? contact_enough(flow->model->contact.thickness)
-                           : -INFINITY;
+    m->side[0].parts =
+        flow_contact_mode(flow->model)->sweeps ? contact_enough(thickness.most) : -INFINITY;
     m->side[0].ridges = args->side[1] < flow->tables.n_blocks;
 }
 

@@ -6,6 +6,7 @@
 #include "cloth/flow/contact/meeting.h"
 
 #include "cloth/contact/certificate.h"
+#include "cloth/contact/push.h"
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/mode.h"
 
@@ -65,15 +66,19 @@ bool flow_meeting_moved(const struct meeting *m, const struct flow_contact *cont
     return moved;
 }
 
-/* The friction coefficient of two features. */
-static double friction_of(const struct meeting *m, enum contact_pair pair, const uint32_t point[4],
-                          const unsigned char side[4])
+static const struct model_sides *sides_of(const struct meeting *m, const struct corners *corners)
 {
-    const uint32_t n = pair == CONTACT_EE ? 2 : 1; /* of the first one's corners */
-    const uint32_t a = contact_meet_side_of(m, point, side, 0, n),
-                   b = contact_meet_side_of(m, point, side, n, 4 - n);
-    return a < m->flow->n_cloths ? flow_friction_of(m->flow, a, b)
-                                 : flow_friction_of(m->flow, b, a);
+    const uint32_t n = corners->pair == CONTACT_EE ? 2 : 1; /* of the first one's corners */
+    const uint32_t a = contact_meet_side_of(m, corners->point, corners->side, 0, n),
+                   b = contact_meet_side_of(m, corners->point, corners->side, n, 4 - n);
+    return a < m->flow->n_cloths ? flow_sides_of(m->flow, a, b) : flow_sides_of(m->flow, b, a);
+}
+
+/* m: that keeps two features apart which are no kin. */
+static double thickness_of(const struct meeting *m, const struct corners *corners)
+{
+    const bool alike = !(m->thickness.least < m->thickness.most);
+    return alike ? m->thickness.most : sides_of(m, corners)->thickness;
 }
 
 /* True for a body's vertex and a block's triangle: the triangle comes first. */
@@ -140,7 +145,7 @@ double flow_meeting_kin_reach(const struct meeting *m)
     for (int k = 0; k < 2; k++)
         for (uint32_t i = 0; i < m->skin[k].n_points && m->kin[k].n; i++)
             most = isinf(m->kin[k].clear[i]) ? most : fmax(most, m->kin[k].clear[i]);
-    return CLEAR * most / m->model->contact.thickness * m->reach;
+    return CLEAR * most / m->thickness.most * m->reach;
 }
 
 /* Fills a contact, in zeroed memory. places: of the corners; they give the row's origin. */
@@ -150,6 +155,7 @@ static void contact_meet_describe_pair(const struct meeting *m, const struct cor
                                        struct flow_contact *to)
 {
     const int second = corners->side[0]; /* 1: of a triangle of the first side and a vertex */
+    const struct model_sides *sides = sides_of(m, corners);
     const bool turned = contact_meet_is_turned(m, corners);
     const double sign = turned ? -1 : 1;
     to->kind = turned ? (uint32_t)CONTACT_TV : (uint32_t)corners->pair;
@@ -158,7 +164,7 @@ static void contact_meet_describe_pair(const struct meeting *m, const struct cor
     to->row.normal = sign * nearest->normal;
     to->row.gap = nearest->gap;
     to->row.thickness = corners->thickness;
-    to->row.friction = friction_of(m, corners->pair, corners->point, corners->side);
+    to->row.friction = sides->friction;
     for (int k = 0; k < 2; k++) {
         to->side[k] = m->args->side[turned ? k : k ^ second];
         to->feature[k] = corners->candidate->of[k ^ second];
@@ -170,7 +176,7 @@ static void contact_meet_describe_pair(const struct meeting *m, const struct cor
         if (k < to->at.n)
             to->row.origin += to->at.weight[k] * places[from];
     }
-    to->row.hard = m->model->contact.pressure * contact_meet_area(m, corners, to);
+    to->row.hard = sides->pressure * contact_meet_area(m, corners, to);
 }
 
 /* True if a feature of the block and one of a body, whose surface goes on all around, press. They
@@ -217,7 +223,7 @@ static bool contact_meet_is_inside(const struct contact_nearest *nearest)
 static bool presses(const struct meeting *m, const struct corners *corners,
                     const struct contact_nearest *nearest)
 {
-    const double part = corners->thickness / m->model->contact.thickness;
+    const double part = corners->thickness / m->thickness.most;
     if (!(nearest->gap < part * m->reach))
         return false;
     if (m->body)
@@ -267,6 +273,7 @@ static void fail_pair(struct meeting *m, struct corners *corners)
     near.fails = true;
     near.presses = true;
     near.contact.row.firm = contact_row_firm_for(&near.contact.row, gap_ahead(corners, &nearest));
+    near.apart = contact_push_gap(nearest.gap, thickness_of(m, corners));
     (void)contact_cut(corners->pair, corners->x, corners->y, corners->thickness, corners->held,
                       part);
     for (uint32_t k = 0; k < 4; k++)
@@ -284,7 +291,7 @@ static void look_at_pair(struct meeting *m, struct corners *corners, enum contac
     struct contact_nearest nearest;
     if (passing != CONTACT_PASSES_BY)
         contact_meet_thin(m, corners);
-    if (passing == CONTACT_MAY_TOUCH && corners->thickness < m->model->contact.thickness)
+    if (passing == CONTACT_MAY_TOUCH && corners->thickness < m->thickness.most)
         passing = contact_pass(corners->pair, corners->x, corners->y, corners->thickness, m->reach);
     if (passing == CONTACT_MAY_TOUCH) {
         fail_pair(m, corners);
@@ -303,7 +310,7 @@ static bool contact_meet_is_left_out(const struct meeting *m, const struct corne
 {
     const uint32_t *point = corners->point;
     const unsigned char *side = corners->side;
-    if (friction_of(m, corners->pair, point, side) < 0)
+    if (sides_of(m, corners)->friction < 0)
         return true;
     const uint32_t n = corners->pair == CONTACT_EE ? 2 : 1, from = side[0] ? n : 0;
     return m->body && flow_is_attached(m->attached, side[0] ? 4 - n : n, point + from,
@@ -314,15 +321,13 @@ static bool contact_meet_is_left_out(const struct meeting *m, const struct corne
 static bool bring_corners(const struct meeting *m, const struct contact_candidate *candidate,
                           struct corners *to, struct contact_moving *moving)
 {
-    *to = (struct corners){.candidate = candidate,
-                           .x = moving->x,
-                           .y = moving->y,
-                           .thickness = m->model->contact.thickness};
+    *to = (struct corners){.candidate = candidate, .x = moving->x, .y = moving->y};
     to->pair = moving->pair =
         contact_candidate_corners(m->skin, m->skin + 1, candidate, to->point, to->side);
     if ((m->args->again && !candidate_moved(m, to)) ||
         (m->leaves_out && contact_meet_is_left_out(m, to)))
         return false;
+    to->thickness = thickness_of(m, to);
     for (unsigned k = 0; k < 4; k++) {
         const struct contact_side *side = m->side + to->side[k];
         moving->x[k] = side->x[to->point[k]];
@@ -347,7 +352,7 @@ void flow_meeting_visit(void *to, uint32_t n, const struct contact_candidate *ca
         for (uint32_t k = 0; k < some && parted; k++)
             passing[k] = CONTACT_PASSES;
         if (!parted)
-            contact_pass_all(some, moving, m->model->contact.thickness, m->reach, passing);
+            contact_pass_all(some, moving, m->thickness.most, m->reach, passing);
         for (uint32_t k = 0; k < some; k++)
             look_at_pair(m, corners + k, passing[k]);
     }

@@ -24,7 +24,8 @@ struct shape_meeting {
     struct contact_solid solid;
     double way;                 /* m: that points of the shape go in the step at most */
     bool sweeps;                /* as the mode does (mode.h), */
-    double reach;               /* m: and reaches */
+    double reach;               /* thicknesses: and reaches */
+    double far;                 /* m: with its thickest cloth */
     const unsigned char *moved; /* by point */
     uint32_t obstacle;          /* behind all cloths */
     const uint32_t *attached;   /* by point of the skin */
@@ -36,15 +37,16 @@ struct shape_meeting {
     size_t passes; /* triangles in reach that are certified */
 };
 
-/* The friction coefficient of the shape and the cloth of n points. */
-static double friction_at(const struct shape_meeting *m, uint32_t n, const uint32_t *point)
+/* The shape and the cloth of n points. */
+static const struct model_sides *sides_at(const struct shape_meeting *m, uint32_t n,
+                                          const uint32_t *point)
 {
-    return flow_friction_of(m->flow, flow_cloth_of(&m->skin, n, point), m->obstacle);
+    return flow_sides_of(m->flow, flow_cloth_of(&m->skin, n, point), m->obstacle);
 }
 
 static bool are_left_out(const struct shape_meeting *m, uint32_t n, const uint32_t *point)
 {
-    return friction_at(m, n, point) < 0 ||
+    return sides_at(m, n, point)->friction < 0 ||
            flow_is_attached(m->attached, n, point, m->obstacle - m->flow->n_cloths);
 }
 
@@ -55,12 +57,13 @@ static void describe_place(const struct shape_meeting *m, uint32_t n, const uint
                            struct flow_near *near)
 {
     struct flow_contact *to = &near->contact;
+    const struct model_sides *sides = sides_at(m, n, point);
     to->kind = FLOW_CONTACT_SHAPE;
     to->first = to->at.n = n;
     to->row.normal = on->normal;
     to->row.gap = on->gap;
-    to->row.thickness = m->model->contact.thickness;
-    to->row.friction = friction_at(m, n, point);
+    to->row.thickness = sides->thickness;
+    to->row.friction = sides->friction;
     for (int k = 0; k < 2; k++)
         to->side[k] = m->args->side[k];
     for (uint32_t k = 0; k < n; k++) {
@@ -70,18 +73,12 @@ static void describe_place(const struct shape_meeting *m, uint32_t n, const uint
         to->at.weight[k] = on->weight[k];
         to->at.held |= (unsigned char)((m->skin.held[point[k]] != 0) << k);
         to->row.origin += on->weight[k] * places[k];
-        to->row.hard += m->model->contact.pressure * on->weight[k] * m->area[point[k]];
+        to->row.hard += sides->pressure * on->weight[k] * m->area[point[k]];
         near->part[k] = 1;
     }
 }
 
 /* ---- The gap ahead ---- */
-
-static bool meet_shape_is_certified(const struct shape_meeting *m, const phys_vec x[3],
-                                    const phys_vec y[3])
-{
-    return contact_solid_certify(&m->solid, x, y, m->model->contact.thickness);
-}
 
 /* The gap at a point one step later, if point and shape move on as in this step; from the begin of
  * this step, the gap at its end. */
@@ -97,12 +94,13 @@ static double gap_of_place_ahead(const struct shape_meeting *m, const phys_vec *
 /* ---- Triangles ---- */
 
 /* Corners that fail alone are contacts of their own. */
-static bool fails_alone(const struct shape_meeting *m, const phys_vec x[3], const phys_vec y[3])
+static bool fails_alone(const struct shape_meeting *m, double thickness, const phys_vec x[3],
+                        const phys_vec y[3])
 {
     bool fails = false;
     for (int k = 0; k < 3; k++) {
         const phys_vec begin[3] = {x[k], x[k], x[k]}, end[3] = {y[k], y[k], y[k]};
-        fails = fails || !meet_shape_is_certified(m, begin, end);
+        fails = fails || !contact_solid_certify(&m->solid, begin, end, thickness);
     }
     return fails;
 }
@@ -113,14 +111,14 @@ static void push_place(const struct shape_meeting *m, uint32_t n, const phys_vec
                        const phys_vec y[3], const struct contact_solid_point *on,
                        struct flow_near *near)
 {
-    const double apart = contact_push_gap(on->gap, m->model->contact.thickness);
+    near->apart = contact_push_gap(on->gap, near->contact.row.thickness);
     phys_vec place = m->h * on->velocity;
     for (int k = 0; k < 3; k++)
         place += on->weight[k] * x[k];
     for (uint32_t k = 0; k < n; k++) {
         const phys_vec from = y[k] - place;
         const double gap = on->gap + phys_dot(&on->normal, &from);
-        near->along[k] = near->contact.at.held >> k & 1 ? 0 : fmax(apart - gap, 0);
+        near->along[k] = near->contact.at.held >> k & 1 ? 0 : fmax(near->apart - gap, 0);
     }
 }
 
@@ -134,7 +132,7 @@ static void fail_place(struct shape_meeting *m, uint32_t n, const uint32_t *poin
     near->fails = true;
     near->contact.row.firm =
         contact_row_firm_for(&near->contact.row, gap_of_place_ahead(m, x, y, on));
-    (void)contact_solid_cut(&m->solid, x, y, m->model->contact.thickness, near->contact.at.held,
+    (void)contact_solid_cut(&m->solid, x, y, near->contact.row.thickness, near->contact.at.held,
                             part);
     for (uint32_t k = 0; k < n; k++)
         near->part[k] = part[k];
@@ -149,7 +147,7 @@ static void fail_triangle(struct shape_meeting *m, uint32_t triangle, const phys
     memset(&near, 0, sizeof near); /* padding, too: lists are compared byte by byte */
     contact_solid_nearest(&m->solid, CONTACT_BEGIN, x, &on);
     fail_place(m, 3, m->skin.corner[triangle], x, y, &on, &near);
-    near.presses = !fails_alone(m, x, y);
+    near.presses = !fails_alone(m, near.contact.row.thickness, x, y);
     near.contact.feature[0] = triangle;
     near.contact.feature[1] = FLOW_ON_TRIANGLE;
     flow_findings_add(&m->findings, &near);
@@ -157,10 +155,11 @@ static void fail_triangle(struct shape_meeting *m, uint32_t triangle, const phys
 
 static void list_triangle(struct shape_meeting *m, uint32_t triangle, const phys_vec y[3])
 {
+    const double thickness = sides_at(m, 3, m->skin.corner[triangle])->thickness;
     struct contact_solid_point on;
     struct flow_near near;
     contact_solid_nearest(&m->solid, CONTACT_END, y, &on);
-    if (on.feature < CONTACT_ON_EDGE || !(on.gap < m->reach))
+    if (on.feature < CONTACT_ON_EDGE || !(on.gap < m->reach * thickness))
         return;
     if (!m->sweeps && !(on.gap > 0))
         return; /* its corners know the way out */
@@ -178,8 +177,9 @@ static void look_at_triangle(struct shape_meeting *m, uint32_t triangle)
     const uint32_t *point = m->skin.corner[triangle];
     const phys_vec x[3] = {m->x[point[0]], m->x[point[1]], m->x[point[2]]};
     const phys_vec y[3] = {m->y[point[0]], m->y[point[1]], m->y[point[2]]};
+    const double thickness = sides_at(m, 3, point)->thickness;
     const enum contact_passing passing =
-        contact_solid_pass(&m->solid, x, y, m->model->contact.thickness, m->reach);
+        contact_solid_pass(&m->solid, x, y, thickness, m->reach * thickness);
     m->passes += passing == CONTACT_PASSES;
     if (passing == CONTACT_PASSES)
         list_triangle(m, triangle, y);
@@ -201,21 +201,21 @@ static void find_vertex(const struct shape_meeting *m, enum contact_end end, con
  * move on as in this step. The distance from a convex shape is a convex function of the way, so its
  * tangent at a place leads to a place that is not behind the first near one. A vertex that passes
  * beside the shape is no contact: the plane of its nearest point would hold it up. */
-static bool comes_near(const struct shape_meeting *m, const phys_vec *x, const phys_vec *y,
-                       const struct contact_solid_point *on)
+static bool comes_near(const struct shape_meeting *m, double thickness, const phys_vec *x,
+                       const phys_vec *y, const struct contact_solid_point *on)
 {
     const phys_vec way = *y - *x - m->h * on->velocity;
     struct contact_solid_point at = *on;
     double part = 0;
     for (int i = 0; i < APPROACHES; i++) {
-        const double lacks = at.gap - m->model->contact.thickness;
+        const double lacks = at.gap - thickness;
         const double rate = phys_dot(&at.normal, &way);
         part -= lacks / rate;
         if (!(rate < 0 && part < 1))
             return false;
         const phys_vec place = *y + part * way, triangle[3] = {place, place, place};
         find_vertex(m, CONTACT_END, triangle, &at);
-        if (at.gap < m->reach)
+        if (at.gap < m->reach * thickness)
             return true;
     }
     return true;
@@ -225,12 +225,13 @@ static bool comes_near(const struct shape_meeting *m, const phys_vec *x, const p
 static void list_vertex(struct shape_meeting *m, uint32_t point, const phys_vec x[3],
                         const phys_vec y[3], struct flow_near *near)
 {
+    const double thickness = sides_at(m, 1, &point)->thickness;
     struct contact_solid_point on;
     find_vertex(m, CONTACT_END, y, &on);
-    if (!(on.gap < m->reach) && !comes_near(m, x, y, &on))
+    if (!(on.gap < m->reach * thickness) && !comes_near(m, thickness, x, y, &on))
         return;
     describe_place(m, 1, &point, y, &on, near);
-    if (on.gap > m->model->contact.thickness)
+    if (on.gap > thickness)
         near->contact.row.firm =
             contact_row_firm_for(&near->contact.row, gap_of_place_ahead(m, x, y, &on));
     flow_findings_add(&m->findings, near);
@@ -245,7 +246,7 @@ static void meet_shape_look_at_vertex(struct shape_meeting *m, uint32_t vertex)
     memset(&near, 0, sizeof near);
     near.contact.feature[0] = vertex;
     near.contact.feature[1] = FLOW_ON_VERTEX;
-    if (meet_shape_is_certified(m, x, y)) {
+    if (contact_solid_certify(&m->solid, x, y, sides_at(m, 1, &point)->thickness)) {
         list_vertex(m, point, x, y, &near);
         return;
     }
@@ -264,7 +265,7 @@ static void list_place(struct shape_meeting *m, uint32_t vertex, const struct co
     const uint32_t point = m->skin.vertex[vertex];
     const struct contact_solid_point on = {.weight = {1}, .normal = hit->normal, .gap = hit->gap};
     struct flow_near near;
-    if (!(hit->gap < m->reach))
+    if (!(hit->gap < m->reach * sides_at(m, 1, &point)->thickness))
         return;
     memset(&near, 0, sizeof near);
     describe_place(m, 1, &point, m->y + point, &on, &near);
@@ -304,7 +305,7 @@ static bool are_apart(const struct shape_meeting *m, const struct contact_bunch 
 {
     double low[3], high[3];
     contact_bunch_box(bunch, m->x, m->y, low, high);
-    return contact_solid_apart(&m->solid, low, high, m->reach + m->way);
+    return contact_solid_apart(&m->solid, low, high, m->far + m->way);
 }
 
 /* True for features of n points that the last look at the step has seen as they are. */
@@ -374,12 +375,15 @@ FLOW_KERNEL(meet_shape, FLOW_COLLIDE, struct flow_meet_args,
 {
     const struct flow_meet_args *args = on->args;
     const struct flow *flow = flow_of(call);
+    const double most = flow_thickness_of(flow, args->side[0], args->side[1]).most,
+                 reach = flow_contact_reach(flow->model);
     const struct contact_shape *shape =
         flow->model->obstacles + (args->side[1] - flow->tables.n_blocks);
     struct shape_meeting m = {.flow = flow,
                               .model = flow->model,
                               .sweeps = flow_contact_mode(flow->model)->sweeps,
-                              .reach = flow_contact_reach(flow->model),
+                              .reach = reach,
+                              .far = reach * most,
                               .args = args,
                               .obstacle = flow->n_cloths + (args->side[1] - flow->tables.n_blocks),
                               .shape = shape,

@@ -16,9 +16,10 @@ struct meeting {
     const uint32_t *attached;        /* by point of the first skin */
     const double *area[2];           /* by point of each skin; of a body NULL */
     struct flow_skin_kin kin[2];
-    bool leaves_out;               /* see flow_leaves_out */
-    double reach;                  /* m: as the mode has it (mode.h) */
-    const unsigned char *moved[2]; /* by point of each skin; NULL: it rests */
+    bool leaves_out;                 /* see flow_leaves_out */
+    struct flow_thickness thickness; /* of its pairs */
+    double reach;                    /* m: of the thickest, as the mode has it (mode.h) */
+    const unsigned char *moved[2];   /* by point of each skin; NULL: it rests */
     struct contact_skin skin[2];
     struct contact_side side[2]; /* of a block that meets itself: both */
     struct flow_findings findings;

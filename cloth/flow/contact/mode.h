@@ -32,7 +32,7 @@ struct flow_contact_mode {
     /* Is told if the step was accepted. Collective. */
     int (*settled)(struct flow_state *state, const double status[FLOW_STATUS], bool accepted);
 
-    /* m: nearer features are contacts; NULL: the mode looks for none. */
+    /* Thicknesses: nearer features are contacts; NULL: the mode looks for none. */
     double (*reach)(const struct model *model);
 
     /* What it needs. */

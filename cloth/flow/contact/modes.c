@@ -3,6 +3,8 @@
 
 #include "cloth/flow/contact/contact.h"
 
+#include <math.h>
+
 static bool is_none(const struct model *model)
 {
     (void)model;
@@ -32,6 +34,22 @@ static const struct flow_contact_mode *mode_of(const struct flow_state *state)
 double flow_contact_reach(const struct model *model)
 {
     return flow_contact_mode(model)->reach(model);
+}
+
+struct flow_thickness flow_thickness_of(const struct flow *flow, uint32_t a, uint32_t b)
+{
+    const uint32_t n_blocks = flow->tables.n_blocks, obstacle = flow->n_cloths + (b - n_blocks);
+    const uint32_t *own = flow->tables.block[a].skin.cloth;
+    const uint32_t of[2] = {obstacle, obstacle};
+    const uint32_t *other = b < n_blocks ? flow->tables.block[b].skin.cloth : of;
+    struct flow_thickness all = {INFINITY, 0};
+    for (uint32_t c = own[0]; c <= own[1]; c++)
+        for (uint32_t i = other[0]; i <= other[1]; i++) {
+            const double thickness = flow_sides_of(flow, c, i)->thickness;
+            all.least = thickness < all.least ? thickness : all.least;
+            all.most = thickness > all.most ? thickness : all.most;
+        }
+    return all;
 }
 
 int flow_contact_start(struct flow_state *state)

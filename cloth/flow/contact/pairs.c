@@ -88,7 +88,7 @@ static bool sides_meet(const struct flow_state *state, uint32_t a, uint32_t b)
     bool meet = false;
     for (uint32_t c = own->cloth[0]; c <= own->cloth[1]; c++)
         for (uint32_t i = from; i <= to; i++)
-            meet = meet || flow_friction_of(flow, c, i) >= 0;
+            meet = meet || flow_sides_of(flow, c, i)->friction >= 0;
     return meet;
 }
 
@@ -102,15 +102,18 @@ static bool is_shape(const struct flow_state *state, uint32_t side)
            !(flow_contact_mode(model)->sweeps && model->obstacles[side - n_blocks].body);
 }
 
-/* Block a and any side: at some time of the step. */
-static bool sides_are_near(const struct flow_state *state, uint32_t a, uint32_t b, double reach)
+/* Block a and any side: at some time of the step. reach, spare: thicknesses. */
+static bool sides_are_near(const struct flow_state *state, uint32_t a, uint32_t b, double reach,
+                           double spare)
 {
+    const double most = flow_thickness_of(state->flow, a, b).most;
+    const double far = reach * most + spare * most;
     const double *root = state->contact.root, *own = root + FLOW_ROOT * (size_t)a;
     const uint32_t n_blocks = state->flow->tables.n_blocks;
     const bool near =
         is_shape(state, b)
-            ? !contact_solid_apart(state->contact.solid + (b - n_blocks), own, own + 3, reach)
-            : pairs_is_near(own, root + FLOW_ROOT * (size_t)b, reach);
+            ? !contact_solid_apart(state->contact.solid + (b - n_blocks), own, own + 3, far)
+            : pairs_is_near(own, root + FLOW_ROOT * (size_t)b, far);
     return near && sides_meet(state, a, b);
 }
 
@@ -130,7 +133,7 @@ static bool all_meet(const struct flow_state *state)
         for (uint32_t b = a; b < n_sides; b++) {
             const bool met = at < meetings->n && meetings->all[at].side[0] == a &&
                              meetings->all[at].side[1] == b;
-            if (!met && sides_are_near(state, a, b, reach))
+            if (!met && sides_are_near(state, a, b, reach, 0))
                 return false;
             at += met;
         }
@@ -143,7 +146,7 @@ static uint32_t count_near(const struct flow_state *state, double reach)
     uint32_t n = 0;
     for (uint32_t a = 0; a < n_blocks; a++)
         for (uint32_t b = a; b < n_sides; b++)
-            n += sides_are_near(state, a, b, reach);
+            n += sides_are_near(state, a, b, reach, SPARE);
     return n;
 }
 
@@ -173,15 +176,14 @@ static int make_meetings(struct flow_state *state)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
     const uint32_t n_blocks = state->flow->tables.n_blocks, n_sides = pairs_count_sides(state);
-    const double reach =
-        flow_contact_reach(state->flow->model) + SPARE * state->flow->model->contact.thickness;
+    const double reach = flow_contact_reach(state->flow->model);
     flow_contact_part(state);
     const int code = flow_contact_room(state, count_near(state, reach));
     if (code)
         return code;
     for (uint32_t a = 0; a < n_blocks; a++)
         for (uint32_t b = a; b < n_sides; b++) {
-            if (!sides_are_near(state, a, b, reach))
+            if (!sides_are_near(state, a, b, reach, SPARE))
                 continue;
             struct flow_meeting *meeting = meetings->all + meetings->n++;
             *meeting = (struct flow_meeting){.side = {a, b}, .room = LEAST_ROOM};

@@ -16,7 +16,7 @@ static const double LIGHT = 0.25; /* of the mean mass: that of a grid's corners 
 
 static double reach_of_springs(const struct model *model)
 {
-    return (model_is_implicit(model) ? BAND : 1) * model->contact.thickness;
+    return model_is_implicit(model) ? BAND : 1;
 }
 
 static double stiffness_of(const struct flow *flow)
@@ -33,13 +33,12 @@ static double stiffness_of(const struct flow *flow)
 static struct contact_spring spring_of(const struct flow *flow, double h)
 {
     const double stiffness = stiffness_of(flow);
-    const double band = reach_of_springs(flow->model) - flow->model->contact.thickness;
     return (struct contact_spring){.stiffness = stiffness,
                                    .damping = 2 * flow->model->contact.damping *
                                               sqrt(stiffness * flow->vertex_mass),
                                    .hold = stiffness * h,
                                    .spare = h > 0 ? LIGHT * flow->vertex_mass / h : 0,
-                                   .band = band};
+                                   .reach = reach_of_springs(flow->model)};
 }
 
 /* A step with contacts uses only the state of its begin: BDF2 would take the jump of a force for

@@ -24,8 +24,8 @@ static const size_t SHAPE = offsetof(struct flow_table, neighbour);
 
 /* ---- The arrays that all ranks share ---- */
 
-/* Frictions of all sides. */
-static size_t n_frictions(const struct model *model)
+/* Pairs of all sides. */
+static size_t n_sides(const struct model *model)
 {
     return (size_t)model->n_cloths * ((size_t)model->n_cloths + model->n_obstacles);
 }
@@ -42,9 +42,9 @@ static size_t n_frictions(const struct model *model)
     X(struct model_motion, motions, m->n_motions, flow->model->motions)                            \
     X(uint32_t, apart_end, m->contact.apart.apart ? m->n_cloths : 0,                               \
       flow->model->contact.apart.end)                                                              \
-    X(unsigned char, apart, m->contact.apart.apart ? n_frictions(m) : 0,                           \
+    X(unsigned char, apart, m->contact.apart.apart ? n_sides(m) : 0,                               \
       flow->model->contact.apart.apart)                                                            \
-    X(double, friction, n_frictions(m), NULL)                                                      \
+    X(struct model_sides, sides, n_sides(m), NULL)                                                 \
     X(struct flow_anchor, anchor, head->n_anchors, source->particles.anchor)                       \
     X(struct flow_tie, tie, head->n_ties, NULL)                                                    \
     X(unsigned char, shape, head->n_blocks *SHAPE, NULL)                                           \
@@ -69,11 +69,13 @@ static size_t lay_shared(const struct flow_head *head, void *memory, struct shar
     return room.used;
 }
 
-static void put_frictions(const struct model *model, double *to)
+static void put_sides(const struct model *model, struct model_sides *to)
 {
     for (uint32_t c = 0; c < model->n_cloths; c++)
-        for (uint32_t i = 0; i < model->n_cloths + model->n_obstacles; i++)
-            *to++ = model_meets(model, c, i) ? model_friction(model, c, i) : FLOW_APART;
+        for (uint32_t i = 0; i < model->n_cloths + model->n_obstacles; i++, to++) {
+            *to = model_sides(model, c, i);
+            to->friction = model_meets(model, c, i) ? to->friction : FLOW_APART;
+        }
 }
 
 static void put_bytes(void *to, const void *from, size_t bytes)
@@ -138,7 +140,7 @@ FLOW_KERNEL(broadcast_shared, FLOW_NO_PART, struct flow_block_args, (GIVEN_W(sen
     lay_shared(head, on->sent, &to);
 #define SHARED_PUT(type, name, n, from) put_bytes(to.name, from, (n) * sizeof *to.name);
     SHARED(SHARED_PUT)
-    put_frictions(flow->model, to.friction);
+    put_sides(flow->model, to.sides);
     for (uint32_t i = 0; i < head->n_ties; i++)
         to.tie[i] = flow_joints_tie(source, source->springs.timed + i);
     for (uint32_t b = 0; b < head->n_blocks; b++)
@@ -206,7 +208,7 @@ static void open_shared(struct flow *flow, const struct flow_head *head,
     model->motions = arrays->motions;
     model->contact.apart.end = arrays->apart_end;
     model->contact.apart.apart = head->model.contact.apart.apart ? arrays->apart : NULL;
-    flow->friction = arrays->friction;
+    flow->sides = arrays->sides;
     flow->n_cloths = head->model.n_cloths;
     flow->n_anchors = head->n_anchors;
     flow->anchor = arrays->anchor;

@@ -111,9 +111,9 @@ struct flow {
     struct flow_tables tables; /* shapes */
     void *shared;              /* memory that members here point to, the same on all ranks */
     uint32_t n_cloths;
-    const double *friction; /* n_cloths x (n_cloths + n_obstacles): the coefficient of a cloth and
-                             * another side, cloths before obstacles; FLOW_APART: the two do not
-                             * meet */
+    const struct model_sides *sides; /* n_cloths x (n_cloths + n_obstacles): a cloth and another
+                                      * side, cloths before obstacles; friction FLOW_APART: the two
+                                      * do not meet */
     uint32_t n_anchors;
     const struct flow_anchor *anchor; /* n_anchors: of motions behind those of the model */
     uint32_t n_ties;

@@ -2,7 +2,9 @@
  * thickness that the numbers of the scene resolve. */
 #include "cloth/scene/build/build.h"
 
+#include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 
 static const double MARGIN = 1e-9; /* m: of a certificate */
 static const double OPEN = 0.1;    /* part of the thickness that steps leave open */
@@ -80,18 +82,41 @@ static double farthest_coordinate(const struct model *model)
 }
 
 /* Points that steps leave apart must stay apart in frames. Floats move each coordinate by up to
- * 2^-24 of it, so two points approach by up to 2 sqrt(3) of that. */
-static int check_thickness(const struct scene_tree *tree, int node)
+ * 2^-24 of it, so two points approach by up to 2 sqrt(3) of that. A thickness of 0 is not given. */
+static int check_thickness(const struct scene_tree *tree, int map, const char *of, double thickness)
 {
     const struct model *model = tree->model;
-    const double far = farthest_coordinate(model);
+    const double far = thickness > 0 ? farthest_coordinate(model) : 0;
     const double least = (MARGIN + 2 * sqrt(3) * far / 16777216) / OPEN;
-    if (model->contact.thickness >= least)
+    if (thickness >= least || !(thickness > 0))
         return CLOTH_OK;
-    return scene_tree_fail(tree, node,
-                           "contact.thickness is %g m; at least %.3g m is expected: frames are in "
+    return scene_tree_fail(tree, scene_tree_get(tree, map, "thickness"),
+                           "%.80s.thickness is %g m; at least %.3g m is expected: frames are in "
                            "float, and cloth that is %g m from the origin needs that much%s",
-                           model->contact.thickness, least, far, model_contact_cure(model));
+                           of, thickness, least, far, model_contact_cure(model));
+}
+
+static int check_thicknesses(const struct scene_tree *tree)
+{
+    const struct model *model = tree->model;
+    const int materials = scene_tree_get(tree, 1, "materials"),
+              obstacles = scene_tree_get(tree, 1, "obstacles");
+    int code = check_thickness(tree, scene_tree_get(tree, 1, "contact"), "contact",
+                               model->contact.thickness);
+    char of[80];
+    for (uint32_t i = 0; i < model->n_materials && !code; i++) {
+        snprintf(of, sizeof of, "materials.%.60s", model->materials[i].name);
+        code = check_thickness(tree, scene_tree_pair(tree, materials, i).value, of,
+                               model->materials[i].thickness);
+    }
+    for (uint32_t i = 0; i < model->n_obstacles && !code; i++) {
+        const struct contact_shape *shape = model->obstacles + i;
+        const char *kind = contact_kinds[shape->kind]->name;
+        snprintf(of, sizeof of, "obstacles[%" PRIu32 "].%s", i, kind);
+        const int obstacle = scene_tree_item(tree, obstacles, i);
+        code = check_thickness(tree, scene_tree_get(tree, obstacle, kind), of, shape->thickness);
+    }
+    return code;
 }
 
 /* Checks that no body is met by maps. */
@@ -121,7 +146,5 @@ int scene_build_check_contact(struct scene_tree *tree)
                                "explicit steps (integrator: %s) solve no system that knows of "
                                "contact; repulsion or project is expected",
                                model_contact_name(model), model_scheme(model)->name);
-    return (is->no_maps && check_bodies(tree)) ||
-           (is->promise.apart &&
-            check_thickness(tree, scene_tree_at(tree, 1, "contact.thickness")));
+    return (is->no_maps && check_bodies(tree)) || (is->promise.apart && check_thicknesses(tree));
 }

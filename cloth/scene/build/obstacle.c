@@ -172,6 +172,8 @@ static int build_shape(struct contact_shape *shape, struct scene_tree *tree, int
     shape->friction = scene_tree_get(tree, node, "friction")
                           ? scene_tree_number(tree, node, "friction")
                           : tree->model->contact.friction;
+    if (scene_tree_get(tree, node, "thickness"))
+        shape->thickness = scene_tree_number(tree, node, "thickness");
     const int motion = scene_tree_get(tree, node, "motion");
     return code || (kind == &contact_body_kind && obstacle_build_body(shape, tree, node)) ||
            (motion && build_shape_motion(shape, tree, motion));

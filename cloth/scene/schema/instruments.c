@@ -12,6 +12,10 @@
  * secant to 0.5 1/cm, as cloth hangs: friction holds up a fold, too. FAST's cantilever is a secant
  * by itself.
  *
+ * Compression. KES prints the thickness T and, to a load P, the energy WC and the linearity LC = 2
+ * WC / (P lost) of what is lost of it; FAST two thicknesses. The law of contact halves T by the
+ * pressure P (T / lost - 1).
+ *
  * Damping. A loop whose area is that of the instrument's hysteresis, at one swing a second: the
  * force b k w a of a rate b (s), amplitude a and w = 2 pi / s takes pi b k w a^2 a swing. */
 #include "cloth/base/number.h"
@@ -24,12 +28,14 @@ static const double GF_PER_CM = 0.980665;        /* N/m */
 static const double GF_CM = 9.80665e-5;          /* N m */
 static const double LOADS[] = {5, 20, 100, 500}; /* gf/cm: FAST's three, and KES's largest */
 enum { FAST_LOADS = 3, KES_LOADS = 4 };
-static const double KES_SHEARED = 8;            /* degrees, either way */
-static const double KES_BENT = 2.5;             /* 1/cm, either way */
-static const double KES_HANGS = 0.5;            /* 1/cm */
-static const double FAST_SHEAR = 123;           /* N/m: G = 123 / EB5 */
-static const double FAST_BEND = 9.81e-12;       /* N m of g/m^2 and mm^3 */
-static const double SWINGS = 6.283185307179586; /* rad/s: one a second */
+static const double GF_PER_CM2 = 98.0665;                 /* Pa */
+static const double KES_PRESSED = 50, FAST_PRESSED = 100; /* gf/cm^2 */
+static const double KES_SHEARED = 8;                      /* degrees, either way */
+static const double KES_BENT = 2.5;                       /* 1/cm, either way */
+static const double KES_HANGS = 0.5;                      /* 1/cm */
+static const double FAST_SHEAR = 123;                     /* N/m: G = 123 / EB5 */
+static const double FAST_BEND = 9.81e-12;                 /* N m of g/m^2 and mm^3 */
+static const double SWINGS = 6.283185307179586;           /* rad/s: one a second */
 
 struct sheet {
     struct scene_tree *tree;
@@ -157,18 +163,29 @@ static int fill_damping(const struct sheet *sheet)
     return fill_text(sheet, "damping", text);
 }
 
+/* Thickness, mm, of which a load takes some (cloth/contact/row.h); load: gf/cm^2. */
+static int fill_thickness(const struct sheet *sheet, double thickness, double lost, double load)
+{
+    return fill_number(sheet, "thickness", thickness / 1000) ||
+           (lost > 0 && fill_number(sheet, "pressure", load * GF_PER_CM2 * (thickness / lost - 1)));
+}
+
 static int fill_kes(const struct sheet *sheet)
 {
+    const double line = value_of(sheet, "LC", 0);
+    const double lost = 20 * value_of(sheet, "WC", 0) / (KES_PRESSED * (line > 0 ? line : 1));
     const double bend[2] = {kes_rigidity(sheet, 0), kes_rigidity(sheet, 1)};
     return fill_number(sheet, "density", value_of(sheet, "W", 0) / 100) ||
            fill_curve(sheet, kes_strains) ||
            fill_number(sheet, "shear", mean_of(sheet, "G") * GF_PER_CM * 180 / M_PI) ||
            fill_rigidity(sheet, bend) || fill_damping(sheet) ||
-           fill_number(sheet, "friction", mean_of(sheet, "MIU"));
+           fill_number(sheet, "friction", mean_of(sheet, "MIU")) ||
+           fill_thickness(sheet, value_of(sheet, "T", 0), lost, KES_PRESSED);
 }
 
 static int fill_fast(const struct sheet *sheet)
 {
+    const double thick = value_of(sheet, "T2", 0), thin = value_of(sheet, "T100", 0);
     const double weight = value_of(sheet, "W", 0), given = mean_of(sheet, "G");
     double bend[2];
     for (size_t i = 0; i < 2; i++)
@@ -177,7 +194,8 @@ static int fill_fast(const struct sheet *sheet)
                       : FAST_BEND * weight * pow(value_of(sheet, "C", i), 3);
     return fill_number(sheet, "density", weight / 1000) || fill_curve(sheet, fast_strains) ||
            fill_number(sheet, "shear", given > 0 ? given : FAST_SHEAR / mean_of(sheet, "EB5")) ||
-           fill_rigidity(sheet, bend);
+           fill_rigidity(sheet, bend) ||
+           fill_thickness(sheet, thick, thin > 0 ? thick - thin : 0, FAST_PRESSED);
 }
 
 int scene_instruments_fill(struct scene_tree *tree, int material)

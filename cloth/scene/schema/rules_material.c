@@ -84,6 +84,10 @@ static const struct scene_rule kes_keys[] = {
     SHEET("B", "gf cm^2/cm", "bending rigidity"),
     SHEET("2HB", "gf cm/cm", "hysteresis of bending"),
     SHEET("MIU", NULL, "friction of the surface"),
+    {"T", SCENE_NUMBER, "mm", .range = SCENE_POSITIVE, .about = "thickness at 0.5 gf/cm^2"},
+    {"LC", SCENE_NUMBER, .range = SCENE_POSITIVE, .about = "linearity of the compression; else 1"},
+    {"WC", SCENE_NUMBER, "gf cm/cm^2", .range = SCENE_POSITIVE,
+     .about = "energy of the compression to 50 gf/cm^2"},
     {"W", SCENE_NUMBER, "mg/cm^2", .range = SCENE_POSITIVE, .about = "weight"},
     {0}};
 static const struct scene_rule fast_keys[] = {
@@ -94,6 +98,8 @@ static const struct scene_rule fast_keys[] = {
     SHEET("G", "N/m", "shear rigidity; else 123 / EB5"),
     SHEET("C", "mm", "bending length"),
     SHEET("B", "uN m", "bending rigidity; else by W and C"),
+    {"T2", SCENE_NUMBER, "mm", .range = SCENE_POSITIVE, .about = "thickness at 2 gf/cm^2"},
+    {"T100", SCENE_NUMBER, "mm", .range = SCENE_POSITIVE, .about = "thickness at 100 gf/cm^2"},
     {"W", SCENE_NUMBER, "g/m^2", .range = SCENE_POSITIVE, .about = "weight"},
     {0}};
 
@@ -158,6 +164,13 @@ static const struct scene_rule material_keys[] = {
      "([physics.md](physics.md#sizes)); strains and colours of frames are against the mesh", .needs = NEEDS_OWN_EDGES},
     {"friction", SCENE_NUMBER, .range = SCENE_COEFFICIENT, INTO(struct model_material, friction),
      .about = "coefficient of contact; else that of contact", .needs = NEEDS_MET},
+    {"thickness", SCENE_NUMBER, "m", .range = SCENE_POSITIVE,
+     INTO(struct model_material, thickness),
+     .about = "of which a contact has half on this side; else that of contact",
+     .needs = NEEDS_MET},
+    {"pressure", SCENE_NUMBER, "Pa", .range = SCENE_POSITIVE,
+     INTO(struct model_material, pressure),
+     .about = "by which it is half as thick; else that of contact", .needs = NEEDS_CERTIFIED},
     {"diagonals", SCENE_CHOICE, .fallback = "both", INTO(struct model_material, both_diagonals),
      WORDS({"both", true}, {"one", false}),
      .about = "shear springs in a cell of a grid"},

@@ -10,6 +10,9 @@
      .about = "names for contact.ignore, of your choice"}, \
     {"friction", SCENE_NUMBER, .range = SCENE_COEFFICIENT, .shared = "Every obstacle", \
      .about = "coefficient of contact; else that of contact", .needs = NEEDS_MET}, \
+    {"thickness", SCENE_NUMBER, "m", .range = SCENE_POSITIVE, .shared = "Every obstacle", \
+     .about = "of which a contact has half on this side; else that of contact", \
+     .needs = NEEDS_MET}, \
     {"motion", SCENE_MAP, .inside = scene_motion_keys, .shared = "Every obstacle", \
      .about = "from where the other keys say, by key frames; it need not begin there", \
      .needs = NEEDS_MOVING, .section = "Motion"}

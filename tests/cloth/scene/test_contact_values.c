@@ -139,6 +139,36 @@ UNIT_TEST(frictions)
     ck_assert_double_eq(model.materials[0].friction, 0);
 }
 
+/* Halves of both sides' thickness; a pressure that leaves half of both halves together. */
+UNIT_TEST(sides_of_contact)
+{
+    UNIT_OWNED(model_free)
+    struct model model =
+        scene_read_changed("  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
+                           "  cotton: {density: 0.2, stretch: 50}\n"
+                           "contact: {mode: certified, thickness: 0.003, pressure: 700}\n");
+    struct model_sides self = model_sides(&model, 0, 0), floor = model_sides(&model, 0, 1);
+    ck_assert_double_eq(self.thickness, 0.003);
+    ck_assert_double_eq(self.pressure, 700);
+    ck_assert_double_eq(floor.thickness, 0.003);
+    ck_assert_double_eq(floor.pressure, 700);
+    model_free(&model);
+    model = scene_read_changed(
+        "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
+        "  cotton: {density: 0.2, stretch: 50, thickness: 0.004, pressure: 100}\n"
+        "  silk: {density: 0.1, stretch: 50, thickness: 0.001, pressure: 6400}\n"
+        "contact: {mode: certified, thickness: 0.003, pressure: 700}\n");
+    self = model_sides(&model, 0, 0);
+    floor = model_sides(&model, 0, 1);
+    ck_assert_double_eq(self.thickness, 0.004);
+    ck_assert_double_eq(self.pressure, 100);
+    ck_assert_double_eq(floor.thickness, 0.0035);
+    ck_assert_double_eq(floor.pressure, 100); /* as hard as the cloth */
+    model.materials[0].thickness = 0.001;
+    model.obstacles[0].thickness = 0.002;
+    ck_assert_double_eq(model_sides(&model, 0, 1).thickness, 0.0015);
+}
+
 UNIT_TEST(probes_of_contact)
 {
     UNIT_OWNED(model_free)

@@ -52,8 +52,9 @@ UNIT_TEST(materials_of_instruments)
     struct model model = scene_read_changed(
         "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
         "  cotton: {kes: {W: 20, EMT: [5, 4], LT: [1, 0.8], RT: [60, 40], G: 0.5, B: [0.1, 0.05], "
-        "2HB: 0.06, MIU: 0.2}}\n"
-        "  wool: {fast: {W: 200, E5: [0.5, 1], E100: [4, 5], EB5: 3, C: [20, 10]}, friction: 0.4}\n"
+        "2HB: 0.06, MIU: 0.2, T: 0.8, LC: 0.4, WC: 0.2}}\n"
+        "  wool: {fast: {W: 200, E5: [0.5, 1], E100: [4, 5], EB5: 3, C: [20, 10], T2: 0.5, T100: "
+        "0.3}, friction: 0.4}\n"
         "  own: {kes: {W: 20, EMT: 5, G: 1, 2HG: 2}, shear: 7, like: denim}\n");
     const struct model_material *kes = model.materials, *fast = kes + 1, *own = kes + 2;
     const double second = 4.903325 / (0.04 * pow(0.01, 1 / 1.5)); /* n = 2 / 0.8 - 1 */
@@ -69,6 +70,8 @@ UNIT_TEST(materials_of_instruments)
     ck_assert_double_eq_tol(kes->damping_stiffness, 0.5 / (M_PI * M_PI), 1e-9);
     ck_assert_double_eq_tol(model_damping_bending(kes), 0.06 / (2.5 * M_PI * M_PI * 0.075), 1e-9);
     ck_assert_double_eq(kes->friction, 0.2);
+    ck_assert_double_eq(kes->thickness, 0.0008); /* 0.2 mm are lost by 50 gf/cm^2 */
+    ck_assert_double_eq_tol(kes->pressure, 3 * 50 * 98.0665, 1e-4);
     ck_assert_double_eq_tol(fast->density, 0.2, 1e-12);
     ck_assert_double_eq_tol(fast->stretch, 980.665, 1e-6);
     ck_assert_double_eq_tol(model_weft(fast), 490.3325, 1e-6);
@@ -77,6 +80,8 @@ UNIT_TEST(materials_of_instruments)
     ck_assert_double_eq_tol(fast->shear, 41, 1e-9);
     ck_assert_double_eq_tol(fast->rigidity[0], 1.5696e-5, 1e-12);
     ck_assert_double_eq(fast->friction, 0.4);
+    ck_assert_double_eq(fast->thickness, 0.0005);
+    ck_assert_double_eq_tol(fast->pressure, 1.5 * 100 * 98.0665, 1e-4);
     ck_assert_double_eq_tol(own->stretch, 9806.65, 1e-4);
     ck_assert_double_eq(own->shear, 7);
     ck_assert_double_eq_tol(own->rigidity[0], 1.954e-5, 1e-12);

@@ -18,7 +18,8 @@ struct garment_piece {
 /* A stitch of it: vertices that belong together, from the begin of side 0's edge on. */
 struct garment_seam {
     uint32_t n_pairs;
-    uint32_t (*pair)[2]; /* the vertices of both sides */
+    uint32_t (*pair)[2]; /* the vertices of both sides; in pleats one of the shorter edge is of
+                          * several */
     bool reversed;       /* side 1 runs from its end to its begin */
     bool unsure;         /* the panels' fronts alone say so, or the distances contradict */
     double distance[2];  /* m, mean over the pairs if both run alike, and if one is reversed */
@@ -45,10 +46,11 @@ struct garment_fineness {
 };
 
 /* Makes the mesh of a pattern that garment_pattern_check passed. Both edges of a stitch have
- * equally many vertices, at equal parts of their lengths. Where the boundary is too coarse for good
- * triangles, its divisions are shorter. The mesh belongs to the caller (garment_free), also after
- * an error. Errors: CLOTH_E_INPUT for a fineness that is not positive and finite, more than 2^27
- * vertices, or a panel that cannot be meshed; CLOTH_E_MEMORY. Local. */
+ * equally many vertices, at equal parts of their lengths, but where it has pleats. Where the
+ * boundary is too coarse for good triangles, its divisions are shorter. The mesh belongs to the
+ * caller (garment_free), also after an error. Errors: CLOTH_E_INPUT for a fineness that is not
+ * positive and finite, more than 2^27 vertices, or a panel that cannot be meshed; CLOTH_E_MEMORY.
+ * Local. */
 int garment_make(struct garment *garment, const struct garment_pattern *pattern,
                  const struct garment_fineness *fineness, struct cloth_error *error);
 void garment_free(struct garment *garment);

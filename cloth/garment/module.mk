@@ -22,5 +22,6 @@ libduite_cloth_a_SOURCES += \
 	cloth/garment/detail/flat_improve.c \
 	cloth/garment/detail/lattice.c \
 	cloth/garment/detail/meet.c \
+	cloth/garment/detail/pleats.c \
 	cloth/garment/detail/seams.c \
 	cloth/garment/detail/meshing.c cloth/garment/detail/meshing.h

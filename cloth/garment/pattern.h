@@ -44,8 +44,16 @@ struct garment_side { /* an edge of a panel */
     uint32_t panel, edge;
 };
 
+/* Knife pleats of a stitch: its longer edge is folded onto the other one. */
+struct garment_pleats {
+    uint32_t count; /* 0: none */
+    double depth;   /* m: of each, so that it takes twice as much of the longer edge */
+    int side;       /* which one is the longer edge */
+};
+
 struct garment_stitch {
     struct garment_side side[2];
+    struct garment_pleats pleats;
     bool right_wrong; /* both edges begin at the same end of the seam, even if the other end is
                        * nearer */
 };

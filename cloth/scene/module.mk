@@ -52,6 +52,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/motion.c \
 	cloth/scene/build/obstacle.c \
 	cloth/scene/build/pattern.c \
+	cloth/scene/build/pleats.c \
 	cloth/scene/build/pieces.c cloth/scene/build/pin.c \
 	cloth/scene/build/report.c cloth/scene/build/weights.c
 nodist_libduite_cloth_a_SOURCES = cloth/scene/schema/prose.c

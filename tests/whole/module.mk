@@ -13,7 +13,7 @@ PLAIN_SH += tests/whole/test_dress.sh tests/whole/test_probes.sh tests/whole/tes
     tests/whole/test_seams.sh tests/whole/test_repulsion.sh tests/whole/test_correction.sh \
     tests/whole/test_integrators.sh tests/whole/test_materials.sh tests/whole/test_curves.sh tests/whole/test_groups.sh tests/whole/test_pinch.sh tests/whole/test_thickness.sh tests/whole/test_thicknesses.sh tests/whole/test_bad_input.sh \
     tests/whole/test_regions.sh tests/whole/test_closed_forms.sh tests/whole/test_checkpoint.sh tests/whole/test_dressing.sh tests/whole/test_export.sh tests/whole/test_check.sh \
-    tests/whole/test_frame_range.sh
+    tests/whole/test_frame_range.sh tests/whole/test_pleats.sh
 LONG_SH += tests/whole/test_same_hash_long.sh tests/whole/test_levels_long.sh tests/whole/test_demo.sh \
     tests/whole/test_stretch_limits_long.sh tests/whole/test_same_hash_models_long.sh tests/whole/test_same_hash_contact_long.sh \
     tests/whole/test_closed_forms_long.sh tests/whole/test_solvers_agree_long.sh tests/whole/test_contact_long.sh tests/whole/test_thicknesses_long.sh \

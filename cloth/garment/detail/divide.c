@@ -46,6 +46,11 @@ void meshing_make(struct meshing *meshing, const struct garment_pattern *pattern
         const uint32_t two = meshing->first[side[1].panel] + side[1].edge;
         meshing->edge[one].partner = two;
         meshing->edge[two].partner = one;
+        const struct garment_pleats *pleats = &pattern->stitch[s].pleats;
+        if (pleats->count) {
+            meshing->edge[one].pleats = meshing->edge[two].pleats = pleats;
+            meshing->edge[pleats->side ? two : one].folded = true;
+        }
     }
 }
 
@@ -88,7 +93,7 @@ static void even_edge(struct meshing *meshing, struct meshing_edge *edge)
 {
     for (int k = 0; k < 2; k++)
         edge->end[k] = fmin(edge->end[k], edge->end[1 - k] + GROWTH);
-    if (edge->partner == UINT32_MAX)
+    if (edge->partner == UINT32_MAX || edge->pleats)
         return;
     struct meshing_edge *other = &meshing->edge[edge->partner];
     const double least = fmin(fmin(edge->end[0], edge->end[1]), fmin(other->end[0], other->end[1]));
@@ -171,10 +176,12 @@ void meshing_divide(struct meshing *meshing)
     double sum = 0;
     for (uint32_t e = 0; e < first[n_panels] && sum <= MOST; e++) {
         struct meshing_edge *edge = &meshing->edge[e];
-        const double parts = divide_wanted(meshing, edge);
+        double size = 0; /* of the first part */
+        const double parts =
+            edge->pleats ? pleats_count(meshing, edge, &size) : divide_wanted(meshing, edge);
         sum += parts;
         edge->before = (struct meshing_divisions){edge->n, {edge->end[0], edge->end[1]}};
-        edge->middle = edge->end[0] = edge->end[1] = 1 / parts;
+        edge->middle = edge->end[0] = edge->end[1] = edge->pleats ? size : 1 / parts;
     }
     if (!(sum <= MOST)) {
         cloth_fail(meshing->error, CLOTH_E_INPUT,
@@ -186,7 +193,10 @@ void meshing_divide(struct meshing *meshing)
     for (uint32_t p = 0; p < n_panels; p++)
         for (uint32_t e = first[p]; e < first[p + 1]; e++) {
             struct meshing_edge *edge = &meshing->edge[e];
-            divide_edge(edge, 1 / edge->middle + 0.5, meshing->error);
+            if (edge->pleats)
+                pleats_divide(meshing, edge);
+            else
+                divide_edge(edge, 1 / edge->middle + 0.5, meshing->error);
             const bool same = edge->n == edge->before.n && edge->end[0] == edge->before.end[0] &&
                               edge->end[1] == edge->before.end[1];
             meshing->panel[p].meshed = meshing->panel[p].meshed && same;

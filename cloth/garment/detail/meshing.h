@@ -20,13 +20,15 @@ struct meshing_panel {
 
 struct meshing_edge {
     struct curve curve;
-    uint32_t least;   /* divisions that its turns need */
-    uint32_t partner; /* the edge that it is stitched to; UINT32_MAX: none */
-    double finer;     /* how much shorter divisions are than those of other edges */
-    uint32_t n;       /* divisions */
-    double middle;    /* parts of the edge's length: how long divisions are in its middle, */
-    double end[2];    /* and at its begin and end, where they may be shorter */
-    double *part;     /* n + 1: parts of the length up to each; NULL: they are equal */
+    uint32_t least;                      /* divisions that its turns need */
+    uint32_t partner;                    /* the edge that it is stitched to; UINT32_MAX: none */
+    const struct garment_pleats *pleats; /* of its stitch; NULL: none */
+    bool folded;                         /* and it is the edge that has them */
+    double finer;  /* how much shorter divisions are than those of other edges */
+    uint32_t n;    /* divisions */
+    double middle; /* parts of the edge's length: how long divisions are in its middle, */
+    double end[2]; /* and at its begin and end, where they may be shorter */
+    double *part;  /* n + 1: parts of the length up to each; NULL: they are equal */
     struct meshing_divisions {
         uint32_t n;
         double end[2];
@@ -58,6 +60,22 @@ void meshing_mesh(struct meshing *meshing, double spacing);
  * any changes are not meshed any more. Beside a short edge divisions are short, and become longer
  * along their edge. Errors: CLOTH_E_INPUT, too many; CLOTH_E_MEMORY. */
 void meshing_divide(struct meshing *meshing);
+
+/* ---- Pleats (pleats.c) ---- */
+
+/* Parts of the pitch: a flat part of less is none. */
+#define PLEATS_NONE 1e-6
+
+/* How many divisions an edge of a pleated stitch has by the spacing, as a number, since it may be
+ * beyond all integers; *first: the part of its length that the first one is. Pure. */
+double pleats_count(const struct meshing *meshing, const struct meshing_edge *edge, double *first);
+/* Divides it so. Error: CLOTH_E_MEMORY, of the meshing. */
+void pleats_divide(const struct meshing *meshing, struct meshing_edge *edge);
+/* The division of the shorter edge, of n, on which division k of the longer one lies, of n_folded.
+ * Pure. */
+uint32_t pleats_place(uint32_t count, uint32_t n_folded, uint32_t n, uint32_t k);
+
+/* ---- Panels and seams ---- */
 
 /* Finds start, place and sharp of a panel by its divisions. False: after an error. */
 bool meshing_outline(struct meshing *meshing, uint32_t panel);

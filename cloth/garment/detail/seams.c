@@ -28,19 +28,33 @@ static uint32_t vertex_of(const struct seams *of, struct garment_side side, uint
     return piece->first + (piece->start[side.edge] + k) % n;
 }
 
+/* Vertex k of a seam's pairs on side j; reversed: if side 1 runs from its end. */
+static uint32_t seam_vertex(const struct seams *of, uint32_t s, int j, uint32_t k, bool reversed)
+{
+    const struct garment_stitch *stitch = &of->pattern->stitch[s];
+    const struct garment_side side = stitch->side[j];
+    const uint32_t *start = of->garment->piece[side.panel].start + side.edge;
+    const uint32_t n = of->garment->seam[s].n_pairs - 1;
+    k = reversed && j ? n - k : k;
+    if (stitch->pleats.count && j != stitch->pleats.side)
+        k = pleats_place(stitch->pleats.count, n, start[1] - start[0], k);
+    return vertex_of(of, side, k);
+}
+
 /* The distances of vertices that belong together if both edges run alike, and if one is reversed.
  */
 static void measure_seam(const struct seams *of, uint32_t s)
 {
-    const struct garment_side *side = of->pattern->stitch[s].side;
+    const struct garment_stitch *stitch = &of->pattern->stitch[s];
+    const struct garment_side side = stitch->side[stitch->pleats.side];
     const double(*position)[3] = (const double(*)[3])of->garment->position;
     struct garment_seam *seam = &of->garment->seam[s];
-    const uint32_t *start = of->garment->piece[side[0].panel].start;
-    const uint32_t n = seam->n_pairs = start[side[0].edge + 1] - start[side[0].edge] + 1;
+    const uint32_t *start = of->garment->piece[side.panel].start + side.edge;
+    const uint32_t n = seam->n_pairs = start[1] - start[0] + 1;
     for (uint32_t k = 0; k < n; k++)
         for (int reversed = 0; reversed < 2; reversed++) {
-            const uint32_t a = vertex_of(of, side[0], k);
-            const uint32_t b = vertex_of(of, side[1], reversed ? n - 1 - k : k);
+            const uint32_t a = seam_vertex(of, s, 0, k, reversed);
+            const uint32_t b = seam_vertex(of, s, 1, k, reversed);
             seam->distance[reversed] += cloth_distance(position[a], position[b]) / n;
         }
 }
@@ -137,13 +151,12 @@ static void turn_seams(const struct seams *of)
 
 static int pair_vertices(const struct seams *of, uint32_t s, struct cloth_error *error)
 {
-    const struct garment_side *side = of->pattern->stitch[s].side;
     struct garment_seam *seam = &of->garment->seam[s];
     const uint32_t n = seam->n_pairs;
     seam->pair = cloth_take(&of->garment->memory, n, sizeof *seam->pair, error);
     for (uint32_t k = 0; k < n && seam->pair; k++) {
-        seam->pair[k][0] = vertex_of(of, side[0], k);
-        seam->pair[k][1] = vertex_of(of, side[1], seam->reversed ? n - 1 - k : k);
+        seam->pair[k][0] = seam_vertex(of, s, 0, k, seam->reversed);
+        seam->pair[k][1] = seam_vertex(of, s, 1, k, seam->reversed);
     }
     return seam->pair ? CLOTH_OK : CLOTH_E_MEMORY;
 }

@@ -224,6 +224,13 @@ typedef int scene_obj_reader(struct mesh *mesh, const char *path, struct cloth_e
 int scene_build_obj(struct mesh *mesh, scene_obj_reader *reads, const char *what,
                     struct scene_tree *tree, int node);
 
+/* The edge of a panel of a pattern that a map with the keys panel and edge names. */
+int scene_build_pattern_side(struct garment_side *side, const struct garment_pattern *pattern,
+                             const struct scene_tree *tree, int node);
+
+/* Gives stitches of a pattern the pleats of a list. */
+int scene_build_pleats(struct garment_pattern *pattern, const struct scene_tree *tree, int list);
+
 /* Checks that this machine may have room for a mesh of n vertices. node: the key that asks for so
  * many; what: "nx times ny is". */
 int scene_build_check_memory(uint64_t n, const char *what, const struct scene_tree *tree, int node);

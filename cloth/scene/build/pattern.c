@@ -150,8 +150,8 @@ static int place_panels(struct garment_pattern *pattern, const struct scene_tree
     return CLOTH_OK;
 }
 
-static int build_pattern_take_side(struct garment_side *side, const struct garment_pattern *pattern,
-                                   const struct scene_tree *tree, int node)
+int scene_build_pattern_side(struct garment_side *side, const struct garment_pattern *pattern,
+                             const struct scene_tree *tree, int node)
 {
     side->edge = (uint32_t)scene_tree_number(tree, node, "edge");
     if (find_panel(&side->panel, pattern, tree, scene_tree_get(tree, node, "panel")))
@@ -173,8 +173,8 @@ static int add_stitches(struct garment_pattern *pattern, struct scene_tree *tree
           : NULL;
     for (size_t i = 0; i < n && !tree->error->code; i++)
         for (size_t k = 0; k < 2 && !tree->error->code; k++)
-            build_pattern_take_side(&stitch[i].side[k], pattern, tree,
-                                    scene_tree_item(tree, scene_tree_item(tree, list, i), k));
+            scene_build_pattern_side(&stitch[i].side[k], pattern, tree,
+                                     scene_tree_item(tree, scene_tree_item(tree, list, i), k));
     return tree->error->code ? tree->error->code
            : n               ? garment_pattern_check(pattern, &tree->inner)
                              : CLOTH_OK;
@@ -238,7 +238,8 @@ static int make_garment(struct scene_made_part *to, const char *path, struct sce
                (path ? read_file(&to->pattern, path, &asked, tree, node)
                      : make_own(&to->pattern, &asked, tree, node)) ||
                place_panels(&to->pattern, tree, scene_tree_get(tree, node, "place")) ||
-               add_stitches(&to->pattern, tree, scene_tree_get(tree, node, "stitches"));
+               add_stitches(&to->pattern, tree, scene_tree_get(tree, node, "stitches")) ||
+               scene_build_pleats(&to->pattern, tree, scene_tree_get(tree, node, "pleats"));
     const struct garment_fineness fineness = {asked.edge, asked.vertices};
     if (!code && asked.edge > 0)
         code = scene_build_check_memory(

@@ -60,6 +60,17 @@ static const struct scene_rule side_keys[] = {
 static const struct scene_rule side = {.type = SCENE_MAP, .inside = side_keys};
 static const struct scene_rule stitch = {.type = SCENE_LIST, .length = 2, .inside = &side};
 
+static const struct scene_rule pleats_keys[] = {
+    {"panel", SCENE_TEXT, .required = true, .about = "its name"},
+    {"edge", SCENE_INTEGER, .required = true,
+     .about = "of its edges, from 0: the longer one of a stitch"},
+    {"count", SCENE_INTEGER, .required = true, .min = 1, .max = 10000,
+     .about = "how many there are, each in the middle of its part of the shorter edge"},
+    {"depth", SCENE_NUMBER, "m", .range = SCENE_POSITIVE,
+     .about = "of each, which takes twice as much cloth; else they take all of the longer edge"},
+    {0}};
+static const struct scene_rule pleats = {.type = SCENE_MAP, .inside = pleats_keys};
+
 static const struct scene_rule pattern_keys[] = {
     {"file", SCENE_TEXT, .choice = true,
      .about = "a sewing pattern (JSON or DXF, [garments.md](garments.md#patterns)), relative to the "
@@ -86,6 +97,8 @@ static const struct scene_rule pattern_keys[] = {
     {"stitches", SCENE_LIST, .fallback = "[]", .inside = &stitch,
      .about = "pairs of edges that are sewn together, behind those of the pattern: each a list of "
      "two {panel, edge}"},
+    {"pleats", SCENE_LIST, .fallback = "[]", .inside = &pleats,
+     .about = "of edges that are sewn to shorter ones ([Seams](#seams))"},
     {0}};
 
 #define MESH_PLACE PLACE(struct model_cloth, mesh_place)

@@ -173,6 +173,58 @@ UNIT_LOOP(seams_have_equal_sides, 0, 3)
     check_seam(&garment, &pattern, 0);
 }
 
+/* Of the gathered seam of 0.2 and 0.13 m: the longer edge, side k of the stitch, lies along the
+ * shorter one forward, back and forward again, with vertices where it turns; what the pleats leave
+ * is gathered evenly. */
+static const struct {
+    uint32_t count;
+    double depth, edge;
+    int side;
+} PLEATS[] = {{3, 0.07 / 6, 0.007, 0}, {3, 0.07 / 6, 0.007, 1}, {1, 0.035, 0.002, 0},
+              {5, 0.002, 0.01, 1},     {7, 0.005, 0.05, 0},     {4, 0.0326, 0.006, 0},
+              {1, 0.07 / 2, 0.1, 1}};
+
+/* Where a place at a length along the zig-zag is along the shorter edge, m. */
+static double pleated(double along, double pitch, double depth)
+{
+    const double unit = pitch + 2 * depth, flat = (pitch - depth) / 2;
+    const double i = floor(along / unit + 1e-9), t = along - i * unit;
+    return i * pitch + (t <= flat + depth       ? t
+                        : t <= flat + 2 * depth ? 2 * (flat + depth) - t
+                                                : t - 2 * depth);
+}
+
+UNIT_LOOP(pleats_fold_the_longer_edge, 0, sizeof PLEATS / sizeof *PLEATS)
+{
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("gather");
+    UNIT_OWNED(garment_free) struct garment garment;
+    struct garment_stitch *stitch = pattern.stitch;
+    const int longer = PLEATS[_i].side;
+    const double pitch = 0.13 / PLEATS[_i].count, wide = 0.2;
+    const double depth = fmin(PLEATS[_i].depth, pitch), whole = 0.13 + 2 * PLEATS[_i].count * depth;
+    if (longer) {
+        const struct garment_side side = stitch->side[0];
+        stitch->side[0] = stitch->side[1];
+        stitch->side[1] = side;
+    }
+    stitch->pleats = (struct garment_pleats){PLEATS[_i].count, depth, longer};
+    make_garment(&garment, &pattern, PLEATS[_i].edge, 0);
+    const struct garment_seam *seam = &garment.seam[0];
+    const double *from = garment.uv[seam->pair[0][longer]];
+    const double *to = garment.uv[seam->pair[0][!longer]];
+    uint32_t turned = 0;
+    for (uint32_t i = 0; i < seam->n_pairs; i++) {
+        const double along = distance_of(from, garment.uv[seam->pair[i][longer]], 2);
+        const double at = distance_of(to, garment.uv[seam->pair[i][!longer]], 2);
+        const double wanted = pleated(along * whole / wide, pitch, depth);
+        ck_assert_double_eq_tol(at, wanted, 1e-12);
+        turned += fabs(wanted - (0.5 * pitch + 0.5 * depth)) < 1e-12; /* the first pleat's ridge */
+    }
+    ck_assert_uint_eq(turned, depth < pitch ? 2 : 3);
+    ck_assert_double_eq_tol(distance_of(from, garment.uv[seam->pair[seam->n_pairs - 1][longer]], 2),
+                            wide, 1e-12);
+}
+
 /* A dart closes at the vertex that its edges share: edge 3 ends there, edge 4 begins there. */
 UNIT_TEST(darts_close_at_their_tip)
 {

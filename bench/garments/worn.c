@@ -187,10 +187,19 @@ static int cut(const char *folder, const char *worn)
     return code;
 }
 
-static void worn_path(char path[PATH])
+static void worn_path(const char *of, char path[PATH])
 {
     const char *folder = getenv(STATE_FOLDER);
-    snprintf(path, PATH, "%s/worn.obj", folder ? folder : ".");
+    snprintf(path, PATH, "%s/%s.obj", folder ? folder : ".", of);
+}
+
+/* The figure without its first hundred faces: a surface with a hole. */
+static int open_figure(const char *folder)
+{
+    char command[3 * PATH];
+    snprintf(command, sizeof command,
+             "awk '!/^f/ || ++n > 100' '%s/dressed/body-0.obj' > '%s/open.obj'", folder, folder);
+    return system(command) ? fail("the figure with a hole cannot be written") : 0;
 }
 
 int garments_worn_make(const struct bench_options *options,
@@ -198,10 +207,11 @@ int garments_worn_make(const struct bench_options *options,
 {
     char path[PATH];
     int code = cg_make_folder(options);
-    worn_path(path);
+    worn_path("worn", path);
     if (!code && access(path, R_OK)) {
         fprintf(stderr, "duite-bench: putting on the T-shirt that is worn\n");
-        code = dress(options, getenv(STATE_FOLDER)) || cut(getenv(STATE_FOLDER), path);
+        code = dress(options, getenv(STATE_FOLDER)) || cut(getenv(STATE_FOLDER), path) ||
+               open_figure(getenv(STATE_FOLDER));
     }
     if (!code)
         say("worn", path);
@@ -210,6 +220,8 @@ int garments_worn_make(const struct bench_options *options,
 
 /* ---- Looks ---- */
 
+#define HELD "pins: [{box: [[-1e5, -1e5, -1e5], [1e5, 1e5, 1e5]]}]"
+
 static uint32_t n_worn; /* vertices */
 
 static int read_worn(struct model *model, struct serve_request *request)
@@ -217,10 +229,16 @@ static int read_worn(struct model *model, struct serve_request *request)
     char path[PATH], of[20];
     struct cloth_error error = {0};
     struct sets sets = {0};
-    worn_path(path);
+    worn_path("worn", path);
     serve_word(request, "of", of, sizeof of);
     add_set(&sets, "cloths[0].mesh={file: '%s'}", path);
     add_set(&sets, "%s", strcmp(of, "self") ? "contact.self=off" : "obstacles=[]");
+    if (!strcmp(of, "open_mesh")) {
+        worn_path("open", path);
+        add_set(&sets, "obstacles=[]");
+        add_set(&sets, "cloths[1]={name: figure, mesh: {file: '%s'}, material: jersey, " HELD "}",
+                path);
+    }
     add_set(&sets, "%s", serve_number(request, "quick") ? "grain=100" : "");
     if (scene_read(model, BENCH_WORN_SCENE, sets.n, sets.set, &error))
         return serve_fail("%s", error.text);
@@ -244,18 +262,22 @@ const struct serve_run garments_worn_runs[] = {{"look", look}, {0}};
 
 static void plan_worn(struct measure *measure, const struct bench_options *options)
 {
-    static const char *const of[] = {"body", "self"};
-    for (int i = 0; i < 2; i++) {
-        const struct measure_series *time = measure_series(
-            measure, (struct subject_shape){"duite", 0, options->threads},
-            "look of=%s times=%d ms=20 threads=%u scheduler=%s quick=%d", of[i],
-            options->quick ? 2 : 10, options->threads, options->scheduler, options->quick);
-        measure_value(measure, time, 1e9, "ns", "%s_ns_per_vertex", of[i]);
+    enum { BODY, SELF, OPEN, WORN_BY };
+    static const char *const of[WORN_BY] = {"body", "self", "open_mesh"};
+    const struct measure_series *time[WORN_BY];
+    for (int i = 0; i < WORN_BY; i++) {
+        time[i] = measure_series(measure, (struct subject_shape){"duite", 0, options->threads},
+                                 "look of=%s times=%d ms=20 threads=%u scheduler=%s quick=%d",
+                                 of[i], options->quick ? 2 : 10, options->threads,
+                                 options->scheduler, options->quick);
+        measure_value(measure, time[i], 1e9, "ns", "%s_ns_per_vertex", of[i]);
     }
+    measure_ratio(measure, time[OPEN], time[BODY], "open_mesh_vs_body");
 }
 
 const struct bench_case garments_worn = {
     "worn",
     "what a step does to find contacts and to certify it, for each vertex of a T-shirt of 35,000 "
-    "as it is worn: boxes, certificates, what is near; the shirt with the body, and with itself",
+    "as it is worn: boxes, certificates, what is near; the shirt with the body, with "
+    "itself, and with the body as a surface with a hole",
     plan_worn, garments_worn_runs, 8};

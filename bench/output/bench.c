@@ -28,6 +28,13 @@ static void plan_checkpoints(struct measure *measure, const struct bench_options
     measure_ratio(measure, with, without, "checkpoint_slowdown");
 }
 
+static void plan_usd(struct measure *measure, const struct bench_options *options)
+{
+    const struct measure_series *with = simulate(measure, options, "duite", "usd");
+    const struct measure_series *without = simulate(measure, options, "duite", "frames");
+    measure_ratio(measure, with, without, "usd_slowdown");
+}
+
 static void plan_live(struct measure *measure, const struct bench_options *options)
 {
     const struct measure_series *live = simulate(measure, options, "duite_live", "live");
@@ -77,6 +84,9 @@ static const struct bench_case LIVE = {
 static const struct bench_case CHECKPOINTS = {
     "checkpoints", "the same with frames, a checkpoint a second against none", plan_checkpoints,
     NULL, 8};
+static const struct bench_case USD = {
+    "usd", "the same with frames, which duite-view then writes as USD, against frames alone",
+    plan_usd, NULL, 8};
 static const struct bench_case WRITE = {
     "write", "a checkpoint of the sheet against write and fsync of as many bytes", plan_write, NULL,
     0};
@@ -88,8 +98,8 @@ static const struct bench_case FILM = {
     "film", "duite-view --mp4: 12 frames of the sheet, 1280 x 720, drawn and encoded", plan_film,
     NULL, 3};
 
-static const struct bench_case *const CASES[] = {&FRAMES,    &LIVE, &CHECKPOINTS, &WRITE,
-                                                 &OFFSCREEN, &FILM, NULL};
+static const struct bench_case *const CASES[] = {&FRAMES, &LIVE,      &CHECKPOINTS, &USD,
+                                                 &WRITE,  &OFFSCREEN, &FILM,        NULL};
 
 /* For two threads and the full sizes. */
 static const struct measure_target TARGETS[] = {{"frames_slowdown", 1.03, false},
@@ -97,6 +107,7 @@ static const struct measure_target TARGETS[] = {{"frames_slowdown", 1.03, false}
                                                 {"live_stopped_slowdown", 1.01, false},
                                                 {"checkpoint_vs_write", 1.5, false},
                                                 {"checkpoint_slowdown", 1.02, false},
+                                                {"usd_slowdown", 1.05, false},
                                                 {"offscreen_vs_plain", 2.5, false},
                                                 {"offscreen_frame_ms", 150, false},
                                                 {"film_seconds", 10, false},

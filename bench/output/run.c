@@ -31,6 +31,16 @@ static int run_cloth(const char *arguments, bool quick)
     return system(command);
 }
 
+/* Writes the run's frames as USD. */
+static int run_view(const char *folder)
+{
+    char programs[OUTPUT_PATH], command[2 * COMMAND];
+    program_folder(programs, sizeof programs);
+    snprintf(command, sizeof command, "'%s/../duite-view' '%s/frames' --export '%s/sheet.usda' >&2",
+             programs, folder, folder);
+    return system(command);
+}
+
 static int read_hash(const char *folder, char hash[HASH])
 {
     char path[OUTPUT_PATH + 40], line[400];
@@ -77,6 +87,8 @@ static int check_run(const char *folder, const char *output)
     memcpy(first, hash, sizeof first);
     if (!strcmp(output, "hdf5") && !is_file(folder, "frames/hdf5/frame-000001.vtkhdf"))
         return serve_fail("wrong answer: there is no HDF5 file of frame 1");
+    if (!strcmp(output, "usd") && !is_file(folder, "sheet.usda"))
+        return serve_fail("wrong answer: there is no USD file");
     if (!strcmp(output, "checkpoints"))
         return check_checkpoint(folder);
     return 0;
@@ -121,6 +133,8 @@ static int simulate(void *context, struct serve_request *request, double *value)
     const double begin = serve_seconds();
     if (!code && run_cloth(arguments, quick))
         code = serve_fail("duite-cloth fails: %.150s", arguments);
+    if (!code && !strcmp(output, "usd") && run_view(folder))
+        code = serve_fail("duite-view exports no frames");
     *value = serve_seconds() - begin;
     if (viewer.process > 0) {
         const int seen = output_viewer_end(&viewer, !quick && !code, LAST_FRAME);

@@ -19,9 +19,11 @@ targets_listed() {
 pattern_ms <= 900
 pattern_below_30 <= 0.0001
 pattern_least_angle >= 20
+avatar_seconds <= 2
 map_ms <= 20
 body_ns_per_vertex <= 200
 self_ns_per_vertex <= 700
+open_mesh_vs_body <= 1.3
 jeans_repulsion_seconds <= 1.2
 jeans_certified_seconds <= 2
 walk_seconds_per_frame <= 0.35

@@ -20,6 +20,7 @@ frames_slowdown <= 1.03
 live_slowdown <= 1.03
 live_stopped_slowdown <= 1.01
 checkpoint_slowdown <= 1.02
+usd_slowdown <= 1.05
 checkpoint_vs_write <= 1.5
 offscreen_frame_ms <= 150
 offscreen_vs_plain <= 2.5

@@ -63,7 +63,7 @@ wrong_on_two() { # the same on one rank and, but for the quick subset, on two: o
 }
 ok "no scene" wrong_on_two "duite-cloth: a scene file is expected; see duite-cloth --help"
 ok "two scenes" wrong "duite-cloth: other.yaml: a second scene file; one is expected" scene.yaml other.yaml
-ok "an unknown option" wrong "unrecognized option '--frames'" scene.yaml --frames 3
+ok "an unknown option" wrong "unrecognized option '--layers'" scene.yaml --layers 3
 ok "an option without its value" wrong "option '--end' requires an argument" scene.yaml --end
 ok "a report of no name" wrong "duite-cloth: --report: an empty name" scene.yaml --report ''
 ok "a folder of no name" wrong "duite-cloth: --output: an empty name" scene.yaml --output ''

@@ -73,8 +73,8 @@ static void tube(void)
     static struct garment_stitch stitch[2];
     panel[0] = (struct garment_panel){front, 4, 4, corner, edge, {0, 0, 0}, {0, 0, 0.2}, false};
     panel[1] = (struct garment_panel){back, 4, 4, corner, edge, {0, 180, 0}, {0, 0, -0.2}, false};
-    stitch[0] = (struct garment_stitch){{{0, 1}, {1, 3}}, false};
-    stitch[1] = (struct garment_stitch){{{0, 3}, {1, 1}}, false};
+    stitch[0] = (struct garment_stitch){.side = {{0, 1}, {1, 3}}};
+    stitch[1] = (struct garment_stitch){.side = {{0, 3}, {1, 1}}};
     pattern = (struct garment_pattern){2, 2, panel, stitch};
 }
 

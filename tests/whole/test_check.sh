@@ -34,7 +34,7 @@ tried "a flag with probes" "$scenes/gallery/flag.yaml" --end 0.4 --set 'probes=[
 tried "a walk" "$scenes/gallery/cape.yaml" --end 0.4
 tried "two phases" "$scenes/gallery/stack.yaml" --set 'phases=[{name: fall, set: {time.end: 0.04}}, {name: slow, set: {time.end: 0.08, gravity: [0, -1, 0]}}]'
 tried "forces of contact" "$scenes/gallery/tablecloth.yaml" --end 0.4 --set contact.force=on
-advised() { limited "$DUITE_CLOTH" "$scenes/gallery/ribbon.yaml" --check --set contact.thickness=0.01 > said && cat said && grep 'contact.thickness 0.01 m is above half' said; }
+advised() { limited "$DUITE_CLOTH" "$scenes/gallery/ribbon.yaml" --check --set contact.thickness=0.01 > said && cat said && grep 'thickness of contact, 0.01 m, is above half' said; }
 ok "a thickness above the mesh is slow" advised
 mistaken() { ! limited "$DUITE_CLOTH" "$scenes/gallery/stairs.yaml" --check --set 'cloths[0].transform.translate=[0, 0.3, 0]' 2> said && grep '1190 through obstacles' said; }
 ok "a start that touches is found" mistaken

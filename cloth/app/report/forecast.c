@@ -115,7 +115,7 @@ static void forecast_advise_solve(FILE *file, const struct summary *trial)
                 "  slow             %.1f solves a step for contact: a shorter time.h, or a larger "
                 "contact.thickness\n",
                 summary_solves_mean(report));
-    if (report->blocks < 2 * trial->workers)
+    if (trial->workers > 1 && report->blocks < 2 * trial->workers)
         fprintf(file,
                 "  slow             %" PRIu64 " blocks for %" PRIu64 " workers: --grain %" PRIu64
                 " gives all of them work\n",

@@ -5,6 +5,7 @@
 #include "cloth/app/report/summary.h"
 #include "tools/predict/predict.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <mpi.h>
 #include <stdio.h>
@@ -234,11 +235,10 @@ static bool made_no_frame(const struct run *run)
     const uint64_t first = run->options->first_frame, n = run->phases.total.frames;
     if (!first || n > first)
         return false;
-    fprintf(
-        stderr,
-        "duite-cloth: warning: the run ended before frame %llu, where --frames begins: no frame "
-        "was made\n",
-        (unsigned long long)first);
+    fprintf(stderr,
+            "duite-cloth: warning: the run ended before frame %" PRIu64
+            ", where --frames begins: no frame was made\n",
+            first);
     return true;
 }
 

@@ -74,9 +74,9 @@ struct garment_choice {
 };
 
 /* Reads a DXF file in the profile of AAMA or ASTM (docs/garments.md): the pieces of one size. Each
- * stands with its grain line upright, the middle of
- * the box around it at the origin. The caller frees the pattern, also after an error. Errors:
- * CLOTH_E_INPUT, with file and line where there is one; CLOTH_E_IO, CLOTH_E_MEMORY. Local. */
+ * stands with its grain line upright, the middle of the box around it at the origin. The caller
+ * frees the pattern, also after an error. Errors: CLOTH_E_INPUT, with file and line where there is
+ * one; CLOTH_E_IO, CLOTH_E_MEMORY. Local. */
 int garment_read_dxf(struct garment_pattern *pattern, const char *path,
                      const struct garment_choice *choice, struct cloth_error *error);
 

@@ -38,11 +38,11 @@ struct model_material {
                             corrected; > 0: the excess that may be left, of the length at rest */
         uint32_t rounds; /* at most; 0: they are not */
     } correction;
-    uint32_t size[2]; /* curves of the model that lengths at rest along warp and weft are
-                         multiplied by, from 1; 0: they stay */
-    double friction;  /* coefficient, >= 0: of contact that is certified */
-    double thickness; /* m; Pa: of contact (contact.h), >= 0; 0: those of all contact */
-    double pressure;
+    uint32_t size[2];   /* curves of the model that lengths at rest along warp and weft are
+                           multiplied by, from 1; 0: they stay */
+    double friction;    /* coefficient, >= 0: of contact that is certified */
+    double thickness;   /* m, of contact (contact.h); 0: that of all contact */
+    double pressure;    /* Pa, of contact; 0: that of all contact */
     int both_diagonals; /* grids: shear springs along both diagonals of a cell */
 };
 

@@ -11,9 +11,9 @@ enum { ABC_BOX = 6 }; /* numbers: the least x, y, z, the greatest ones */
 
 /* A cloth, or all obstacles as one mesh. References are those of samples. */
 struct abc_mesh {
-    struct view_export_cloth part; /* names of vertices and faces */
+    struct view_export_cloth part; /* its ranges of vertices and faces */
     bool is_cloth, moves, has_uv;
-    uint32_t first_uv, n_uv;  /* of the uv behind those of all vertices those of the part */
+    uint32_t first_uv, n_uv;  /* uv of the part among those that follow one a vertex */
     uint64_t *points, *boxes; /* of each frame, or the first if it does not move */
     uint64_t counts, corners, uv, uv_numbers;
     unsigned char sum[OGAWA_DIGEST]; /* of all samples */

@@ -14,7 +14,7 @@ struct simulate_options {
     struct scene_set *sets;
     const char *output, *report; /* folder of frames, JSON file; NULL: none */
     const char *restart; /* the folder of frames of a run to go on with, which is `output`, too;
-                          * NULL:     none */
+                          * NULL: none */
     double checkpoint;   /* s: between two checkpoints; 0: none */
     uint64_t first_frame, last_frame; /* that are made; UINT64_MAX: up to the end of the scene */
     const char *save_system;          /* folder; NULL: none */

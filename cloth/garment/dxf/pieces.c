@@ -3,6 +3,7 @@
 #include "cloth/base/vector.h"
 #include "cloth/garment/dxf/dxf.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -58,31 +59,32 @@ static const char *only_size(const struct dxf *dxf)
     return size;
 }
 
-/* The table of grade rules that some programs write beside a file with one size, if it is there. */
-static bool find_rules(const struct dxf *dxf, char *path, size_t room)
+/* The table of grade rules that some programs write beside a file with one size; empty: there is
+ * none. */
+static void find_rules(const struct dxf *dxf, char *path, size_t room)
 {
     static const char *const endings[] = {"rul", "RUL"};
     const size_t n = strlen(dxf->path);
     for (int k = 0; k < 2 && n > 3 && n < room; k++) {
         snprintf(path, room, "%.*s%s", (int)(n - 3), dxf->path, endings[k]);
         if (access(path, F_OK) == 0)
-            return true;
+            return;
     }
-    return false;
+    *path = '\0';
 }
 
 /* *size: that of the pieces that are taken; NULL: none has one. */
 static int choose_size(const struct dxf *dxf, const char **size, struct cloth_error *error)
 {
-    char sizes[200] = "", rules[200];
+    char sizes[200] = "", rules[PATH_MAX] = "";
     list_sizes(dxf, sizes, sizeof sizes);
-    if (*size && !has_size(dxf, *size))
-        return cloth_fail(error, CLOTH_E_INPUT, "%s: no piece has the size '%.40s'; there %s%s%s%s",
-                          dxf->path, *size, *sizes ? "are " : "is none", sizes,
-                          find_rules(dxf, rules, sizeof rules)
-                              ? "; export all sizes as pieces, since grade rules are not read: "
-                              : "",
-                          find_rules(dxf, rules, sizeof rules) ? rules : "");
+    if (*size && !has_size(dxf, *size)) {
+        find_rules(dxf, rules, sizeof rules);
+        return cloth_fail(
+            error, CLOTH_E_INPUT, "%s: no piece has the size '%.40s'; there %s%s%s%s", dxf->path,
+            *size, *sizes ? "are " : "is none", sizes,
+            *rules ? "; export all sizes as pieces, since grade rules are not read: " : "", rules);
+    }
     if (*size || !*sizes)
         return CLOTH_OK;
     *size = dxf->sample && has_size(dxf, dxf->sample) ? dxf->sample : only_size(dxf);

@@ -28,7 +28,8 @@ static const double GF_PER_CM = 0.980665;        /* N/m */
 static const double GF_CM = 9.80665e-5;          /* N m */
 static const double LOADS[] = {5, 20, 100, 500}; /* gf/cm: FAST's three, and KES's largest */
 enum { FAST_LOADS = 3, KES_LOADS = 4 };
-static const double GF_PER_CM2 = 98.0665;                 /* Pa */
+static const double GF_PER_CM2 = 98.0665; /* Pa */
+static const double MM_PER_CM = 10;
 static const double KES_PRESSED = 50, FAST_PRESSED = 100; /* gf/cm^2 */
 static const double KES_SHEARED = 8;                      /* degrees, either way */
 static const double KES_BENT = 2.5;                       /* 1/cm, either way */
@@ -163,24 +164,34 @@ static int fill_damping(const struct sheet *sheet)
     return fill_text(sheet, "damping", text);
 }
 
-/* Thickness, mm, of which a load takes some (cloth/contact/row.h); load: gf/cm^2. */
-static int fill_thickness(const struct sheet *sheet, double thickness, double lost, double load)
+/* Thickness, mm, of which a load, gf/cm^2, takes some (cloth/contact/row.h). by: the key that says
+ * how much. */
+static int fill_thickness(const struct sheet *sheet, double thickness, const char *by, double lost,
+                          double load)
 {
+    const struct scene_tree *tree = sheet->tree;
+    const bool given = thickness > 0 && value_of(sheet, by, 0) > 0;
+    if (given && !(lost > 0 && lost < thickness))
+        return scene_tree_fail(tree, scene_tree_get(tree, sheet->values, by),
+                               "by this %s a fabric that is %g mm thick loses %.3g mm under %g "
+                               "gf/cm^2; it should lose more than 0, and less than it has",
+                               by, thickness, lost, load);
     return fill_number(sheet, "thickness", thickness / 1000) ||
-           (lost > 0 && fill_number(sheet, "pressure", load * GF_PER_CM2 * (thickness / lost - 1)));
+           (given && fill_number(sheet, "pressure", load * GF_PER_CM2 * (thickness / lost - 1)));
 }
 
 static int fill_kes(const struct sheet *sheet)
 {
     const double line = value_of(sheet, "LC", 0);
-    const double lost = 20 * value_of(sheet, "WC", 0) / (KES_PRESSED * (line > 0 ? line : 1));
+    const double energy = MM_PER_CM * value_of(sheet, "WC", 0);
+    const double lost = 2 * energy / (KES_PRESSED * (line > 0 ? line : 1));
     const double bend[2] = {kes_rigidity(sheet, 0), kes_rigidity(sheet, 1)};
     return fill_number(sheet, "density", value_of(sheet, "W", 0) / 100) ||
            fill_curve(sheet, kes_strains) ||
            fill_number(sheet, "shear", mean_of(sheet, "G") * GF_PER_CM * 180 / M_PI) ||
            fill_rigidity(sheet, bend) || fill_damping(sheet) ||
            fill_number(sheet, "friction", mean_of(sheet, "MIU")) ||
-           fill_thickness(sheet, value_of(sheet, "T", 0), lost, KES_PRESSED);
+           fill_thickness(sheet, value_of(sheet, "T", 0), "WC", lost, KES_PRESSED);
 }
 
 static int fill_fast(const struct sheet *sheet)
@@ -195,7 +206,7 @@ static int fill_fast(const struct sheet *sheet)
     return fill_number(sheet, "density", weight / 1000) || fill_curve(sheet, fast_strains) ||
            fill_number(sheet, "shear", given > 0 ? given : FAST_SHEAR / mean_of(sheet, "EB5")) ||
            fill_rigidity(sheet, bend) ||
-           fill_thickness(sheet, thick, thin > 0 ? thick - thin : 0, FAST_PRESSED);
+           fill_thickness(sheet, thick, "T100", thick - thin, FAST_PRESSED);
 }
 
 int scene_instruments_fill(struct scene_tree *tree, int material)

@@ -85,9 +85,10 @@ static const struct scene_rule kes_keys[] = {
     SHEET("2HB", "gf cm/cm", "hysteresis of bending"),
     SHEET("MIU", NULL, "friction of the surface"),
     {"T", SCENE_NUMBER, "mm", .range = SCENE_POSITIVE, .about = "thickness at 0.5 gf/cm^2"},
-    {"LC", SCENE_NUMBER, .range = SCENE_POSITIVE, .about = "linearity of the compression; else 1"},
+    {"LC", SCENE_NUMBER, .range = SCENE_POSITIVE, .about = "linearity of the compression; else 1",
+     .needs = "WC"},
     {"WC", SCENE_NUMBER, "gf cm/cm^2", .range = SCENE_POSITIVE,
-     .about = "energy of the compression to 50 gf/cm^2"},
+     .about = "energy of the compression to 50 gf/cm^2", .needs = "T"},
     {"W", SCENE_NUMBER, "mg/cm^2", .range = SCENE_POSITIVE, .about = "weight"},
     {0}};
 static const struct scene_rule fast_keys[] = {
@@ -99,7 +100,8 @@ static const struct scene_rule fast_keys[] = {
     SHEET("C", "mm", "bending length"),
     SHEET("B", "uN m", "bending rigidity; else by W and C"),
     {"T2", SCENE_NUMBER, "mm", .range = SCENE_POSITIVE, .about = "thickness at 2 gf/cm^2"},
-    {"T100", SCENE_NUMBER, "mm", .range = SCENE_POSITIVE, .about = "thickness at 100 gf/cm^2"},
+    {"T100", SCENE_NUMBER, "mm", .range = SCENE_POSITIVE, .about = "thickness at 100 gf/cm^2",
+     .needs = "T2"},
     {"W", SCENE_NUMBER, "g/m^2", .range = SCENE_POSITIVE, .about = "weight"},
     {0}};
 

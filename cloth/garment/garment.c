@@ -183,7 +183,8 @@ static int put_pieces(struct garment *garment, struct meshing *meshing, struct c
         first += garment->piece[p].n_vertices;
         first_triangle += garment->piece[p].n_triangles;
     }
-    return seams_make(garment, meshing->pattern, error);
+    code = seams_make(garment, meshing->pattern, error);
+    return code ? code : corners_open(garment, meshing->pattern, error);
 }
 
 int garment_make(struct garment *garment, const struct garment_pattern *pattern,

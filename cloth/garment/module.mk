@@ -13,6 +13,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/garment/own/skirt.c \
 	cloth/garment/own/trousers.c \
 	cloth/garment/own/tshirt.c \
+	cloth/garment/detail/corners.c \
 	cloth/garment/detail/curve.c cloth/garment/detail/curve.h \
 	cloth/garment/detail/delaunay.c cloth/garment/detail/delaunay.h \
 	cloth/garment/detail/delaunay_change.c \

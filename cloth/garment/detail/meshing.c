@@ -16,7 +16,7 @@ static const double FINER = 0.93; /* of the spacing before */
 struct worth {
     double cosine, factor;
 };
-static const struct worth FAIR = {0.86602540, 1.15}, POOR = {0.93969262, 2}; /* 30, 20 degrees */
+static const struct worth FAIR = {0.86602540, 1.15}, POOR = {MESHING_POOR, 2}; /* 30, 20 degrees */
 
 /* Asks for shorter divisions of an edge. */
 static void refine(struct meshing *meshing, uint32_t panel, uint32_t edge, double factor,

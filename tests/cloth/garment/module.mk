@@ -1,4 +1,4 @@
-GARMENT_PATTERNS = tests/cloth/garment/patterns/circle.json tests/cloth/garment/patterns/cubic.json tests/cloth/garment/patterns/dart.json \
+GARMENT_PATTERNS = tests/cloth/garment/patterns/circle.json tests/cloth/garment/patterns/cushion.json tests/cloth/garment/patterns/cubic.json tests/cloth/garment/patterns/dart.json \
 	tests/cloth/garment/patterns/fold.json tests/cloth/garment/patterns/gather.json tests/cloth/garment/patterns/hood.json \
 	tests/cloth/garment/patterns/quadratic.json tests/cloth/garment/patterns/steep.json tests/cloth/garment/patterns/straight.json
 EXTRA_DIST += $(GARMENT_PATTERNS)

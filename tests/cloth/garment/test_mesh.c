@@ -225,6 +225,14 @@ UNIT_LOOP(pleats_fold_the_longer_edge, 0, sizeof PLEATS / sizeof *PLEATS)
                             wide, 1e-12);
 }
 
+static bool same_vertices(const uint32_t *one, const uint32_t *other, const uint32_t *twin)
+{
+    uint32_t same = 0;
+    for (int i = 0; i < 9; i++)
+        same += one[i / 3] == twin[other[i % 3]];
+    return same == 3;
+}
+
 /* A dart closes at the vertex that its edges share: edge 3 ends there, edge 4 begins there. */
 UNIT_TEST(darts_close_at_their_tip)
 {
@@ -236,6 +244,33 @@ UNIT_TEST(darts_close_at_their_tip)
     ck_assert(seam->reversed);
     ck_assert_uint_eq(tip[0], tip[1]);
     ck_assert_uint_eq(tip[0], garment.piece[0].start[4]);
+}
+
+/* Two panels sewn all around, of any shape of corner that can open: no triangle of one has the
+ * three vertices of one of the other, and each panel is still covered once. */
+UNIT_LOOP(sewn_corners_open, 0, N_EDGES * 3)
+{
+    /* m: how far the upper corners are moved; corners of 90, 68 and 63 degrees */
+    static const double aside[3] = {0, 0.08, 0.1};
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern = read_pattern("cushion");
+    UNIT_OWNED(garment_free) struct garment garment;
+    for (uint32_t p = 0; p < 2; p++)
+        for (uint32_t v = 2; v < 4; v++)
+            pattern.panel[p].corner[v][0] += aside[_i / N_EDGES];
+    make_garment(&garment, &pattern, EDGES[_i % N_EDGES], 0);
+    uint32_t *twin = malloc(garment.n_vertices * sizeof *twin), n_same = 0;
+    for (uint32_t v = 0; v < garment.n_vertices; v++)
+        twin[v] = v;
+    for (uint32_t s = 0; s < garment.n_seams; s++)
+        for (uint32_t k = 0; k < garment.seam[s].n_pairs; k++)
+            twin[garment.seam[s].pair[k][1]] = garment.seam[s].pair[k][0];
+    for (uint32_t t = 0; t < garment.piece[0].n_triangles; t++)
+        for (uint32_t u = garment.piece[1].first_triangle; u < garment.n_triangles; u++)
+            n_same += same_vertices(garment.triangle[t], garment.triangle[u], twin);
+    ck_assert_uint_eq(n_same, 0);
+    for (uint32_t p = 0; p < 2; p++)
+        check_area(&garment, &garment.piece[p], garment.piece[p].start[4]);
+    free(twin);
 }
 
 /* Panels that meet at a right angle along their seam: partners are at one place. The side's loop is

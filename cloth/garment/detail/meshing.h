@@ -5,7 +5,8 @@
 #include "cloth/garment/detail/delaunay.h"
 #include "cloth/garment/garment.h"
 
-/* cos 20 degrees, of delaunay_sharpness: angles below are bad, but at sharper corners of a panel. */
+/* cos 20 degrees, of delaunay_sharpness: angles below are bad, but at sharper corners of a panel.
+ */
 #define MESHING_POOR 0.93969262
 
 /* A pattern while it is meshed. Edges of all panels have one numbering: those of panel p begin with
@@ -89,8 +90,8 @@ int seams_make(struct garment *garment, const struct garment_pattern *pattern,
                struct cloth_error *error);
 
 /* Where two panels are sewn together around a corner, makes their triangles there differ, so that
- * the corner can open. Corners below about 60 degrees, whose halves would be too sharp, may stay as they are. The garment has its pieces
- * and seams. Error: CLOTH_E_MEMORY. Local. */
+ * the corner can open. Corners below about 60 degrees, whose halves would be too sharp, may stay as
+ * they are. The garment has its pieces and seams. Error: CLOTH_E_MEMORY. Local. */
 int corners_open(struct garment *garment, const struct garment_pattern *pattern,
                  struct cloth_error *error);
 

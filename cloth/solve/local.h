@@ -20,9 +20,9 @@ enum solve_local {
 size_t solve_local_doubles(size_t n, size_t entries, enum solve_local kind);
 
 /* Makes the factor of a block, aligned to 32 bytes. A pivot of IC(0) may fail where B itself is
- * positive definite. Then IC(0) is tried again with the diagonal of B times 1.01, 1.05, 1.2 and 2
- * (Manteuffel 1980). If all fail the factor is that of SSOR, which cannot fail. Returns how often
- * it was tried again: 0 .. SOLVE_SSOR. */
+ * positive definite, or the factor be far from B. Then IC(0) is tried again with the diagonal of B
+ * times 1.01, 1.05, 1.2 and 2 (Manteuffel 1980). If all fail the factor is that of SSOR, which
+ * cannot fail. Returns how often it was tried again: 0 .. SOLVE_SSOR. */
 enum { SOLVE_SSOR = 5 };
 int solve_local_factor(const struct solve_block *block, const struct solve_cut *cut,
                        const void *values, enum solve_local kind, double *factor);

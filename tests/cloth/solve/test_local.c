@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static struct system sys;
 static _Alignas(32) double factor[8 * SYSTEM_ROWS + 12 * SYSTEM_SPRINGS];
@@ -209,6 +210,62 @@ UNIT_TEST(pivots_that_fail)
     }
     ck_assert_int_gt(tried[0], 0);
     ck_assert_int_gt(tried[1] + tried[2] + tried[3] + tried[4], 0);
+}
+
+/* The largest eigenvalue of M^-1 A, by powers. */
+static double largest(void)
+{
+    phys_vec x[SYSTEM_ROWS], y[SYSTEM_ROWS], s[SYSTEM_ROWS];
+    double found = 0;
+    system_draw_rows(&sys, x);
+    for (int k = 0; k < 60; k++) {
+        system_multiply(&sys, x, y);
+        apply(SOLVE_IC0, y, s);
+        found = sqrt(system_dot(&sys, s, s) / system_dot(&sys, x, x));
+        for (uint32_t a = 0; a < sys.n; a++)
+            x[a] = s[a] / sqrt(system_dot(&sys, s, s));
+    }
+    return found;
+}
+
+/* Adds w c c' of three rows, c of sum zero, to the entries between them: some push, some pull. */
+static void bend(uint32_t a, uint32_t b, uint32_t d, double w)
+{
+    const uint32_t row[3] = {a, b, d};
+    const double first = system_draw(), second = system_draw();
+    const double c[3] = {first, second, -first - second};
+    for (int k = 0; k < 3; k++) /* pairs 01, 02, 12 */
+        for (uint32_t i = 0; i < sys.n_springs; i++)
+            if (sys.end[i][0] == row[k / 2] && sys.end[i][1] == row[k ? 2 : 1])
+                sys.value[i][3] -= w * c[k / 2] * c[k ? 2 : 1];
+}
+
+/* Bending with hardly any mass, which is definite. Where pivots only just pass, the factor alone
+ * would take some motion for hundreds of times softer than it is. */
+UNIT_LOOP(no_motion_is_too_soft, SOLVE_HALF, SOLVE_HALF_FLOAT + 1)
+{
+    enum { SIDE = 7, SYSTEMS = 300 };
+    int tried[SOLVE_SSOR + 1] = {0};
+    double most = 0;
+    srand(12);
+    sys.format = (enum solve_format)_i;
+    for (int k = 0; k < SYSTEMS; k++) {
+        system_sheet(&sys, SIDE, SIDE, 1);
+        memset(sys.value, 0, sizeof sys.value);
+        for (uint32_t a = 0; a < sys.n; a++) {
+            sys.diagonal[a] = pow(10, -4 * (double)k / SYSTEMS);
+            if (a % SIDE + 1 < SIDE && a + SIDE < sys.n) {
+                bend(a, a + 1, a + SIDE + 1, 1);
+                bend(a, a + SIDE, a + SIDE + 1, 1);
+            }
+        }
+        system_cut(&sys, 1);
+        tried[make(SOLVE_IC0)]++;
+        most = fmax(most, largest());
+    }
+    ck_assert_int_gt(tried[0], 0);
+    ck_assert_int_gt(tried[1] + tried[2] + tried[3], 0);
+    ck_assert_double_lt(most, 10);
 }
 
 /* y += A_ab x, the 3 x 3 block of rows a and columns b of the dense matrix. */

@@ -183,10 +183,19 @@ PHYS_INLINE double contact_row_raises(const struct contact_row *row, double lift
     return row->hard > 0 ? fmin(slow, fmax(most - row->rested, 0) / k) : lift;
 }
 
+/* The stiffness along the normal of a contact that may open. A gap that would close as the load
+ * doubles is too soft for what wrung cloth adds to it in a step, so k is at least load / thickness,
+ * as far as it may be firm. */
+PHYS_INLINE double contact_row_stiffness(const struct contact_row *row, double stiffness)
+{
+    const double loaded = fmin(row->rested / row->thickness, CONTACT_ROW_FIRMEST * stiffness);
+    return fmax(row->firm > 1 ? row->firm * stiffness : stiffness, loaded);
+}
+
 /* Begins a step of a contact that may open. */
 PHYS_INLINE void contact_row_lift(struct contact_row *row, double stiffness)
 {
-    const double firm = row->firm > 1 ? row->firm : 1, k = stiffness * firm;
+    const double firm = row->firm > 1 ? row->firm : 1, k = contact_row_stiffness(row, stiffness);
     const double lacks = row->thickness - row->gap;
     const double rises = firm > 1 ? CONTACT_ROW_YIELDS : CONTACT_ROW_RISES;
     const double rise = lacks > 0 ? rises * lacks : lacks;

@@ -128,7 +128,8 @@ static const struct scene_rule wave_keys[] = {
     {"phase", SCENE_NUMBER, .fallback = "0", INTO(struct model_wave, phase),
      .about = "in waves, at the point `about`"},
     {"translate", SCENE_LIST, "m", "[0, 0, 0]", VECTOR, INTO(struct model_wave, translate),
-     .about = "a shift, times the sine"},
+     .about = "a shift, times the sine. A sheet that `scale` narrows to the part s keeps its "
+              "lengths, to 4 %, by a quarter of a wave times the root of 1 / s^2 - 1"},
     {"velocity", SCENE_LIST, "m/s", "[0, 0, 0]", VECTOR, INTO(struct model_wave, velocity),
      .about = "added, times the sine"},
     {0}};

@@ -7,6 +7,7 @@
 #include "cloth/app/view/live.h"
 #include "cloth/app/view/start.h"
 #include "cloth/live/live.h"
+#include "cloth/output/files/files.h"
 #include "cloth/view/window.h"
 #include "tools/chart/chart.h"
 #include "tools/trace/read.h"
@@ -320,15 +321,16 @@ struct chart {
     const struct trace_run *run;
     const struct chart_options *options;
     chart_write *write;
+    struct cloth_error *error;
 };
 
-static int fill_chart(void *context, const char *path, FILE *file, struct cloth_error *error)
+static int fill_chart(FILE *file, const void *what)
 {
-    const struct chart *chart = context;
-    (void)path;
+    const struct chart *chart = what;
     const int code = chart->write(chart->run, chart->options, file);
-    return code ? cloth_fail(error, code == DUITE_E_ARGUMENT ? CLOTH_E_INPUT : CLOTH_E_LIBRARY,
-                             "%s", duite_message())
+    return code ? cloth_fail(chart->error,
+                             code == DUITE_E_ARGUMENT ? CLOTH_E_INPUT : CLOTH_E_LIBRARY, "%s",
+                             duite_message())
                 : CLOTH_OK;
 }
 
@@ -341,11 +343,11 @@ static int draw_trace(struct options *options, struct cloth_error *error)
     }
     if (trace_read(&run, options->trace, false))
         return cloth_fail(error, CLOTH_E_INPUT, "%s", duite_message());
-    struct chart svg = {run, &options->chart, chart_write_svg};
-    struct chart png = {run, &options->chart, chart_write_png};
-    int code = options->svg ? view_replace_file(options->svg, fill_chart, &svg, error) : CLOTH_OK;
+    struct chart svg = {run, &options->chart, chart_write_svg, error};
+    struct chart png = {run, &options->chart, chart_write_png, error};
+    int code = options->svg ? output_replace_file(options->svg, fill_chart, &svg, error) : CLOTH_OK;
     if (!code && options->png)
-        code = view_replace_file(options->png, fill_chart, &png, error);
+        code = output_replace_file(options->png, fill_chart, &png, error);
     trace_run_free(run);
     return code;
 }

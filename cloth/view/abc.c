@@ -3,6 +3,7 @@
 
 #include "cloth/base/bytes.h"
 #include "cloth/base/memory.h"
+#include "cloth/output/files/files.h"
 #include "cloth/view/view.h"
 
 #include <math.h>
@@ -180,21 +181,28 @@ static int abc_take_meshes(struct abc *abc, struct cloth_error *error)
     return 0;
 }
 
-static int abc_fill(void *context, const char *path, FILE *file, struct cloth_error *error)
+struct abc_writing {
+    struct abc *abc;
+    const char *path;
+    struct cloth_error *error;
+};
+
+static int abc_fill(FILE *file, const void *what)
 {
-    struct abc *abc = context;
-    ogawa_begin(&abc->out, file);
-    const int code = abc_put_samples(abc, error);
-    return code ? code : abc_put_root(abc, path, error);
+    const struct abc_writing *of = what;
+    ogawa_begin(&of->abc->out, file);
+    const int code = abc_put_samples(of->abc, of->error);
+    return code ? code : abc_put_root(of->abc, of->path, of->error);
 }
 
 int view_export_abc(struct output_cache *cache, uint64_t first, uint64_t last, const char *path,
                     struct cloth_error *error)
 {
     struct abc abc = {.first = first, .last = last};
+    const struct abc_writing writing = {&abc, path, error};
     int code = view_export_open(&abc.from, cache, error);
     code = code ? code : abc_take_meshes(&abc, error);
-    code = code ? code : view_replace_file(path, abc_fill, &abc, error);
+    code = code ? code : output_replace_file(path, abc_fill, &writing, error);
     for (uint32_t m = 0; m < abc.n_meshes && abc.mesh; m++) {
         free(abc.mesh[m].points);
         free(abc.mesh[m].boxes);

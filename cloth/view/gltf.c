@@ -6,6 +6,7 @@
 
 #include "cloth/base/bytes.h"
 #include "cloth/base/memory.h"
+#include "cloth/output/files/files.h"
 #include "cloth/view/view.h"
 
 #include <math.h>
@@ -196,12 +197,15 @@ static void gltf_put_floats(FILE *file, const float *value, size_t n)
     }
 }
 
-static int gltf_fill(void *context, const char *path, FILE *file, struct cloth_error *error)
+static size_t gltf_size(const struct gltf *gltf)
 {
-    const struct gltf *gltf = context;
-    const size_t size = GLTF_HEADERS + gltf->n_json + gltf->bytes;
-    if (size > UINT32_MAX)
-        return cloth_fail(error, CLOTH_E_INPUT, "%s: glTF holds no more than 4 GiB", path);
+    return GLTF_HEADERS + gltf->n_json + gltf->bytes;
+}
+
+static int gltf_fill(FILE *file, const void *what)
+{
+    const struct gltf *gltf = what;
+    const size_t size = gltf_size(gltf);
     const uint32_t head[] = {GLTF_MAGIC, 2, (uint32_t)size, (uint32_t)gltf->n_json, GLTF_JSON};
     for (size_t i = 0; i < sizeof head / sizeof *head; i++)
         view_export_u32(file, head[i]);
@@ -243,7 +247,9 @@ int view_export_gltf(struct output_cache *cache, uint64_t frame, const char *pat
         gltf.n = 2;
     }
     code = code ? code : gltf_make_json(&gltf, error);
-    code = code ? code : view_replace_file(path, gltf_fill, &gltf, error);
+    if (!code && gltf_size(&gltf) > UINT32_MAX)
+        code = cloth_fail(error, CLOTH_E_INPUT, "%s: glTF holds no more than 4 GiB", path);
+    code = code ? code : output_replace_file(path, gltf_fill, &gltf, error);
     gltf_free(&gltf);
     view_export_close(&from);
     return code;

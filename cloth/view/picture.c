@@ -1,5 +1,6 @@
 /* A picture is drawn into a framebuffer and read. All that is made here is deleted here, whatever
  * fails. */
+#include "cloth/output/files/files.h"
 #include "cloth/view/view.h"
 
 #include <epoxy/gl.h>
@@ -7,8 +8,6 @@
 #include <png.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 /* ---- Drawing ---- */
 
@@ -113,61 +112,22 @@ int view_window_draw(int width, int height, struct view_scene *scene,
 
 /* ---- Files ---- */
 
-static int fail_to_write(const char *path, const char *reason, struct cloth_error *error)
+static int fill_png(FILE *file, const void *what)
 {
-    return cloth_fail(error, CLOTH_E_IO, "cannot write %s: %s", path, reason);
-}
-
-/* name: the file that is opened; path: its final name, for sentences. */
-static int write_file(const char *name, const char *path, view_fill *fill, void *context,
-                      struct cloth_error *error)
-{
-    FILE *file = fopen(name, "wbe");
-    if (!file)
-        return fail_to_write(path, strerror(errno), error);
-    errno = 0;
-    const int code = fill(context, path, file, error);
-    bool whole = !fflush(file) && !ferror(file);
-    int reason = errno;
-    if (fclose(file) && whole) {
-        whole = false;
-        reason = errno;
-    }
-    return code || whole ? code : fail_to_write(path, strerror(reason), error);
-}
-
-int view_replace_file(const char *path, view_fill *fill, void *context, struct cloth_error *error)
-{
-    struct stat status;
-    char *part = NULL;
-    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode))
-        return write_file(path, path, fill, context, error); /* a pipe or a device */
-    if (asprintf(&part, "%s.part", path) < 0)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory to write %s", path);
-    int code = write_file(part, path, fill, context, error);
-    if (!code && rename(part, path) != 0)
-        code = fail_to_write(path, strerror(errno), error);
-    if (code)
-        unlink(part);
-    free(part);
-    return code;
-}
-
-static int fill_png(void *context, const char *path, FILE *file, struct cloth_error *error)
-{
-    const struct view_picture *picture = context;
+    const struct view_picture *picture = what;
     png_image image = {.version = PNG_IMAGE_VERSION,
                        .width = (png_uint_32)picture->width,
                        .height = (png_uint_32)picture->height,
                        .format = PNG_FORMAT_RGB};
-    if (png_image_write_to_stdio(&image, file, 0, picture->rgb, 0, NULL))
-        return CLOTH_OK;
-    return fail_to_write(path, errno ? strerror(errno) : image.message, error);
+    const bool whole = png_image_write_to_stdio(&image, file, 0, picture->rgb, 0, NULL);
+    if (!whole && !errno)
+        errno = EINVAL; /* a size that PNG has not */
+    return !whole;
 }
 
 int view_picture_write(struct view_picture *picture, const char *path, struct cloth_error *error)
 {
-    return view_replace_file(path, fill_png, picture, error);
+    return output_replace_file(path, fill_png, picture, error);
 }
 
 void view_picture_free(struct view_picture *picture)

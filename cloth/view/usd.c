@@ -1,5 +1,6 @@
 /* A mesh a cloth, and one of all obstacles, in a layer of OpenUSD's text form. Each mesh has all
  * its time samples in one place, so that the frames of the folder are read once for each. */
+#include "cloth/output/files/files.h"
 #include "cloth/view/export.h"
 
 #include "cloth/view/view.h"
@@ -158,13 +159,17 @@ static int usd_put_obstacles(FILE *file, struct usd *usd, struct cloth_error *er
     return code;
 }
 
-static int usd_fill(void *context, const char *path, FILE *file, struct cloth_error *error)
+struct usd_writing {
+    struct usd *usd;
+    struct cloth_error *error;
+};
+
+static int usd_fill(FILE *file, const void *what)
 {
-    struct usd *usd = context;
-    (void)path;
-    usd_put_head(file, usd);
-    int code = usd_put_cloths(file, usd, error);
-    code = code ? code : usd_put_obstacles(file, usd, error);
+    const struct usd_writing *of = what;
+    usd_put_head(file, of->usd);
+    int code = usd_put_cloths(file, of->usd, of->error);
+    code = code ? code : usd_put_obstacles(file, of->usd, of->error);
     fputs("}\n", file);
     return code;
 }
@@ -173,8 +178,9 @@ int view_export_usd(struct output_cache *cache, uint64_t first, uint64_t last, c
                     struct cloth_error *error)
 {
     struct usd usd = {.first = first, .last = last};
+    const struct usd_writing writing = {&usd, error};
     int code = view_export_open(&usd.from, cache, error);
-    code = code ? code : view_replace_file(path, usd_fill, &usd, error);
+    code = code ? code : output_replace_file(path, usd_fill, &writing, error);
     view_export_close(&usd.from);
     return code;
 }

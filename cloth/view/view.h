@@ -142,14 +142,8 @@ int view_picture_draw(struct view_picture *picture, struct view_scene *scene,
 /* Draws the same into the framebuffer of a window of that size, which is bound after it. */
 int view_window_draw(int width, int height, struct view_scene *scene,
                      const struct view_camera *camera, struct cloth_error *error);
-/* A PNG file, written whole or not at all. Error: CLOTH_E_IO. */
+/* A PNG file, written whole or not at all. Errors: those of output_replace_file. */
 int view_picture_write(struct view_picture *picture, const char *path, struct cloth_error *error);
 void view_picture_free(struct view_picture *picture);
-
-/* Writes a file under another name and renames it when it is whole, so that its path never holds
- * half of it; a pipe or a device is written to as it is. fill returns 0, or a code with the error
- * filled. Errors: its own; CLOTH_E_IO, CLOTH_E_MEMORY. */
-typedef int view_fill(void *context, const char *path, FILE *file, struct cloth_error *error);
-int view_replace_file(const char *path, view_fill *fill, void *context, struct cloth_error *error);
 
 #endif

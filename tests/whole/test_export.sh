@@ -50,7 +50,7 @@ ok "another ending is refused" refuses "ends in .usda, .usd, .abc, .glb or .obj,
 ok "a frame that is not there is refused" refuses "4 frames, 0 to 3: no frame 9" export_to c.glb --frame 9
 ok "frames that are not there are refused" refuses "4 frames, 0 to 3: no frame 9" export_to c.usda --frames 2:9
 ok "several frames in one of glTF are refused" refuses "--frames is of films, of USD, of Alembic and of the check" export_to c.glb --frames 1:2
-exits 1 "a file that cannot be written" "$DUITE_VIEW" "$scratch/frames" --export "$scratch/nowhere/c.glb"
+exits 2 "a file that cannot be written" "$DUITE_VIEW" "$scratch/frames" --export "$scratch/nowhere/c.glb"
 full() { ln -s /dev/full "$scratch/full.abc" && ! export_to full.abc 2> "$scratch/said" && cat "$scratch/said" && grep -q "cannot write .*full.abc: No space left" "$scratch/said"; }
 if test -w /dev/full; then ok "a full disk is said" full; fi
 pipe() { mkfifo "$scratch/p.abc" && { cat "$scratch/p.abc" > /dev/null & } && export_to p.abc; }

@@ -202,10 +202,11 @@ int output_sync(int file)
 
 /* ---- Whole files ---- */
 
-int output_write_file(const char *path, int (*fill)(FILE *file, const void *what), const void *what,
-                      struct cloth_error *error)
+/* name: the file that is opened; path: its final name, for sentences. */
+static int write_whole(const char *name, const char *path, output_fill *fill, const void *what,
+                       struct cloth_error *error)
 {
-    const int handle = output_open_file(path, O_WRONLY | O_CREAT | O_TRUNC);
+    const int handle = output_open_file(name, O_WRONLY | O_CREAT | O_TRUNC);
     FILE *file = handle < 0 ? NULL : fdopen(handle, "w");
     if (!file) {
         const int code = output_refuse(error, "write", path);
@@ -213,6 +214,7 @@ int output_write_file(const char *path, int (*fill)(FILE *file, const void *what
             close(handle);
         return code;
     }
+    errno = 0;
     int bad = fill(file, what) != 0 || fflush(file) != 0 || ferror(file);
     bad = bad || output_sync(fileno(file)) != 0;
     int reason = errno;
@@ -223,14 +225,20 @@ int output_write_file(const char *path, int (*fill)(FILE *file, const void *what
     if (!bad)
         return 0;
     struct stat status;
-    if (stat(path, &status) == 0 && S_ISREG(status.st_mode))
-        unlink(path);
+    if (stat(name, &status) == 0 && S_ISREG(status.st_mode))
+        unlink(name);
     errno = reason;
     return output_fail(error, "write", path);
 }
 
-int output_replace_file(const char *path, int (*fill)(FILE *file, const void *what),
-                        const void *what, struct cloth_error *error)
+int output_write_file(const char *path, output_fill *fill, const void *what,
+                      struct cloth_error *error)
+{
+    return write_whole(path, path, fill, what, error);
+}
+
+int output_replace_file(const char *path, output_fill *fill, const void *what,
+                        struct cloth_error *error)
 {
     struct stat status;
     struct output_path end;
@@ -241,7 +249,7 @@ int output_replace_file(const char *path, int (*fill)(FILE *file, const void *wh
         return output_fail(error, "write", path);
     if (asprintf(&part, "%s.%ld.part", end.text, (long)getpid()) < 0)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory to write %s", path);
-    int code = output_write_file(part, fill, what, error);
+    int code = write_whole(part, path, fill, what, error);
     if (!code && rename(part, end.text) != 0) {
         code = output_fail(error, "write", path);
         unlink(part);

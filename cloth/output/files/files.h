@@ -72,16 +72,20 @@ int output_write_at(int file, const void *bytes, size_t n, uint64_t offset);
  * systems cannot be asked, and need not be. */
 int output_sync(int file);
 
+/* Writes a file's bytes. Returns 0, or nonzero with errno set or with an error of its own, which
+ * `what` may lead to. */
+typedef int output_fill(FILE *file, const void *what);
+
 /* Creates or empties a file, has `fill` write it, and brings it to the disk. A file that could not
- * be written whole is removed. `fill` returns 0, or nonzero with errno set. Errors: output_refuse
- * where it cannot be opened, else output_fail. */
-int output_write_file(const char *path, int (*fill)(FILE *file, const void *what), const void *what,
+ * be written whole is removed. Errors: that of `fill`; output_refuse where it cannot be opened,
+ * else output_fail. */
+int output_write_file(const char *path, output_fill *fill, const void *what,
                       struct cloth_error *error);
 
 /* The same beside its final name, then renamed, so that the path never holds half a file. A path
  * that is no plain file, such as a pipe, is written to as it is; a link stays one. */
-int output_replace_file(const char *path, int (*fill)(FILE *file, const void *what),
-                        const void *what, struct cloth_error *error);
+int output_replace_file(const char *path, output_fill *fill, const void *what,
+                        struct cloth_error *error);
 
 /* ---- Files that grow by whole parts ---- */
 

@@ -105,7 +105,7 @@ ok "it is the same picture" cmp "$scratch/far.png" "$scratch/1.png"
 rm "$scratch/far/scene.json" && mkdir "$scratch/far/scene.json"
 exits 2 "a folder in the place of a file" view "$scratch/far" --size 64x48 --frame 1 --png "$scratch/far.png"
 says "names it" "cannot read $scratch/far/scene.json: Is a directory"
-exits 1 "a folder that is not there for the picture" picture --png "$scratch/none/x.png"
+exits 2 "a folder that is not there for the picture" picture --png "$scratch/none/x.png"
 says "names it" "$scratch/none/x.png"
 
 # A scene before it runs has a picture, and marks of its pins in it; nothing is left of it.

@@ -34,7 +34,8 @@ static uint32_t count_nodes(uint32_t n_triangles)
     return n;
 }
 
-void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head *head)
+/* Places of a skin of these counts. */
+static void lay_skin(const struct contact_skin *skin, struct contact_skin_head *head)
 {
     const uint32_t n_nodes = count_nodes(skin->n_triangles);
     *head = (struct contact_skin_head){.n_points = skin->n_points,
@@ -75,7 +76,7 @@ void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head 
 size_t contact_skin_bytes(const struct contact_skin *skin)
 {
     struct contact_skin_head head;
-    contact_skin_lay(skin, &head);
+    lay_skin(skin, &head);
     return head.bytes;
 }
 
@@ -346,7 +347,7 @@ int contact_skin_make(const struct contact_skin_source *from, void *table,
     struct contact_skin_head head;
     struct contact_skin skin;
     count_features(from, &skin);
-    contact_skin_lay(&skin, &head);
+    lay_skin(&skin, &head);
     int code = make_scratch(&making, error);
     if (!code) {
         bound_triangles(&making);

@@ -64,8 +64,6 @@ struct contact_skin_head {
     uint64_t loop, along, n_along; /* n_along: there is room for */
     uint32_t ids[2];
 };
-/* Places of a skin of these counts. */
-void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head *head);
 
 /* The boxes of a step begin with this. */
 struct contact_boxes_head {

@@ -53,7 +53,6 @@ struct flow_contact_mode {
 
 extern const struct flow_contact_mode flow_contact_certified, flow_contact_repulsion,
     flow_contact_image, flow_contact_project;
-extern const struct flow_contact_mode *const flow_contact_modes[];
 
 const struct flow_contact_mode *flow_contact_mode(const struct model *model);
 

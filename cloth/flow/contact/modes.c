@@ -14,13 +14,13 @@ static bool is_none(const struct model *model)
 static const struct flow_contact_mode flow_contact_none_at_all = {.is = is_none};
 
 /* In order; the last one always is. A new mode is a row. */
-const struct flow_contact_mode *const flow_contact_modes[] = {
+static const struct flow_contact_mode *const modes[] = {
     &flow_contact_certified, &flow_contact_repulsion, &flow_contact_image, &flow_contact_project,
     &flow_contact_none_at_all};
 
 const struct flow_contact_mode *flow_contact_mode(const struct model *model)
 {
-    const struct flow_contact_mode *const *mode = flow_contact_modes;
+    const struct flow_contact_mode *const *mode = modes;
     while (!(*mode)->is(model))
         mode++;
     return *mode;

@@ -155,7 +155,9 @@ static void count_watched(struct flow_source *source)
     }
 }
 
-void flow_placed_settle(const struct flow_source *source, struct cloth_list *list, size_t size)
+/* A list whose items begin with a vertex of all cloths and their number: makes vertices places and
+ * orders items by place; those of unused vertices are dropped. */
+static void settle_places(const struct flow_source *source, struct cloth_list *list, size_t size)
 {
     size_t n = 0;
     for (size_t i = 0; i < list->n; i++) {
@@ -209,8 +211,8 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
     source->shape = cloth_take(&source->memory, blocks->n_blocks, sizeof *source->shape, error);
     if (source->memory.lacks)
         return CLOTH_E_MEMORY;
-    flow_placed_settle(source, &source->particles.varying, sizeof(struct flow_varying));
-    flow_placed_settle(source, &source->particles.soft, sizeof(struct flow_soft));
+    settle_places(source, &source->particles.varying, sizeof(struct flow_varying));
+    settle_places(source, &source->particles.soft, sizeof(struct flow_soft));
     for (uint32_t b = 0; b < blocks->n_blocks; b++) {
         struct flow_table *shape = source->shape + b;
         shape->format = source->model->format;

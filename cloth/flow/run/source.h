@@ -245,10 +245,8 @@ double flow_source_mass(const struct flow_source *source);
  * one that is not convex, or pins. (contact/pinch.c) */
 bool flow_source_may_pinch(const struct flow_source *source);
 
-/* Lists whose items begin with a vertex of all cloths and their number: when blocks are there,
- * makes vertices places and orders items by place; those of unused vertices are dropped. Then: the
- * first item at or after a place. size: of an item, bytes. Local. */
-void flow_placed_settle(const struct flow_source *source, struct cloth_list *list, size_t size);
+/* The first item at or after a place of a list whose items begin with their place. size: of an
+ * item, bytes. Local. */
 uint32_t flow_placed_from(const struct cloth_list *list, size_t size, uint32_t place);
 
 /* The cloth of a vertex, and its first vertex; looked for from the last one found, zero at first.

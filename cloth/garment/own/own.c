@@ -7,7 +7,8 @@
 
 #include <string.h>
 
-const struct garment_own garment_owns[] = {
+/* Ended by one without a name. */
+static const struct garment_own owns[] = {
     {"tshirt", "a T-shirt: front, back, and sleeves of two halves each", draw_tshirt_measures,
      draw_tshirt},
     {"trousers", "jeans: four panels of legs, and a waistband of two", draw_trousers_measures,
@@ -23,7 +24,7 @@ const char garment_size_words[] = "XS, S, M, L, XL";
 
 const struct garment_own *garment_own_find(const char *name)
 {
-    for (const struct garment_own *own = garment_owns; own->name; own++)
+    for (const struct garment_own *own = owns; own->name; own++)
         if (!strcmp(own->name, name))
             return own;
     return NULL;

@@ -23,9 +23,6 @@ struct garment_own {
     void (*draw)(struct draw *draw, const double *value); /* own.c alone calls it */
 };
 
-/* Ended by one without a name. */
-extern const struct garment_own garment_owns[];
-
 /* The garment or size of a name; NULL or -1: there is none. The words are all names. */
 const struct garment_own *garment_own_find(const char *name);
 int garment_size_find(const char *name);

@@ -44,7 +44,6 @@ struct figure_matrix {
     double row[3][4];
 };
 struct figure_matrix figure_matrix_of(const struct aiMatrix4x4 *from);
-struct figure_matrix figure_product(const struct figure_matrix *a, const struct figure_matrix *b);
 
 /* ---- How vertices follow nodes (figure_skin.c) ---- */
 

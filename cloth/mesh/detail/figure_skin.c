@@ -13,7 +13,7 @@ struct figure_matrix figure_matrix_of(const struct aiMatrix4x4 *from)
                                    {from->c1, from->c2, from->c3, from->c4}}};
 }
 
-struct figure_matrix figure_product(const struct figure_matrix *a, const struct figure_matrix *b)
+static struct figure_matrix multiply(const struct figure_matrix *a, const struct figure_matrix *b)
 {
     struct figure_matrix c;
     for (int i = 0; i < 3; i++)
@@ -181,7 +181,7 @@ static void move_matrices(struct figure_skin *skin, double ticks)
     const struct figure_node *node = figure->node.items;
     for (size_t i = 0; i < figure->node.n; i++) {
         const struct figure_matrix local = figure_local(node[i].of, skin->channel[i], ticks);
-        skin->world[i] = i ? figure_product(skin->world + node[i].parent, &local) : local;
+        skin->world[i] = i ? multiply(skin->world + node[i].parent, &local) : local;
     }
     for (size_t p = 0; p < figure->part.n; p++) {
         const struct aiMesh *mesh = part_at(figure, p)->mesh;
@@ -189,7 +189,7 @@ static void move_matrices(struct figure_skin *skin, double ticks)
         for (unsigned b = 0; b < mesh->mNumBones; b++) {
             const uint32_t m = skin->bone_first[p] + b;
             const struct figure_matrix bound = figure_matrix_of(&mesh->mBones[b]->mOffsetMatrix);
-            skin->matrix[m] = figure_product(skin->world + skin->bone_node[m], &bound);
+            skin->matrix[m] = multiply(skin->world + skin->bone_node[m], &bound);
         }
     }
 }

@@ -143,8 +143,7 @@ size_t scene_build_count_pairs(const struct model_seams *seams);
 /* The key curve of a map, if it has one: of a load, or of the air. *number: the model's new one;
  * 0: there is none. After the time. */
 int scene_build_curve(uint32_t *number, const struct scene_tree *tree, int node);
-/* A curve of a list of keys; the same of factors of lengths at rest, if there is a list. */
-int scene_build_keys(uint32_t *number, const struct scene_tree *tree, int list);
+/* A curve of a list of keys that are factors of lengths at rest, if there is a list. */
 int scene_build_size(uint32_t *number, const struct scene_tree *tree, int list);
 
 /* ---- Places and motions (motion.c) ---- */

@@ -53,7 +53,8 @@ static struct model_curve *add_curve(uint32_t *number, const struct scene_tree *
     return to;
 }
 
-int scene_build_keys(uint32_t *number, const struct scene_tree *tree, int list)
+/* A curve of a list of keys. */
+static int build_curve(uint32_t *number, const struct scene_tree *tree, int list)
 {
     return add_curve(number, tree, list) ? build_keys(tree, list) : tree->error->code;
 }
@@ -66,7 +67,7 @@ int scene_build_curve(uint32_t *number, const struct scene_tree *tree, int node)
     if (!curve)
         return CLOTH_OK;
     if (keys)
-        return scene_build_keys(number, tree, keys);
+        return build_curve(number, tree, keys);
     struct model_curve *to = add_curve(number, tree, 0);
     return to ? build_sine(to, tree, scene_tree_get(tree, curve, "sine")) : tree->error->code;
 }
@@ -80,7 +81,7 @@ int scene_build_size(uint32_t *number, const struct scene_tree *tree, int list)
     const struct model *model = tree->model;
     if (!list)
         return CLOTH_OK;
-    const int code = scene_build_keys(number, tree, list);
+    const int code = build_curve(number, tree, list);
     for (uint32_t i = 0; !code && i < model->curves[*number - 1].n; i++) {
         const double factor = model->curve_keys[model->curves[*number - 1].first + i].factor;
         if (!(factor >= LEAST_SIZE && factor <= MOST_SIZE))

@@ -105,14 +105,10 @@ static const char *file_of_mark(const struct scene_tree *tree, const yaml_mark_t
     return i && i <= tree->n_included ? tree->included[i - 1] : tree->path;
 }
 
-const char *scene_tree_file(const struct scene_tree *tree, int node)
-{
-    return file_of_mark(tree, &scene_tree_node(tree, node)->start_mark);
-}
-
 char *scene_tree_beside(const struct scene_tree *tree, int node, const char *name)
 {
-    const char *file = scene_tree_file(tree, node), *slash = strrchr(file, '/');
+    const char *file = file_of_mark(tree, &scene_tree_node(tree, node)->start_mark),
+               *slash = strrchr(file, '/');
     const int folder = slash && *name != '/' ? (int)(slash - file) + 1 : 0;
     char *path;
     return asprintf(&path, "%.*s%s", folder, file, name) < 0 ? NULL : path;

@@ -49,9 +49,8 @@ int scene_tree_load(struct scene_tree *tree, const char *path, const struct scen
 int scene_tree_load_scene(struct scene_tree *tree, const char *path, struct cloth_error *error);
 void scene_tree_free(struct scene_tree *tree);
 
-/* The path of the file that a node is from; of other nodes that of the scene. */
-const char *scene_tree_file(const struct scene_tree *tree, int node);
-/* `name`, relative to the folder of that file. NULL: out of memory. */
+/* `name`, relative to the folder of the file that a node is from, of other nodes of the scene.
+ * NULL: out of memory. */
 char *scene_tree_beside(const struct scene_tree *tree, int node, const char *name);
 
 /* The number of a node that an alias within it names; *line: a line of the alias's node, counted

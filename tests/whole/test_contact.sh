@@ -160,5 +160,5 @@ else
 fi
 if test "${DUITE_LONG:-}" = 1; then
     ok "one hash: a sheet that is wrung, few" ranks 4 tests/whole/same_hash "$scratch/wring.yaml" few 0 time.end=0.4 grain=60
-    ok "one hash: a sheet that is wrung, some" ranks 4 tests/whole/same_hash "$scratch/wring.yaml" some 0 grain=60
+    ok "one hash: a sheet that is wrung, some" ranks 4 tests/whole/same_hash "$scratch/wring.yaml" some 0 time.end=0.5 grain=60
 fi

@@ -183,9 +183,9 @@ PHYS_INLINE double contact_row_raises(const struct contact_row *row, double lift
     return row->hard > 0 ? fmin(slow, fmax(most - row->rested, 0) / k) : lift;
 }
 
-/* The stiffness along the normal of a contact that may open. A gap that would close as the load
- * doubles is too soft for what wrung cloth adds to it in a step, so k is at least load / thickness,
- * as far as it may be firm. */
+/* The stiffness along the normal of a contact that may open: at least load / thickness, as far as a
+ * row may be firm. The gap of a softer one would close before its load has doubled, and wrung cloth
+ * adds so much in a few steps. */
 PHYS_INLINE double contact_row_stiffness(const struct contact_row *row, double stiffness)
 {
     const double loaded = fmin(row->rested / row->thickness, CONTACT_ROW_FIRMEST * stiffness);

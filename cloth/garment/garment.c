@@ -184,7 +184,7 @@ static int put_pieces(struct garment *garment, struct meshing *meshing, struct c
         first_triangle += garment->piece[p].n_triangles;
     }
     code = seams_make(garment, meshing->pattern, error);
-    return code ? code : corners_open(garment, meshing->pattern, error);
+    return code ? code : corners_open(garment, meshing, error);
 }
 
 int garment_make(struct garment *garment, const struct garment_pattern *pattern,

@@ -1,3 +1,4 @@
+/* A factor is applied by one pass over its rows and one back (cloth/solve/local_rows.h). */
 #include "cloth/solve/local.h"
 #include "cloth/solve/local_rows.h"
 

@@ -1,5 +1,6 @@
-/* T is made in double and rounded to float at the end, in the first part of its memory. Each try
- * begins with the block's own values. */
+/* A factor of IC(0) is handed out only if its pivots have passed and it is near its block. Each try
+ * begins with the block's own values. T is made in double, and rounded to float at the end, in the
+ * first part of its memory. */
 #include "cloth/solve/local.h"
 #include "cloth/solve/local_rows.h"
 
@@ -248,7 +249,7 @@ PHYS_INLINE void round_off(const struct solve_block *block, struct local_factor 
         f->rounded[n].c[0] = 0;
 }
 
-/* Signs that no pattern of the block follows: Knuth's linear congruential numbers. */
+/* Signs that no pattern of the block follows: linear congruential numbers (Knuth & Lewis). */
 PHYS_INLINE void mix_signs(const struct solve_block *block, phys_vec *q)
 {
     uint32_t x = 1;

@@ -34,9 +34,7 @@ static uint32_t meshing_edge_of(const struct meshing_panel *of, uint32_t n_edges
     return e;
 }
 
-/* Whether a triangle fills a corner, so that two of its edges are the boundary's: shorter divisions
- * leave its shape as it is. */
-static bool meshing_is_ear(const struct delaunay *plane, uint32_t triangle)
+bool meshing_is_ear(const struct delaunay *plane, uint32_t triangle)
 {
     const uint32_t *beside = plane->triangle[triangle].beside;
     int n = 0;

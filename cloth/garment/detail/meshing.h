@@ -89,10 +89,13 @@ bool meshing_outline(struct meshing *meshing, uint32_t panel);
 int seams_make(struct garment *garment, const struct garment_pattern *pattern,
                struct cloth_error *error);
 
+/* True if a triangle fills a corner, so that two of its edges are the boundary's: shorter divisions
+ * leave its shape as it is. Pure. */
+bool meshing_is_ear(const struct delaunay *plane, uint32_t triangle);
+
 /* Where two panels are sewn together around a corner, makes their triangles there differ, so that
  * the corner can open. Corners below about 60 degrees, whose halves would be too sharp, may stay as
  * they are. The garment has its pieces and seams. Error: CLOTH_E_MEMORY. Local. */
-int corners_open(struct garment *garment, const struct garment_pattern *pattern,
-                 struct cloth_error *error);
+int corners_open(struct garment *garment, const struct meshing *meshing, struct cloth_error *error);
 
 #endif

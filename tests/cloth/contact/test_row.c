@@ -56,6 +56,20 @@ static void run(struct mass *mass, double seconds)
         step(mass);
 }
 
+/* k of a loaded contact is load / thickness, but at least that of others, and at most what a row
+ * may be firm. */
+UNIT_TEST(loads_stiffen)
+{
+    static const double times[][2] = {{0, 1}, {0.5, 1}, {10, 10}, {200, 200}, {1e4, 256}};
+    for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
+        struct mass mass = make(0, 0);
+        mass.row.gap = THICKNESS;
+        mass.row.rested = times[i][0] * mass.k * THICKNESS;
+        contact_row_begin(&mass.row, mass.k, 1);
+        ck_assert_double_eq_tol(mass.row.stiffness / mass.k, times[i][1], 1e-12 * times[i][1]);
+    }
+}
+
 UNIT_TEST(rests)
 {
     struct mass mass = make(0, 0);

@@ -54,6 +54,39 @@ static void pinch_corners_of(const struct flow_contact *contact, int side, uint3
 
 /* ---- Pushes of the step before ---- */
 
+/* Corners of the contacts that may be pinched, as bits at their hashes: other corners may share a
+ * bit, which costs time only. */
+enum { CORNER_BITS = 16 };
+struct corner_set {
+    uint64_t word[(1u << CORNER_BITS) / 64];
+};
+
+/* The bit of a corner: Fibonacci hashing (Knuth, TAOCP 3, 6.4). */
+static uint32_t corner_bit(uint64_t corner)
+{
+    return (uint32_t)(corner * 0x9E3779B97F4A7C15u >> (64 - CORNER_BITS));
+}
+
+static bool has_corner(const struct corner_set *set, uint64_t corner)
+{
+    const uint32_t bit = corner_bit(corner);
+    return set->word[bit / 64] >> bit % 64 & 1;
+}
+
+static void add_corners(const struct flow_contact *contact, struct corner_set *set)
+{
+    for (uint32_t k = 0; k < contact->at.n; k++) {
+        const uint32_t bit = corner_bit(pinch_corner_of(contact, k));
+        set->word[bit / 64] |= (uint64_t)1 << bit % 64;
+    }
+}
+
+struct pushes {
+    struct push *all; /* by corner */
+    size_t n, room;
+    struct corner_set of; /* pushes of other corners are left out */
+};
+
 static int compare_pushes(const void *left, const void *right)
 {
     const uint64_t a = ((const struct push *)left)->corner,
@@ -61,36 +94,53 @@ static int compare_pushes(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
-/* Adds those of a contact: its first side goes along the normal, the second one against it. Returns
- * how many; to NULL: they are counted. */
-static size_t add_pushes(const struct flow_contact *contact, struct push *to)
+static bool add_push(struct pushes *pushes, const struct push *push)
 {
-    size_t n = 0;
-    for (int side = 0; side < 2; side++) {
-        uint32_t from, end;
-        pinch_corners_of(contact, side, &from, &end);
-        for (uint32_t k = from; k < end && contact->chain[side]; k++, n++) {
-            if (!to)
-                continue;
-            to[n] = (struct push){.corner = pinch_corner_of(contact, k),
-                                  .chain = {contact->chain[side], contact->lack[side]}};
-            for (int c = 0; c < 3; c++)
-                to[n].way[c] = (side ? -1 : 1) * contact->row.normal[c];
-        }
+    if (pushes->n == pushes->room) {
+        const size_t room = 2 * pushes->room + 64;
+        struct push *all = realloc(pushes->all, room * sizeof *all);
+        if (!all)
+            return false;
+        pushes->all = all;
+        pushes->room = room;
     }
-    return n;
+    pushes->all[pushes->n++] = *push;
+    return true;
 }
 
-static size_t list_pushes(const struct flow_contacts_before *before, struct push *to)
+/* Adds those of a contact: its first side goes along the normal, the second one against it. Returns
+ * false without memory. */
+static bool add_pushes(const struct flow_contact *contact, struct pushes *pushes)
 {
-    size_t n = 0;
+    bool added = true;
+    for (int side = 0; side < 2; side++) {
+        struct push push = {.chain = {contact->chain[side], contact->lack[side]}};
+        uint32_t from, end;
+        pinch_corners_of(contact, side, &from, &end);
+        for (int c = 0; c < 3; c++)
+            push.way[c] = (side ? -1 : 1) * contact->row.normal[c];
+        for (uint32_t k = from; k < end && push.chain.n; k++) {
+            push.corner = pinch_corner_of(contact, k);
+            if (has_corner(&pushes->of, push.corner))
+                added = added && add_push(pushes, &push);
+        }
+    }
+    return added;
+}
+
+/* Lists them by their corners; with false, without memory, not all of them. */
+static bool list_pushes(const struct flow_contacts_before *before, struct pushes *pushes)
+{
+    bool added = true;
     for (size_t i = 0; i <= before->n; i++) {
         const struct flow_list *list = i ? before->other[i - 1].data : before->own;
         const struct flow_contact *contact = (const struct flow_contact *)(list + 1);
-        for (uint64_t k = 0; k < list->n; k++)
-            n += add_pushes(contact + k, to ? to + n : NULL);
+        for (uint64_t k = 0; k < list->n && added; k++)
+            added = add_pushes(contact + k, pushes);
     }
-    return n;
+    if (pushes->n)
+        qsort(pushes->all, pushes->n, sizeof *pushes->all, compare_pushes);
+    return added;
 }
 
 /* ---- Chains ---- */
@@ -106,12 +156,12 @@ static bool is_solid(const struct flow_contact *contact, int side, uint32_t n_bl
     return solid || (side && contact->side[1] >= n_blocks);
 }
 
-static size_t first_push(const struct push *pushes, size_t n, uint64_t corner)
+static size_t first_push(const struct pushes *pushes, uint64_t corner)
 {
-    size_t low = 0, high = n;
+    size_t low = 0, high = pushes->n;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (pushes[middle].corner < corner)
+        if (pushes->all[middle].corner < corner)
             low = middle + 1;
         else
             high = middle;
@@ -130,18 +180,21 @@ static bool pushes_into(const struct push *push, const struct flow_contact *cont
 
 /* The chain that pushes a side into the contact. */
 static struct chain chain_behind(const struct flow_contact *contact, int side,
-                                 const struct push *pushes, size_t n)
+                                 const struct pushes *pushes)
 {
     struct chain most = {0};
     uint32_t from, end;
     pinch_corners_of(contact, side, &from, &end);
     for (uint32_t k = from; k < end; k++) {
         const uint64_t corner = pinch_corner_of(contact, k);
-        for (size_t i = first_push(pushes, n, corner); i < n && pushes[i].corner == corner; i++) {
-            const struct chain *chain = &pushes[i].chain;
+        for (size_t i = first_push(pushes, corner); i < pushes->n; i++) {
+            const struct push *push = pushes->all + i;
+            const struct chain *chain = &push->chain;
+            if (push->corner != corner)
+                break;
             const bool more = !most.n || chain->lack > most.lack ||
                               (!(chain->lack < most.lack) && chain->n < most.n);
-            if (more && chain->n < LONGEST && pushes_into(pushes + i, contact, side))
+            if (more && chain->n < LONGEST && pushes_into(push, contact, side))
                 most = *chain;
         }
     }
@@ -149,11 +202,11 @@ static struct chain chain_behind(const struct flow_contact *contact, int side,
 }
 
 /* Finds the chain that ends at a side, and comes from behind the other one. */
-static void find_chain(int side, uint32_t n_blocks, const struct push *pushes, size_t n,
+static void find_chain(int side, uint32_t n_blocks, const struct pushes *pushes,
                        struct flow_contact *contact)
 {
     const bool solid = is_solid(contact, !side, n_blocks);
-    const struct chain behind = solid ? (struct chain){0} : chain_behind(contact, !side, pushes, n);
+    const struct chain behind = solid ? (struct chain){0} : chain_behind(contact, !side, pushes);
     contact->chain[side] = solid || behind.n ? behind.n + 1 : 0;
     contact->lack[side] = behind.lack + contact_row_lacks(&contact->row);
 }
@@ -162,26 +215,23 @@ bool flow_contact_find_pinched(const struct flow *flow, const struct flow_contac
                                struct flow_contact *contact, size_t n)
 {
     const uint32_t n_blocks = flow->tables.n_blocks;
-    size_t first = 0;
-    while (first < n && !contact_row_is_tight(&contact[first].row))
-        first++;
-    if (first == n || !flow->may_pinch)
-        return true;
-    const size_t n_pushes = list_pushes(before, NULL);
-    struct push *pushes = malloc((n_pushes + 1) * sizeof *pushes);
-    if (!pushes)
-        return false;
-    list_pushes(before, pushes);
-    qsort(pushes, n_pushes, sizeof *pushes, compare_pushes);
-    for (size_t i = first; i < n; i++) {
+    struct pushes pushes = {0};
+    bool any = false;
+    for (size_t i = 0; i < n && flow->may_pinch; i++)
+        if (contact_row_is_tight(&contact[i].row)) {
+            add_corners(contact + i, &pushes.of);
+            any = true;
+        }
+    const bool listed = !any || list_pushes(before, &pushes);
+    for (size_t i = 0; i < n && any && listed; i++) {
         struct flow_contact *of = contact + i;
         if (!contact_row_is_tight(&of->row))
             continue;
         for (int side = 0; side < 2; side++)
-            find_chain(side, n_blocks, pushes, n_pushes, of);
+            find_chain(side, n_blocks, &pushes, of);
         of->row.pinched =
             of->chain[0] && of->chain[1] && of->lack[0] + of->lack[1] > contact_row_lacks(&of->row);
     }
-    free(pushes);
-    return true;
+    free(pushes.all);
+    return listed;
 }

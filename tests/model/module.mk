@@ -2,9 +2,9 @@
 MODEL_EXPLORER = tests/model/explore.c tests/model/explore.h tests/model/machine.c tests/model/machine.h \
     tests/model/operations.c tests/model/search.c tests/model/search.h tests/model/atomics.h
 MODEL_RUNTIME = $(MODEL_EXPLORER) tests/model/runtime.h
-ASAN_TESTS += tests/model/test_explorer tests/model/test_deque tests/model/test_queue tests/model/test_handover tests/model/test_version \
-    tests/model/test_gate tests/model/test_await
-PLAIN_TESTS += tests/model/test_sleep tests/model/test_sleep_queues
+ASAN_TESTS += tests/model/test_deque tests/model/test_queue tests/model/test_handover tests/model/test_version tests/model/test_gate \
+    tests/model/test_await
+PLAIN_TESTS += tests/model/test_explorer tests/model/test_sleep tests/model/test_sleep_queues
 LONG_SH += tests/model/test_long.sh
 tests_model_test_explorer_SOURCES = tests/model/test_explorer.c $(MODEL_EXPLORER)
 tests_model_test_explorer_LDADD =

@@ -11,7 +11,7 @@ case "${SANITIZER:-} $LEAK_TESTS " in
     *address*" tests/${1##*/tests/} "*) ;;
     *address*)
         ASAN_OPTIONS="$ASAN_OPTIONS:fast_unwind_on_malloc=1"
-        case $1 in *.sh) false ;; *) ! grep -q MPI_Init "$1" ;; esac || ASAN_OPTIONS="$ASAN_OPTIONS:detect_leaks=0" ;;
+        case $1 in *.sh) false ;; *) ! grep -qE 'MPI_Init|libduite\.so' "$1" ;; esac || ASAN_OPTIONS="$ASAN_OPTIONS:detect_leaks=0" ;;
 esac
 folder=$(mktemp -d "${TMPDIR:-/tmp}/duite.XXXXXX") || exit 99
 trap 'rm -rf "$folder"' EXIT

@@ -40,10 +40,10 @@ enum { PHYS_FETCH = 1024 }; /* bytes ahead of a loop: enough for memory to answe
  *
  *     void name(params)            and      type name(params)
  *
- * They are compiled several times and chosen by the processor (cloth/base/simd.h), with PHYS_ONCE
- * once. args: the names of the parameters, in order. The bits are the same, since fused
- * multiply-adds stay off. Functions that they call must be PHYS_INLINE, or are compiled once only.
- */
+ * They are compiled several times and chosen by the processor (cloth/base/simd.h); once where
+ * PHYS_ONCE is defined, as for sanitizers. args: the names of the parameters, in order. The bits
+ * are the same, since fused multiply-adds stay off. Functions that they call must be PHYS_INLINE,
+ * or are compiled once only. */
 #if defined(__x86_64__) && !defined(__AVX512VL__) && !defined(PHYS_ONCE)
 #define PHYS_AVX2   __attribute__((target("avx2")))
 #define PHYS_AVX512 __attribute__((target("avx512f,avx512vl,avx512dq")))

@@ -11,7 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Runs of a small scene in checking mode: the base, with sets of the case. For one test program. */
+/* Runs of a small scene, in checking mode unless a case says no: the base, with sets of the case.
+ */
 
 enum { MAX_SETS = 6 };
 
@@ -80,7 +81,7 @@ static inline int take_system(void *context, const struct solve_system *system,
 struct how {
     const char *ends; /* part of the error that it is to end with; NULL: with none */
     bool system;
-    bool unchecked;        /* not in checking mode, as bodies that poll differ from run to run */
+    bool unchecked;        /* not in checking mode */
     unsigned stops, polls; /* it is asked to stop from that poll on; 0: never; polls so far */
     bool saves;            /* it makes checkpoints, */
     struct flow_checkpoint saved; /* of which this is the last one, on rank 0; to be freed */

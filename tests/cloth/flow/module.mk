@@ -5,7 +5,7 @@ TSAN_TESTS += tests/cloth/flow/test_grid tests/cloth/flow/test_skins \
     tests/cloth/flow/test_sliders tests/cloth/flow/test_ties \
     tests/cloth/flow/test_ties_runs tests/cloth/flow/test_levels
 ASAN_TESTS += tests/cloth/flow/test_motion tests/cloth/flow/test_halving tests/cloth/flow/test_limits tests/cloth/flow/test_strain_limit \
-    tests/cloth/flow/test_checked tests/cloth/flow/test_fields
+    tests/cloth/flow/test_checked tests/cloth/flow/test_stops tests/cloth/flow/test_fields
 PLAIN_TESTS += tests/cloth/flow/test_solvers tests/cloth/flow/test_obstacles tests/cloth/flow/test_singular \
     tests/cloth/flow/test_integrators tests/cloth/flow/test_chain tests/cloth/flow/test_newton
 tests_cloth_flow_test_failures_SOURCES = tests/cloth/flow/test_failures.c $(FLOW_TEST_MODELS)
@@ -27,8 +27,9 @@ tests_cloth_flow_test_limits_SOURCES = tests/cloth/flow/test_limits.c $(FLOW_TES
 tests_cloth_flow_test_strain_limit_SOURCES = tests/cloth/flow/test_strain_limit.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_chain_SOURCES = tests/cloth/flow/test_chain.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_newton_SOURCES = tests/cloth/flow/test_newton.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_checked_SOURCES = tests/cloth/flow/test_checked.c tests/cloth/flow/checked_runs.h $(FLOW_TEST_MODELS) \
-	tests/cloth/scene/scene_file.c tests/cloth/scene/scene_file.h
+CHECKED_RUNS = tests/cloth/flow/checked_runs.h tests/cloth/scene/scene_file.c tests/cloth/scene/scene_file.h $(FLOW_TEST_MODELS)
+tests_cloth_flow_test_checked_SOURCES = tests/cloth/flow/test_checked.c $(CHECKED_RUNS)
+tests_cloth_flow_test_stops_SOURCES = tests/cloth/flow/test_stops.c $(CHECKED_RUNS)
 tests_cloth_flow_test_checked_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=check_call
 FLOW_TEST_SESSION = tests/cloth/flow/session.c tests/cloth/flow/session.h $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_ties_SOURCES = tests/cloth/flow/test_ties.c tests/cloth/flow/random_ties.h $(FLOW_TEST_MODELS)

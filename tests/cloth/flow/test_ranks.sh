@@ -3,7 +3,7 @@
 # for, all say. Of test_checked what sees each kernel once: two ranks differ from one in what they send. With DUITE_LONG=1 the tests of
 # motion, too: that two ranks move a cloth like one, to the bit, is what test_same_hash.sh says.
 . "${srcdir:-.}/tests/support/tap.sh"
-programs="test_run test_failures test_memory"
+programs="test_run test_failures test_memory test_stops"
 if test "${DUITE_LONG:-}" = 1; then programs="test_halving test_sliders test_solvers test_motion test_integrators"; fi
 for program in $programs test_checked test_late; do
     skip_unless "tests/cloth/flow/$program"

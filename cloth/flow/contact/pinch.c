@@ -73,12 +73,20 @@ static bool has_corner(const struct corner_set *set, uint64_t corner)
     return set->word[bit / 64] >> bit % 64 & 1;
 }
 
-static void add_corners(const struct flow_contact *contact, struct corner_set *set)
+/* Adds the corners of tight contacts. Returns false if there is none. */
+static bool add_corners(const struct flow_contact *contact, size_t n, struct corner_set *set)
 {
-    for (uint32_t k = 0; k < contact->at.n; k++) {
-        const uint32_t bit = corner_bit(pinch_corner_of(contact, k));
-        set->word[bit / 64] |= (uint64_t)1 << bit % 64;
+    bool any = false;
+    for (size_t i = 0; i < n; i++) {
+        if (!contact_row_is_tight(&contact[i].row))
+            continue;
+        any = true;
+        for (uint32_t k = 0; k < contact[i].at.n; k++) {
+            const uint32_t bit = corner_bit(pinch_corner_of(contact + i, k));
+            set->word[bit / 64] |= (uint64_t)1 << bit % 64;
+        }
     }
+    return any;
 }
 
 struct pushes {
@@ -128,7 +136,7 @@ static bool add_pushes(const struct flow_contact *contact, struct pushes *pushes
     return added;
 }
 
-/* Lists them by their corners; with false, without memory, not all of them. */
+/* Lists them by their corners. Returns false without memory. */
 static bool list_pushes(const struct flow_contacts_before *before, struct pushes *pushes)
 {
     bool added = true;
@@ -216,14 +224,10 @@ bool flow_contact_find_pinched(const struct flow *flow, const struct flow_contac
 {
     const uint32_t n_blocks = flow->tables.n_blocks;
     struct pushes pushes = {0};
-    bool any = false;
-    for (size_t i = 0; i < n && flow->may_pinch; i++)
-        if (contact_row_is_tight(&contact[i].row)) {
-            add_corners(contact + i, &pushes.of);
-            any = true;
-        }
-    const bool listed = !any || list_pushes(before, &pushes);
-    for (size_t i = 0; i < n && any && listed; i++) {
+    if (!flow->may_pinch || !add_corners(contact, n, &pushes.of))
+        return true;
+    const bool listed = list_pushes(before, &pushes);
+    for (size_t i = 0; i < n && listed; i++) {
         struct flow_contact *of = contact + i;
         if (!contact_row_is_tight(&of->row))
             continue;

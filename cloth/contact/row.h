@@ -67,6 +67,9 @@ struct contact_row {
 /* The same where a load rests, though the row has not taken up the energy for it. With an eighth a
  * pile of eight sheets of 2 mm jumps by millimetres every second; with this it rests. */
 #define CONTACT_ROW_LIFTS 0.02
+/* Part of the thickness: a gap that is off by less is right. A pile has more contacts than ways to
+ * move: it would shift load between them for ever, and never rest. */
+#define CONTACT_ROW_RIGHT 0.0002
 /* Part of the resting load: an account of energy that lets a push begin with so little less than
  * that has nothing to give, but for rounding. */
 #define CONTACT_ROW_EMPTY 1e-6
@@ -192,11 +195,18 @@ PHYS_INLINE double contact_row_stiffness(const struct contact_row *row, double s
     return fmax(row->firm > 1 ? row->firm * stiffness : stiffness, loaded);
 }
 
+/* m: what the gap lacks of the thickness; below 0: it is too far. */
+PHYS_INLINE double contact_row_off(const struct contact_row *row)
+{
+    const double off = row->thickness - row->gap, right = CONTACT_ROW_RIGHT * row->thickness;
+    return off > right ? off - right : fmin(off + right, 0);
+}
+
 /* Begins a step of a contact that may open. */
 PHYS_INLINE void contact_row_lift(struct contact_row *row, double stiffness)
 {
     const double firm = row->firm > 1 ? row->firm : 1, k = contact_row_stiffness(row, stiffness);
-    const double lacks = row->thickness - row->gap;
+    const double lacks = contact_row_off(row);
     const double rises = firm > 1 ? CONTACT_ROW_YIELDS : CONTACT_ROW_RISES;
     const double rise = lacks > 0 ? rises * lacks : lacks;
     const double most = (sqrt(2 * k * row->energy) - row->rested) / k;

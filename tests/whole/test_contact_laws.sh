@@ -119,7 +119,7 @@ obstacles: [{plane: {point: [0, 0, 0], normal: [0, 1, 0]}}]
 contact: {mode: certified, thickness: 0.002, friction: 0.3}
 time: {h: 0.004, end: 0.16, stretch_growth: 0, energy_growth: 0}
 energies: steps
-probes: [{name: a, cloth: a, vertices: [14], values: [position]}]
+probes: [{name: a, cloth: a, vertices: [14], values: [position]}, {name: floor, obstacle: 0}]
 END
 falls() { # SCENE CONTACTS OPTION...: so many of them at least
     falls_scene=$1 falls_contacts=$2
@@ -173,4 +173,10 @@ rests() { # 0.0314 J where it starts
     run pile.yaml --report report.json --set time.end=0.8 && below "energy of motion of a pile after 0.8 s, J" "$(value energy_kinetic)" 1e-6 && row "the pile of springs by linear steps: energy of motion after 0.8 s, of 31 mJ" "0" "$(digit "$(value energy_kinetic | awk -v OFMT=%.17g '{ print $1 / 0.0314 }')")"
 }
 ok "a pile comes to rest" rests
+weighs() { # h: 32 g at rest, which tremble in no step
+    run pile.yaml --set time.end=3 --set time.h="$1" --set 'materials.m.damping={stiffness: 0.004}' || return 1
+    near "least weight of a pile on the floor in a second, h = $1, N" "$(heaviest -1)" 0.31392 1e-6 && near "most" "$(heaviest 1)" 0.31392 1e-6
+}
+heaviest() { rows '$2 > 2 { f = c("floor.cy"); if (!n++ || '"$1"' * (f - most) > 0) most = f } END { printf "%.17g", most }'; } # SIGN
+for h in 0.002 0.004; do ok "the floor carries a pile's weight, h = $h" weighs $h; done
 ok "docs/accuracy.md has these rows" table

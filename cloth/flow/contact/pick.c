@@ -23,7 +23,8 @@ static bool pick_is_inside(const struct flow_contact *contact)
     return inside;
 }
 
-/* True if the vertex of a contact meets a triangle of that surface from above. */
+/* True if the vertex of a contact meets a triangle of that surface from above: one that is no
+ * farther, or the surface is another. */
 static bool pick_is_met(const struct flow_contact *list, size_t n, size_t i)
 {
     const struct flow_contact *contact = list + i;
@@ -32,7 +33,7 @@ static bool pick_is_met(const struct flow_contact *list, size_t n, size_t i)
     while (from > 0 && are_of_one(list + from - 1, contact))
         from--;
     for (size_t to = from; to < n && are_of_one(list + to, contact); to++)
-        met = met || (pick_is_inside(list + to) &&
+        met = met || (pick_is_inside(list + to) && list[to].row.gap <= contact->row.gap &&
                       phys_dot(&list[to].row.normal, &contact->row.normal) > SAME_WAY);
     return met;
 }

@@ -4,7 +4,9 @@
 #include "cloth/contact/row.h"
 #include "tests/support/unit.h"
 
-static const double G = 9.81, THICKNESS = 1e-3, DEGREE = 0.017453292519943295;
+static const double G = 9.81, THICKNESS = 1e-3, DEGREE = 0.017453292519943295,
+                    RIGHT = 1.001 * CONTACT_ROW_RIGHT *
+                            THICKNESS; /* gaps end so near, but for rounding */
 
 struct mass {
     double kg, k, h;
@@ -76,7 +78,7 @@ UNIT_TEST(rests)
     mass.x += (phys_vec){0, 0.01, 0, 0};
     run(&mass, 2);
     ck_assert_double_eq_tol(mass.row.load, mass.kg * G, 1e-6 * mass.kg * G);
-    ck_assert_double_eq_tol(mass.x[1], THICKNESS, 1e-9);
+    ck_assert_double_eq_tol(mass.x[1], THICKNESS, RIGHT);
     ck_assert_double_eq_tol(mass.v[1], 0, 1e-9);
 }
 
@@ -281,7 +283,7 @@ UNIT_TEST(opened_pinch_gives_back_its_energy)
         ck_assert_double_lt(fastest, sqrt(2 * energy / pinch.kg));
         hold_between(&pinch, 1, 5);
         ck_assert_double_eq_tol(pinch.low.load, pinch.kg * G, 1e-6 * pinch.kg * G);
-        ck_assert_double_eq_tol(pinch.y, THICKNESS, 1e-9);
+        ck_assert_double_eq_tol(pinch.y, THICKNESS, RIGHT);
     }
 }
 

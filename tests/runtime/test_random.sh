@@ -6,7 +6,7 @@
 plan_later
 
 programs=2000
-if quick; then programs=300; fi
+if quick; then programs=150; fi
 random() { # RANKS PROGRAMS BASE OPTIONS...
     n=$1 m=$2 base=$3
     shift 3

@@ -2,6 +2,7 @@
 #
 # Tests run in the top build folder; sources are under $srcdir. A test says `plan_later`, then any number of
 #     ok NAME COMMAND...               passes when COMMAND exits with 0
+#     in_full NAME COMMAND...          likewise, only where the whole of each test is wanted (DUITE_QUICK=0)
 #     exits STATUS NAME COMMAND...     passes when COMMAND exits with STATUS
 #     not_ok_expected NAME COMMAND...  passes when COMMAND fails by itself: neither a signal nor the time limit
 #     refuses SENTENCE COMMAND...      for these: COMMAND ends with 2, prints nothing, and says why in one line, which has the sentence
@@ -82,6 +83,8 @@ ok() {
     test $tap_got = 0 || echo "(exit status $tap_got)" >> "$scratch/output"
     tap_result $tap_got "$tap_name"
 }
+
+in_full() { quick || ok "$@"; }
 
 exits() {
     tap_want=$1 tap_name=$2

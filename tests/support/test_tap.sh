@@ -35,6 +35,9 @@ ok "a case that fails, with what it printed" gives 'plan_later; ok bad sh -c "ec
 ok 2 - good
 1..2
 status 1'
+ok "a case of the whole of a test" gives 'plan_later; DUITE_QUICK=1; in_full left false; DUITE_QUICK=0; in_full taken true' 'ok 1 - taken
+1..1
+status 0'
 ok "an expected status" gives 'plan_later; exits 2 two sh -c "exit 2"; exits 2 one false' 'ok 1 - two
 not ok 2 - one
 # (exit status 1, not 2)

@@ -27,9 +27,7 @@ ok "the welded jeans too" garment jeans 0.3 3
 scene dressing 500 0.1 || exit 99
 ok "a hash of one rank" alike dressing 1
 ok "the same of two ranks of two threads" alike dressing 2 --threads 2 --scheduler fifo --mapping cyclic --balance migrate
-ok "of three ranks" alike dressing 3 --scheduler steal --mapping cyclic
-if ! quick; then
-    ok "of two threads" alike dressing 1 --threads 2 --scheduler fifo --mapping cyclic
-    ok "of two ranks" alike dressing 2 --scheduler steal --mapping metis --balance migrate
-    ok "of three ranks of two threads" alike dressing 3 --threads 2 --scheduler fifo --mapping metis --balance migrate
-fi
+in_full "of three ranks" alike dressing 3 --scheduler steal --mapping cyclic
+in_full "of two threads" alike dressing 1 --threads 2 --scheduler fifo --mapping cyclic
+in_full "of two ranks" alike dressing 2 --scheduler steal --mapping metis --balance migrate
+in_full "of three ranks of two threads" alike dressing 3 --threads 2 --scheduler fifo --mapping metis --balance migrate

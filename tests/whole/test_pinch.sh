@@ -143,7 +143,7 @@ goes_on() {
     done
     test "$(value blocks)" -gt 2 && test "$(value contact_pinches)" -gt 0
 }
-ok "it goes on from a checkpoint, on two ranks" goes_on
+in_full "it goes on from a checkpoint, on two ranks" goes_on
 
 # Eight sheets at 100 m/s, which pass each other in the first step: in it 15 pairs fail a vertex.
 layers() {

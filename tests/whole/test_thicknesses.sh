@@ -152,7 +152,7 @@ goes_on() {
     echo "$(value state_hash), $(value state_hash whole.json)"
     test "$(value state_hash)" = "$(value state_hash whole.json)" && test "$(value contacts)" -gt 0
 }
-ok "they go on from a checkpoint, on two ranks" goes_on
+in_full "they go on from a checkpoint, on two ranks" goes_on
 cd "$OLDPWD" || exit 99
 test -z "${DUITE_LONG:-}" || ok "one hash: three cloths on a ball" ranks 3 tests/whole/same_hash "$scratch/ball.yaml" few 0 time.end=0.12
 test -z "${DUITE_LONG:-}" || ok "one hash: springs" ranks 3 tests/whole/same_hash "$scratch/ball.yaml" few 0 time.end=0.12 contact.mode=repulsion

@@ -195,7 +195,7 @@ PHYS_INLINE double contact_row_stiffness(const struct contact_row *row, double s
     return fmax(row->firm > 1 ? row->firm * stiffness : stiffness, loaded);
 }
 
-/* m: what the gap lacks of the thickness; below 0: it is too far. */
+/* m: by how much the gap is too small, or, below 0, too large. */
 PHYS_INLINE double contact_row_off(const struct contact_row *row)
 {
     const double off = row->thickness - row->gap, right = CONTACT_ROW_RIGHT * row->thickness;

@@ -23,8 +23,8 @@ static bool pick_is_inside(const struct flow_contact *contact)
     return inside;
 }
 
-/* True if the vertex of a contact meets a triangle of that surface from above: one that is no
- * farther, or the surface is another. */
+/* True if the vertex of a contact is above a triangle of the same surface. A triangle that is
+ * farther is of another surface. */
 static bool pick_is_met(const struct flow_contact *list, size_t n, size_t i)
 {
     const struct flow_contact *contact = list + i;

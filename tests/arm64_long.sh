@@ -49,4 +49,4 @@ ok "the cross compiler builds duite" build
 ok "a script for each program" emulate
 cd "$build" || exit 99
 ok "unit tests" check '$(ASAN_ALL)'
-ok "golden hashes" check 'tests/whole/test_same_hash.sh tests/whole/test_scenes.sh tests/whole/test_garment.sh tests/whole/test_mannequin.sh'
+ok "golden hashes" check "$golden"

@@ -1,8 +1,8 @@
 #!/bin/sh
 # README's two commands on a bare Debian of this machine's release, which debootstrap fetches from this machine's mirror (DUITE_MIRROR names
-# another) with nothing but what every Debian has; on one with MPICH alone the build, a program of the tutorial and the tests of the runtime; on
-# a third libduite and its tools alone, without the packages of the cloth; and on a fourth the Debian packages that the first has made come and
-# go. Half an hour on two cores, 3 GB each. What is tested is a clone: the last commit.
+# another) with nothing but what every Debian has; on one with MPICH alone the build, a program of the tutorial, the tests of the runtime and
+# golden hashes; on a third libduite and its tools alone, without the packages of the cloth; and on a fourth the Debian packages that the first
+# has made come and go. An hour on two cores, 3 GB each. What is tested is a clone: the last commit.
 . "${srcdir:-.}/tests/support/tap.sh"
 test "$(id -u)" = 0 || skip_all "only root may enter another system"
 for tool in debootstrap unshare git apt-get; do
@@ -45,6 +45,7 @@ first() {
         test "$(grep -c '^dot: [0-9]*$' "$scratch/said")" = 3
 }
 runtime() { enter mpich 'make check TESTS="$(make -s --eval='\''print-list:;@echo $(filter tests/runtime/%,$(TESTS))'\'' print-list)"'; }
+hashes() { enter mpich "make check TESTS='$golden'"; }
 without_cloth() {
     enter alone './bootstrap --disable-cloth && make check' || return
     enter alone 'dpkg-query -W libyaml-dev libhdf5-dev libzmq3-dev libepoxy-dev' # the names of those that are there
@@ -75,4 +76,5 @@ ok "Debian packages: removed" remove_packages
 ok "MPICH alone: build" only_mpich
 ok "MPICH alone: the first program on 1, 2 and 3 ranks" first
 ok "MPICH alone: the tests of the runtime" runtime
+ok "MPICH alone: the hashes of Open MPI" hashes
 ok "without the cloth: make check, and none of its packages" without_cloth

@@ -223,25 +223,42 @@ static int plot(const struct compare *compare, size_t subject, const struct curv
     return failed;
 }
 
+#define DASHES "------------------------------------------------------------------------"
+enum { SUBJECT_WIDTH = 14 };
+
+/* Of a column: that of its head, at least that of a figure. */
+static int width_of(const struct compare *compare, const struct curve *curve)
+{
+    enum { FIGURE = 6 };
+    char *name = name_of(compare, curve->member);
+    const int width = name ? (int)strlen(name) : 0;
+    free(name);
+    return width > FIGURE ? width : FIGURE;
+}
+
+static void print_head(const struct compare *compare, const struct curve *curve, size_t n,
+                       FILE *out)
+{
+    fprintf(out, "| %*s |", -SUBJECT_WIDTH, "METG(50 %), us");
+    for (size_t i = 0; i < n; i++) {
+        char *name = name_of(compare, curve[i].member);
+        fprintf(out, " %*s |", width_of(compare, &curve[i]), name ? name : "");
+        free(name);
+    }
+    fprintf(out, "\n|%.*s|", SUBJECT_WIDTH + 2, DASHES);
+    for (size_t i = 0; i < n; i++)
+        fprintf(out, "%.*s:|", width_of(compare, &curve[i]) + 1, DASHES);
+    fputc('\n', out);
+}
+
 static void print_row(const struct compare *compare, size_t subject, const struct curve *curve,
                       size_t n, FILE *out)
 {
     char text[40];
-    if (!subject) {
-        fputs("| METG(50 %), us |", out);
-        for (size_t i = 0; i < n; i++) {
-            fputc(' ', out);
-            print_name(compare, curve[i].member, out);
-            fputs(" |", out);
-        }
-        fputs("\n|---|", out);
-        for (size_t i = 0; i < n; i++)
-            fputs("---:|", out);
-        fputc('\n', out);
-    }
-    fprintf(out, "| %s |", compare->list[SUBJECT].item[subject]);
+    fprintf(out, "| %*s |", -SUBJECT_WIDTH, compare->list[SUBJECT].item[subject]);
     for (size_t i = 0; i < n; i++)
-        fprintf(out, " %s |", find_half(&curve[i], text, sizeof text));
+        fprintf(out, " %*s |", width_of(compare, &curve[i]),
+                find_half(&curve[i], text, sizeof text));
     fputc('\n', out);
 }
 
@@ -257,6 +274,8 @@ static int print_all(const struct compare *compare, struct curve *curve, FILE *t
         const size_t n = make_curves(compare, compare->list[SUBJECT].item[s], curve);
         for (size_t i = 0; i < n; i++)
             print_points(compare, &curve[i], csv);
+        if (!s)
+            print_head(compare, curve, n, table);
         print_row(compare, s, curve, n, table);
         failed = plot(compare, s, curve, n, plots);
     }

@@ -160,17 +160,8 @@ static const char *find_half(const struct curve *curve, char *text, size_t size)
 
 /* ---- Files ---- */
 
-/* What makes it another member: the scheduler, and other lists of more than one value. */
-static void print_name(const struct compare *compare, const struct compare_config *member,
-                       FILE *out)
-{
-    fputs(member->value[SCHEDULER], out);
-    for (int d = GRAIN + 1; d < compare->dimensions; d++)
-        if (d != SCHEDULER && compare->list[d].n > 1)
-            fprintf(out, " %s %s", compare->name[d], member->value[d]);
-}
-
-/* To be freed; NULL without memory. */
+/* What makes it another member: the scheduler, and other lists of more than one value. To be freed;
+ * NULL without memory. */
 static char *name_of(const struct compare *compare, const struct compare_config *member)
 {
     char *name = NULL;
@@ -178,7 +169,10 @@ static char *name_of(const struct compare *compare, const struct compare_config 
     FILE *memory = open_memstream(&name, &size);
     if (!memory)
         return NULL;
-    print_name(compare, member, memory);
+    fputs(member->value[SCHEDULER], memory);
+    for (int d = GRAIN + 1; d < compare->dimensions; d++)
+        if (d != SCHEDULER && compare->list[d].n > 1)
+            fprintf(memory, " %s %s", compare->name[d], member->value[d]);
     fclose(memory);
     return name;
 }

@@ -52,7 +52,7 @@ without_cloth() {
     ! grep -v '^dpkg-query: no packages found' "$scratch/said"
 }
 packages() {
-    enter one 'apt-get install -qq --no-install-recommends build-essential debhelper libassimp-dev libhdf5-dev lintian && make deb && lintian --allow-root --fail-on error,warning deb/*.changes'
+    enter one 'apt-get install -qq --no-install-recommends build-essential debhelper libassimp-dev libhdf5-dev libopen-trace-format2-dev lintian && make deb && lintian --allow-root --fail-on error,warning deb/*.changes'
 }
 install_packages() {
     mv "$scratch/one/root/duite/deb" "$scratch/packages/root" && rm "$scratch"/packages/root/deb/*-dbgsym_*.deb &&

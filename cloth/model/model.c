@@ -172,14 +172,6 @@ bool model_has_material(const struct model_cloth *cloth, uint32_t material)
     return found;
 }
 
-bool model_uses_material(const struct model *model, uint32_t material)
-{
-    bool used = false;
-    for (uint32_t c = 0; c < model->n_cloths; c++)
-        used = used || model_has_material(model->cloths + c, material);
-    return used;
-}
-
 void model_parts(const struct model *model, uint32_t material, bool *triangles, bool *edges)
 {
     *triangles = *edges = false;

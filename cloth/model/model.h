@@ -346,9 +346,6 @@ struct mesh_elastic model_elastic(const struct model *model, uint32_t material);
 /* True if the cloth or a region of it is of the material, by number. */
 bool model_has_material(const struct model_cloth *cloth, uint32_t material);
 
-/* True if any cloth or region is. */
-bool model_uses_material(const struct model *model, uint32_t material);
-
 /* Finds whether cloths that have the material, by number, have triangles, and edges without
  * triangles. */
 void model_parts(const struct model *model, uint32_t material, bool *triangles, bool *edges);

@@ -59,18 +59,26 @@ static bool needs_has_meetings(const struct model *model)
     return left_out;
 }
 
+static bool is_used(const struct model *model, uint32_t material)
+{
+    bool used = false;
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        used = used || model_has_material(model->cloths + c, material);
+    return used;
+}
+
 static bool has_own_triangles(const struct model *model, uint32_t material)
 {
     bool triangles, edges;
     model_parts(model, material, &triangles, &edges);
-    return triangles || !model_uses_material(model, material);
+    return triangles || !is_used(model, material);
 }
 
 static bool has_own_links(const struct model *model, uint32_t material)
 {
     bool triangles, edges;
     model_parts(model, material, &triangles, &edges);
-    return edges || !model_uses_material(model, material);
+    return edges || !is_used(model, material);
 }
 
 static bool has_own_edges(const struct model *model, uint32_t material)
@@ -80,8 +88,7 @@ static bool has_own_edges(const struct model *model, uint32_t material)
 
 static bool has_diagonals(const struct model *model, uint32_t material)
 {
-    bool has = model->materials[material].model == MODEL_TRIANGLES ||
-               !model_uses_material(model, material);
+    bool has = model->materials[material].model == MODEL_TRIANGLES || !is_used(model, material);
     for (uint32_t c = 0; c < model->n_cloths; c++)
         has = has ||
               (model->cloths[c].mesh.grid_nx && model_has_material(model->cloths + c, material));

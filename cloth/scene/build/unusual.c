@@ -1,11 +1,9 @@
 /* Values that are allowed, but hardly ever meant, draw a warning each: often the unit is another.
  */
 #include "cloth/scene/build/build.h"
-#include "cloth/scene/schema/rules.h"
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
 static const double LEAST_DENSITY = 0.005, MOST_DENSITY = 5; /* kg/m^2: of a veil, of a carpet */
 static const double MOST_RIGIDITY = 1e-2;                    /* N m: of thick leather */
@@ -64,26 +62,6 @@ static void warn_of_triangles(const struct scene_tree *tree, const struct model_
         scene_build_warn(tree, node,
                          "materials.%.60s.shear is 0: nothing resists its triangles' being sheared",
                          material->name);
-}
-
-/* A --set that leads into a material of no cloth, as one of another name is meant. */
-static void warn_of_no_cloth(const struct scene_tree *tree, uint32_t material, int key)
-{
-    const struct model *model = tree->model;
-    const char *name = model->materials[material].name, **used;
-    char allowed[400];
-    size_t n = 0;
-    if (scene_tree_node(tree, key)->start_mark.index != SCENE_BY_SET ||
-        model_uses_material(model, material))
-        return;
-    used = calloc(model->n_materials, sizeof *used);
-    for (uint32_t i = 0; i < model->n_materials && used; i++)
-        if (model_uses_material(model, i))
-            used[n++] = model->materials[i].name;
-    if (n)
-        scene_build_warn(tree, key, "no cloth is of material '%.60s'%s", name,
-                         scene_allowed_words(name, used, n, allowed, sizeof allowed));
-    free(used);
 }
 
 /* ---- Turns ---- */
@@ -152,12 +130,10 @@ int scene_build_unusual(struct scene_tree *tree)
     const int obstacles = scene_tree_get(tree, 1, "obstacles");
     const int joints = scene_tree_get(tree, 1, "joints");
     for (uint32_t i = 0; i < model->n_materials; i++) {
-        const yaml_node_pair_t pair = scene_tree_pair(tree, materials, i);
-        const int node = pair.value;
+        const int node = scene_tree_pair(tree, materials, i).value;
         bool triangles, edges;
         model_parts(model, i, &triangles, &edges);
         warn_of_values(tree, model->materials[i].name, node);
-        warn_of_no_cloth(tree, i, pair.key);
         if (triangles)
             warn_of_triangles(tree, model->materials + i, node);
     }

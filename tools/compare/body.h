@@ -20,7 +20,7 @@ static inline void body_write(uint64_t *values, size_t n, uint64_t turns, uint64
 {
     for (uint64_t i = 0; i < turns; i++) {
         state = state * 6364136223846793005u + 1442695040888963407u;
-        __asm__("" : "+r"(state)); /* clang makes one turn of eight else */
+        __asm__("" : "+r"(state)); /* else clang makes one turn of eight */
     }
     for (size_t i = 0; i < n; i++)
         values[i] = state + i;

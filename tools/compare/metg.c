@@ -217,31 +217,19 @@ static int plot(const struct compare *compare, size_t subject, const struct curv
     return failed;
 }
 
-#define DASHES "------------------------------------------------------------------------"
-enum { SUBJECT_WIDTH = 14 };
-
-/* Of a column: that of its head, at least that of a figure. */
-static int width_of(const struct compare *compare, const struct curve *curve)
-{
-    enum { FIGURE = 6 };
-    char *name = name_of(compare, curve->member);
-    const int width = name ? (int)strlen(name) : 0;
-    free(name);
-    return width > FIGURE ? width : FIGURE;
-}
-
+/* Columns as wide as most names. */
 static void print_head(const struct compare *compare, const struct curve *curve, size_t n,
                        FILE *out)
 {
-    fprintf(out, "| %*s |", -SUBJECT_WIDTH, "METG(50 %), us");
+    fprintf(out, "| %-14s |", "METG(50 %), us");
     for (size_t i = 0; i < n; i++) {
         char *name = name_of(compare, curve[i].member);
-        fprintf(out, " %*s |", width_of(compare, &curve[i]), name ? name : "");
+        fprintf(out, " %14s |", name ? name : "");
         free(name);
     }
-    fprintf(out, "\n|%.*s|", SUBJECT_WIDTH + 2, DASHES);
+    fputs("\n|----------------|", out);
     for (size_t i = 0; i < n; i++)
-        fprintf(out, "%.*s:|", width_of(compare, &curve[i]) + 1, DASHES);
+        fputs("---------------:|", out);
     fputc('\n', out);
 }
 
@@ -249,10 +237,9 @@ static void print_row(const struct compare *compare, size_t subject, const struc
                       size_t n, FILE *out)
 {
     char text[40];
-    fprintf(out, "| %*s |", -SUBJECT_WIDTH, compare->list[SUBJECT].item[subject]);
+    fprintf(out, "| %-14s |", compare->list[SUBJECT].item[subject]);
     for (size_t i = 0; i < n; i++)
-        fprintf(out, " %*s |", width_of(compare, &curve[i]),
-                find_half(&curve[i], text, sizeof text));
+        fprintf(out, " %14s |", find_half(&curve[i], text, sizeof text));
     fputc('\n', out);
 }
 

@@ -40,6 +40,8 @@ struct contact_row {
     double stiffness;      /* k */
     double slid;           /* the stretch of the spring at the end of the step before, uncut, and */
     double grows;          /* the factor by which it grew in that step; 0: as 1 */
+    double opened;         /* m: by how much the gap grew in that step, and would in the next one at
+                            * the same speed */
     double firm;           /* how many times as stiff as others it is; 1 or less: as stiff */
     double energy, rested; /* where the step began: the work taken up so far, the load */
     double start, aim;     /* the gap there; the gap where the push is the load */
@@ -228,6 +230,7 @@ PHYS_INLINE void contact_row_begin(struct contact_row *row, double stiffness, do
     const double softer = row->hold > 0 ? row->hold / stiffness : 1;
     row->start = row->gap;
     row->slid *= row->part > 0 ? part / row->part : 1;
+    row->opened *= row->part > 0 ? part / row->part : 1;
     row->part = part;
     if (row->held > 0 && !(row->pinched > 0)) {
         row->energy = 0.5 * row->rested * row->rested / row->hold;
@@ -342,6 +345,14 @@ PHYS_INLINE double contact_row_firm_for(const struct contact_row *row, double ga
     return firm > 1 ? (firm < CONTACT_ROW_FIRMEST ? firm : CONTACT_ROW_FIRMEST) : 0;
 }
 
+/* True if the solve, which foretells the gap from the last step's growth, had the contact in the
+ * matrix of the step that is over. */
+PHYS_INLINE bool contact_row_acted(const struct contact_row *row)
+{
+    const double gap = row->gap + row->opened;
+    return contact_row_acts(row, gap, row->load + row->stiffness * (row->aim - gap));
+}
+
 /* The energy that a row has taken up when the step ended at this point with this load, but no more
  * than can be of use. */
 PHYS_INLINE double contact_row_energy(const struct contact_row *row, const phys_vec *point,
@@ -383,11 +394,15 @@ PHYS_INLINE void contact_row_end(const struct contact_row *row, const phys_vec *
     const double most = row->friction * load, pull = row->hold * length;
     const double grows = row->slid > 0 ? length / row->slid : 1;
     next->slid = length;
+    next->opened = gap - row->start;
     const double most_grown = CONTACT_ROW_GROWS, least_grown = 1.0 / CONTACT_ROW_GROWS;
     next->grows = grows < most_grown ? (grows > least_grown ? grows : least_grown) : most_grown;
     next->slip = pull <= most ? stretch : most / pull * stretch;
     next->slip -= phys_dot(&next->normal, &next->slip) * next->normal;
-    next->load = next->rested = load;
+    /* A contact out of the matrix pushed nothing: a push that it has where the cloth fell to is no
+     * load yet. */
+    next->load = next->rested =
+        contact_row_acted(row) || !(row->load > 0) ? load : fmin(load, row->load);
     next->held = contact_row_held(row, gap);
     next->energy = contact_row_follows(row) || next->held >= CONTACT_ROW_FOLLOWS
                        ? contact_row_stored(row, gap, load, next->held > 0)

@@ -1,4 +1,4 @@
-/* Nothing here knows who calls it. */
+/* This file does not know its callers. */
 #include "bench/forks.h"
 
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What tasks that fork and wait compute, in sizes of the public comparison of runtimes
+/* The results of tasks that fork and wait, in sizes of the public comparison of runtimes
  * (github.com/tzcnt/runtime-benchmarks) or less: here as calls, whose results check the tasks'. */
 
 /* Skynet: a call for several numbers makes ten for a tenth of them each and adds what they return;

@@ -1,4 +1,4 @@
-/* Rounds and their sums. Nothing is shared between cases. */
+/* Rounds and their sums. Cases share nothing. */
 #include "bench/measure.h"
 
 #include <math.h>
@@ -98,7 +98,7 @@ static bool is_ratio(const struct measure_metric *metric, const char *kind)
     return metric->value == ratio && !strcmp(metric->against->shape.kind, kind);
 }
 
-/* Of the ratios before it, whose medians are known by now, that with the largest one. */
+/* The largest median of the ratios before it, which are known by now. */
 static double worst(const struct measure_metric *metric, size_t round)
 {
     const struct measure_metric *largest = NULL;

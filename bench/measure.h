@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What one case measures: series, each a command to a subject, run once a round; and metrics, each
+/* A case's measurements: series, each a command to a subject, run once a round; and metrics, each
  * computed from the samples of a round. Rounds come in pairs: the first in an order drawn at
  * random, the second in the reverse order (A B B A), so that whatever the machine does meanwhile
  * hits all alike, and a ratio of two is taken within the round. */
@@ -24,7 +24,7 @@ struct measure_series {
     double *sample; /* one a round; NULL if the subject is missing */
 };
 
-/* What the median of a metric should come to. */
+/* The target of a metric's median. */
 struct measure_target {
     const char *metric; /* NULL ends a list */
     double bound;
@@ -79,14 +79,14 @@ void measure_ratio(struct measure *measure, const struct measure_series *of,
                    const struct measure_series *against, const char *name, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* Of the ratios planned so far against subjects of this kind, of which there is one at least, that
- * whose median is the largest. */
+/* Plans the largest median of all ratios that were planned against subjects of this kind; there is
+ * one at least. */
 void measure_worst(struct measure *measure, const char *kind, const char *name);
 
 /* Gives the metrics planned so far their targets, by name. */
 void measure_targets(struct measure *measure, const struct measure_target *targets);
 
-/* Whether a metric with a target, once measured, keeps to it. */
+/* True if a metric with a target, once measured, keeps to it. */
 enum measure_verdict measure_verdict(const struct measure_metric *metric);
 
 /* A random number below n. */

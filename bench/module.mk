@@ -53,7 +53,7 @@ $(ARITHMETIC) bench/rivals/problem.$(OBJEXT) bench/rivals/serve.$(OBJEXT): bench
 	$(AM_V_CC)$(MKDIR_P) bench/rivals && $(CC) -std=gnu17 -O2 -fPIE $(WARN_CFLAGS) -D_GNU_SOURCE -I$(srcdir) -c -o $@ \
 	$(srcdir)/bench/`basename $@ .$(OBJEXT)`.c
 CLEANFILES += $(ARITHMETIC) bench/rivals/problem.$(OBJEXT) bench/rivals/serve.$(OBJEXT)
-# What a program links that uses libbench.
+# Linked by programs that use libbench.
 BENCH_LIBRARY = bench/libbench.a $(ARITHMETIC) libduite_tools.a $(CLOTH_LIBS)
 
 OPENMP_FILES = bench/rivals/openmp.c bench/rivals/openmp_forks.c bench/problem.c bench/serve.c
@@ -140,7 +140,7 @@ bench_rivals_taskbench_LDFLAGS = $(AM_LDFLAGS) -no-install
 bench_rivals_taskbench_LDADD = $(TASKBENCH_CORE)/libcore.a libduite.la $(MPI_LIBS) -lstdc++ -lm
 endif
 
-# What reads states; with the cloth's own kernels, but without sanitizers.
+# The reader of states; with the cloth's own kernels, but without sanitizers.
 RIVAL_STATE = $(BENCH_STATE) bench/serve.c bench/serve.h cloth/base/error.c cloth/base/error.h cloth/solve/system.c \
 	cloth/solve/system.h
 if HAVE_RIVAL_OPENMP
@@ -171,7 +171,7 @@ bench_rivals_embree_LDFLAGS =
 bench_rivals_embree_LDADD = -lembree3 -lm
 endif
 
-# What draws for `duite-bench output`.
+# The program that draws for `duite-bench output`.
 if HAVE_VIEW
 check_PROGRAMS += bench/output/draw
 BENCH_RIVALS += bench/output/draw$(EXEEXT)
@@ -179,13 +179,13 @@ bench_output_draw_SOURCES = bench/output/draw.c bench/output/folder.h bench/serv
 bench_output_draw_LDADD = $(VIEW_LIBS)
 endif
 
-# What `duite-bench tasks` counts the instructions of: with the library of users, not with libduite_core.
+# The program whose instructions `duite-bench tasks` counts: with the library of users, not with libduite_core.
 check_PROGRAMS += bench/tasks/counted
 bench_tasks_counted_SOURCES = bench/tasks/counted.c bench/problem.c bench/problem.h bench/tasks/fib.h
 bench_tasks_counted_LDFLAGS = $(AM_LDFLAGS) -no-install
 bench_tasks_counted_LDADD = libduite.la
 
-# What bench/experiments contact-partition runs.
+# The program of bench/experiments contact-partition.
 check_PROGRAMS += bench/contact-partition
 bench_contact_partition_SOURCES = bench/contact/partition.c
 bench_contact_partition_LDADD = $(BENCH_LIBRARY)

@@ -121,7 +121,7 @@ static const char *hosts_missing(void)
     return failed ? why : NULL;
 }
 
-/* Whether a folder of PATH has it. */
+/* True if a folder of PATH has it. */
 static bool is_installed(const char *tool)
 {
     char path[PATH_MAX];

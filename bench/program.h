@@ -27,7 +27,7 @@ size_t program_folder(char *folder, size_t size);
 /* Why it cannot be run, or NULL. */
 const char *program_missing(const struct program *program);
 
-/* What the environment is given for so many cores: NAME=VALUE words, ended by NULL. */
+/* The environment for so many cores: NAME=VALUE words, ended by NULL. */
 const char *const *program_settings(const struct program *program, unsigned cores);
 
 /* Sets the environment for a child that wants so many cores; what a user chose for programs of

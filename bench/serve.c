@@ -49,7 +49,7 @@ double serve_seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* What follows " KEY=" in the request; NULL if nothing does. */
+/* The text behind " KEY=" in the request; NULL if nothing does. */
 static const char *find(const struct serve_request *request, const char *key)
 {
     size_t length = strlen(key);

@@ -28,7 +28,7 @@ struct serve_run {
 /* Why a run failed; above all: that its answer is wrong. Returns 1. */
 int serve_fail(const char *format, ...) __attribute__((format(printf, 1, 2)));
 int serve_no_memory(void);
-/* What was said last. */
+/* The sentence that was said last. */
 const char *serve_failure(void);
 
 /* Seconds since some fixed moment. */
@@ -39,7 +39,7 @@ uint64_t serve_most_bytes(void);
 /* Rank r takes the r-th of the cores that it may use, as a binding mpirun would. */
 void serve_bind(int rank);
 
-/* Whether the bench started this process. */
+/* True if the bench started this process. */
 int serve_wanted(void);
 /* As what: the kind of subject, "" if there is no bench. */
 const char *serve_kind(void);

@@ -80,7 +80,7 @@ static int complain(const char *kind, const char *format, ...)
 
 /* ---- Start ---- */
 
-/* In the child: becomes the program. What it prints goes where errors go. */
+/* In the child: becomes the program. Its output goes where errors go. */
 static void become(const struct subject *subject, struct subject_shape shape, const char *socket)
 {
     char number[16];
@@ -124,7 +124,7 @@ static bool receive(FILE *answers, int seconds, char *line, size_t size)
     return true;
 }
 
-/* What it says of itself, and what it was told. */
+/* Keeps its own description of itself, and its settings. */
 static void note_settings(struct subject *subject, const char *text)
 {
     size_t used = (size_t)snprintf(subject->settings, sizeof subject->settings, "%s", text);
@@ -262,7 +262,7 @@ int subject_ask(struct subject *subject, const char *command, double *value, cha
 
 /* ---- End ---- */
 
-/* Whether the child ended within so many seconds; *status is not 0 if it did not end well. */
+/* True if the child ended within so many seconds; *status is not 0 if it did not end well. */
 static bool ended(struct subject *subject, int seconds, int *status)
 {
     for (int i = 0; i < 100 * seconds && subject->child > 0; i++) {

@@ -28,7 +28,7 @@ struct subject; /* started, and stopped by the bench except while it answers */
 
 /* NULL: it did not start, which was said on stderr. */
 struct subject *subject_start(struct subject_shape shape);
-/* What it is and how it is set up. */
+/* Its description and its settings. */
 const char *subject_settings(const struct subject *subject);
 /* Runs a command on every rank of it and waits for the answers. The largest number of all ranks; or
  * 1 and a sentence. */

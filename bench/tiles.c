@@ -211,7 +211,7 @@ static double entry(size_t i, size_t j)
     return (double)((i * i + 7 * i * j + 3 * j) % CLASSES % 5) - 2;
 }
 
-/* Of L left of its diagonal; of transpose(L), or U, right of it. */
+/* An entry of L left of its diagonal; of transpose(L), or U, right of it. */
 static double left_entry(size_t i, size_t k)
 {
     return entry(i, k);
@@ -222,7 +222,7 @@ static double right_entry(enum tiles_kind kind, size_t k, size_t j)
     return kind == TILES_LU ? entry(k + 1, j) : entry(j, k);
 }
 
-/* What the factors are at a row and a column, both in one matrix. */
+/* The entry of the factors, both in one matrix, at a row and a column. */
 static double factor_entry(enum tiles_kind kind, size_t i, size_t j)
 {
     return i == j ? 2 : i > j ? left_entry(i, j) : right_entry(kind, i, j);

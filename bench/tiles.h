@@ -18,7 +18,7 @@ struct tiles {
 };
 enum { TILES_ROWS = 4 };
 
-/* What a task does: z changes, x and y are read. Names are LAPACK's. */
+/* A task's operation: z changes, x and y are read. Names are LAPACK's. */
 enum tiles_routine {
     TILES_POTRF,  /* z = L of z */
     TILES_TRSM_L, /* z = z transpose(x)^-1, x lower */
@@ -51,7 +51,7 @@ double tiles_tasks(struct tiles tiles);
 enum { TILES_TIMES = 4 };
 double tiles_least(double least, int time, double seconds);
 
-/* Whether a tile is kept at all: of Cholesky's those on the diagonal and below. */
+/* True if a tile is kept at all: of Cholesky's those on the diagonal and below. */
 int tiles_kept(struct tiles tiles, size_t place);
 /* All tiles of A, one after the other in the order of their places: so many bytes. NULL without
  * memory; the caller frees it. */
@@ -59,7 +59,7 @@ size_t tiles_bytes(struct tiles tiles);
 double *tiles_make(struct tiles tiles);
 /* Factorises such tiles by a loop. */
 void tiles_factor(struct tiles tiles, double *a);
-/* Whether a factorised tile is another than the factors say; whether any of all is. */
+/* True if a factorised tile is another than the factors say; whether any of all is. */
 int tiles_wrong(struct tiles tiles, size_t place, const double *tile);
 int tiles_all_wrong(struct tiles tiles, const double *a);
 

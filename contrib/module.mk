@@ -3,7 +3,7 @@ EXTRA_DIST += contrib/apptainer.def contrib/debian/control contrib/debian/copyri
 	contrib/debian/libduite-dev.examples contrib/debian/libduite-dev.install contrib/debian/libduite1.install contrib/debian/not-installed contrib/debian/rules \
 	contrib/spack/packages/duite/package.py contrib/spack/repo.yaml
 
-# Debian packages of the distribution, in deb/. Their one change is this version, of the day of NEWS. What Debian calls the copyright has all
+# Debian packages of the distribution, in deb/. Their one change is this version, of the day of NEWS. Debian's file of the copyright has all
 # of COPYING. make check says of the tree what tests of a package would.
 DEB_TREE = deb/$(distdir)
 deb: dist

@@ -2,7 +2,7 @@
 # README's two commands on a bare Debian of this machine's release, which debootstrap fetches from this machine's mirror (DUITE_MIRROR names
 # another) with nothing but what every Debian has; on one with MPICH alone the build, a program of the tutorial, the tests of the runtime and
 # golden hashes; on a third libduite and its tools alone, without the packages of the cloth; and on a fourth the Debian packages that the first
-# has made come and go. An hour on two cores, 3 GB each. What is tested is a clone: the last commit.
+# has made come and go. An hour on two cores, 3 GB each. It tests a clone: the last commit.
 . "${srcdir:-.}/tests/support/tap.sh"
 test "$(id -u)" = 0 || skip_all "only root may enter another system"
 for tool in debootstrap unshare git apt-get; do

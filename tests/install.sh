@@ -1,5 +1,5 @@
 #!/bin/sh
-# What a user of the library meets: make install, pkg-config duite, a program of a few lines, and no symbols but ours. tests/installed.sh
+# A user's way to the library: make install, pkg-config duite, a program of a few lines, and no symbols but ours. tests/installed.sh
 # builds the first program.
 . "${srcdir:-.}/tests/support/tap.sh"
 

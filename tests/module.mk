@@ -68,7 +68,7 @@ check-threads:
 check-threads-long:
 	$(MAKE) $(AM_MAKEFLAGS) check DUITE_QUICK=0 TESTS=tests/runtime/test_threads_long.sh TEST_SUITE_LOG=test-suite-long.log
 check-programs: $(check_PROGRAMS)
-# What make install left: the first program of the tutorial against it.
+# An installed tree: the first program of the tutorial against it.
 installcheck-local:
 	@$(AM_TESTS_ENVIRONMENT) srcdir='$(srcdir)'; duite_DIR='$(cmakeconfigdir)'; \
 	  PKG_CONFIG_PATH='$(pkgconfigdir)'$${PKG_CONFIG_PATH:+:$$PKG_CONFIG_PATH}; export srcdir duite_DIR PKG_CONFIG_PATH; \
@@ -97,7 +97,7 @@ include tests/model/module.mk
 include tests/examples/module.mk
 if CLOTH
 CLOTH_TEST_LIBS = tests/support/libunit.a $(CLOTH_LIBS) $(CHECK_LIBS)
-# What a program links that says nothing else. The source of one that names none is the file of its name.
+# The libraries of a program that names none. The source of one that names none is the file of its name.
 LDADD = $(CLOTH_TEST_LIBS)
 include tests/cloth/module.mk
 include tests/cloth/base/module.mk

@@ -1,4 +1,4 @@
-# What reads, predicts, draws and compares runs: no part of libduite. Programs link TOOLS_LIBS; what draws or reads a chart's options,
+# Readers of runs, predictions, charts and comparisons: no part of libduite. Programs link TOOLS_LIBS; a program that draws or reads a chart's options,
 # CHART_LIBS before it.
 noinst_LIBRARIES += libduite_tools.a
 libduite_tools_a_SOURCES =

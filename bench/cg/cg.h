@@ -23,7 +23,7 @@ const char *states_missing(const char *name);
 
 enum { STATES_MOTIONS = 11 }; /* as many motions as there are, in states.c */
 
-/* What a state is made of, all owned by whom it is given to. */
+/* The parts of a state, all owned by the caller that is given it. */
 struct states_plan {
     struct model model;  /* of the step that is the state's system; starts where its mesh is */
     struct model motion; /* what runs before it, */
@@ -122,9 +122,9 @@ int cg_ready(struct cg_session *session, struct serve_request *request);
 
 /* When solves end from now on, by whichever model a rank goes by. (solution.c, as what follows.) */
 void cg_stop_by(struct cg_session *session, enum model_stop stop, double tolerance, uint32_t most);
-/* Room for dv of all vertices, of the caller; NULL and serve_fail without memory. What the last
- * solve left, in the numbering of the input: rank 0 knows the order of the blocks, others cut them
- * as it does. 0, or what serve_fail returns. Collective. */
+/* Room for dv of all vertices, of the caller; NULL and serve_fail without memory. The outcome of
+ * the last solve, in the numbering of the input: rank 0 knows the order of the blocks, others cut
+ * them as it does. 0, or what serve_fail returns. Collective. */
 double *cg_new_answer(const struct cg_session *session);
 int cg_answer(struct cg_session *session, double *dv);
 /* The solution of a state that was made without: less than 1e-9 of the right side is left. Rank 0

@@ -11,7 +11,7 @@
 
 enum { MOST_STEPS = 4096, STEPS_A_FRAME = 2, STEPS = 100, QUICK_STEPS = 8 };
 
-/* What an answer may be: of edges, m below the floor, m/s in the last frame. */
+/* Bounds of an answer: of edges, m below the floor, m/s in the last frame. */
 static const double STRETCH_LIMIT = 1.25, DEEPEST = 1e-9, AT_REST = 0.01;
 
 struct film {

@@ -309,7 +309,7 @@ static uint32_t known(const struct cg_session *s, const char *settings, double w
     return 0;
 }
 
-/* What the state took with other settings, or anything. */
+/* The iterations that the state took with other settings, or any number. */
 static uint32_t guess(const struct cg_session *s, double wanted)
 {
     uint32_t found = 0;

@@ -1,4 +1,4 @@
-/* What the cases measure. Whoever runs has the states' folder in the environment. */
+/* The plans of the cases. A process that runs has the states' folder in the environment. */
 #include "bench/cg/cg.h"
 
 #include <math.h>

@@ -42,7 +42,7 @@ double *cg_new_answer(const struct cg_session *s)
     return dv;
 }
 
-/* Whether what the state has as its solution is that of its system. */
+/* True if what the state has as its solution is that of its system. */
 static bool is_solved(const struct state *state)
 {
     return state_left(state, state->system.dv) < 1e-9;

@@ -22,10 +22,10 @@ enum { IRREGULAR_SIDE = 187, QUICK_SIDE = 16, QUICK_FOLDED_SIDE = 32 };
 #define HIGH    "cloths[0].transform={translate: [0, 0.62, 0]}"
 #define ROD     "obstacles=[{capsule: {from: [-0.6, 0.6, 0.01], to: [0.6, 0.6, -0.01], radius: 0.005}}]"
 
-/* seconds: how long it moves, in steps of 8 ms; 0: not at all; quick: four of them, or whole. What
- * is folded hangs over a rod, and its halves have swung against each other. count: iterations whose
- * answers its states keep; 0: they are made without. A state's name tells its step, in ms (else 1
- * ms), and whether there are bend springs. */
+/* seconds: how long it moves, in steps of 8 ms; 0: not at all; quick: four of them, or whole. A
+ * folded sheet hangs over a rod, and its halves have swung against each other. count: iterations
+ * whose answers its states keep; 0: they are made without. A state's name tells its step, in ms
+ * (else 1 ms), and whether there are bend springs. */
 static const struct motion {
     const char *name;
     double seconds;

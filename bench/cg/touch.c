@@ -1,5 +1,5 @@
-/* The springs of contact in a state's system: those whose value the matrix has. What is near but
- * does not press has a row, and the value zero. */
+/* The springs of contact in a state's system: those whose value the matrix has. One that is near
+ * but does not press has a row, and the value zero. */
 #include "bench/cg/cg.h"
 
 #include "bench/tasks/tasks.h"
@@ -21,7 +21,7 @@ static int copy_object(duite *rt, duite_object object, void **copy)
     return code ? code : tasks_code(duite_get(rt, object, *copy));
 }
 
-/* Whether no corner of a tie is in a block before this one. */
+/* True if no corner of a tie is in a block before this one. */
 static bool is_lowest(const struct flow_ties *ties, uint32_t block, uint32_t tie)
 {
     bool lowest = true;
@@ -33,7 +33,7 @@ static bool is_lowest(const struct flow_ties *ties, uint32_t block, uint32_t tie
     return lowest;
 }
 
-/* What a block has of them, each counted by its lowest block. */
+/* The springs of a block, each counted by its lowest block. */
 static size_t count(const struct flow *flow, uint32_t block, const void *tie_table,
                     const phys_vec *matrix, const uint32_t *obstacle, bool self)
 {

@@ -73,7 +73,7 @@ static void pass(const struct parts *parts, const struct part *part,
     solve_pack(part->cut.n_halo, part->cut.halo, y->q, part->halo[1 - from]);
 }
 
-/* What one thread does. Everyone works out the same factors. */
+/* The work of one thread. Everyone works out the same factors. */
 static int solve_part(const struct solve *s, uint32_t thread, uint32_t threads)
 {
     const struct parts *parts = &s->twin->parts;
@@ -165,7 +165,7 @@ static double sweep(long n, int threads, double *a, double *b, double *c)
     return (serve_seconds() - begin) / SWEEPS;
 }
 
-/* Of so many bytes=, or those of an iteration on a state=. */
+/* A triad over so many bytes=, or those of an iteration on a state=. */
 static int triad(void *context, struct serve_request *request, double *value)
 {
     struct twin *twin = context;

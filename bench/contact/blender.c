@@ -25,7 +25,7 @@ static int run_blender(const struct model *model, unsigned threads, int frames, 
     return !said || pclose(said) || *seconds < 0 ? serve_fail("Blender does not run the scene") : 0;
 }
 
-/* Of all frames of the file, the most in one. */
+/* The most intersections in a frame of the file. */
 static int look(const struct model *model, int frames, const char *path, double *most)
 {
     const size_t n = 3 * (size_t)model->cloths->mesh.n_vertices;

@@ -103,7 +103,7 @@ static int draw(struct ring *ring, unsigned threads)
     return contact_on_threads(threads, work, ring);
 }
 
-/* What a sheet through the ring sees: how much of it is inside, and the sum of its gaps there. */
+/* The look of a sheet through the ring: how much of it is inside, and the sum of its gaps there. */
 static void look(const struct contact_image *image, const phys_vec *x, struct contact_hit *hit,
                  size_t sum[2])
 {

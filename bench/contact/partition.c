@@ -82,7 +82,8 @@ static double edge_of(const duite_object_graph *graph, size_t a, uint32_t b)
     return 0;
 }
 
-/* What two blocks show each other for their contacts. Blocks come first among the objects. */
+/* The bytes that two blocks show each other for their contacts. Blocks come first among the
+ * objects. */
 static double contacts_of(size_t a, size_t b)
 {
     return a < links.n && b < links.n
@@ -90,7 +91,7 @@ static double contacts_of(size_t a, size_t b)
                : 0;
 }
 
-/* Of the mapping that was made last: bytes of an exchange that cross ranks, as neighbours and for
+/* The mapping that was made last: bytes of an exchange that cross ranks, as neighbours and for
  * contacts, and the largest share of the work over the mean. */
 static struct {
     double neighbours, contacts, uneven;

@@ -208,7 +208,7 @@ static const char *const WHAT[WHATS] = {
     "wall", "frame",   "step",  "intersections", "contacts", "solves",      "iterations", "halved",
     "cuts", "queries", "pairs", "pinches",       "force",    "force_early", "moved",      "memory"};
 
-/* What the run with these settings told, and has not been asked for yet: NAN of what has. */
+/* The figures of the run with these settings; NAN: those that were asked for already. */
 struct told {
     char settings[160];
     double value[WHATS];

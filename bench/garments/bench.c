@@ -22,7 +22,7 @@ static bool others_are_there(void)
     return access(path, R_OK) == 0;
 }
 
-/* What is measured of a mesh. */
+/* The figures of a mesh. */
 struct figures {
     double seconds, below, least; /* s; share of triangles; degrees */
 };

@@ -89,7 +89,7 @@ vassilev() {
 
 # ---- ParTueTex's shirt ----
 
-# Of the last phase, which is the paper's: steps, seconds and iterations a step.
+# The last phase, which is the paper's: steps, seconds and iterations a step.
 hung() { sed -n 's/.*"name": "hang", "steps": \([0-9]*\), "cg_iterations_mean": \([^,]*\), .*"wall_seconds": \([^,]*\),.*/\1 \3 \2/p' "$scratch/report"; }
 shirt_row() { # RANKS THREADS OPTIONS...: mean of the runs; the first row's seconds are those that speed-ups are by
     shape="$1 $2"

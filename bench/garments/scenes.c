@@ -64,7 +64,7 @@ static const struct {
               {"contact_pinches", "pairs", "pinches"}};
 enum { N_COUNTS = sizeof COUNTS / sizeof *COUNTS };
 
-/* What a report says of a run, and of its last phase. */
+/* The figures of a run's report, and of its last phase. */
 struct told {
     double wall, intersections, shapes; /* s, pairs */
     double last_wall, last_simulated;   /* s */

@@ -69,7 +69,7 @@ int output_viewer_start(struct output_viewer *viewer, bool stops)
     return viewer->process < 0 ? serve_fail("no process for the viewer") : 0;
 }
 
-/* What became of it within some seconds. */
+/* How it ended within some seconds. */
 static int wait_for(const struct output_viewer *viewer)
 {
     const struct timespec tenth = {.tv_nsec = 100000000};

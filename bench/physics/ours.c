@@ -1,6 +1,5 @@
-/* A sheet is the reference of the bench "cg", waved and moving. What its kernels make must have the
- * bits that they make without wide instructions, and forces inside the cloth must sum to nothing.
- */
+/* A sheet is the reference of the bench "cg", waved and moving. The results of its kernels must
+ * have the same bits without wide instructions, and forces inside the cloth must sum to nothing. */
 #include "bench/physics/physics.h"
 
 #include "bench/cg/cg.h"
@@ -118,7 +117,7 @@ static int hash_object(struct physics_session *s, duite_object object, size_t do
     return code;
 }
 
-/* Of what a run leaves: the system, or the state. */
+/* Hashes the result of a run: the system, or the state. */
 static int hash_all(struct physics_session *s, uint64_t *digest)
 {
     const bool implicit = model_is_implicit(&s->model);

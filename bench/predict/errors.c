@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What is run; predictions are from the trace of the first one. */
+/* The runs; predictions are from the trace of the first one. */
 static const struct predict_config CONFIGS[] = {
     {1, 2, "steal", "metis", "none"}, {1, 1, "steal", "metis", "none"},
     {1, 2, "fifo", "metis", "none"},  {1, 2, "static", "metis", "none"},
@@ -18,8 +18,7 @@ enum { N_CONFIGS = sizeof CONFIGS / sizeof *CONFIGS };
 /* And where the second host is half as fast, on a machine that can do that. */
 static const struct predict_config UNLIKE = {2, 1, "steal", "metis", "none"};
 
-/* Of the sheet as it is planned: what the runs are predicted to take; < 0: not yet, NAN: it failed.
- */
+/* The predicted times of the sheet's runs; < 0: not yet predicted, NAN: that failed. */
 static double predicted[N_CONFIGS + 1];
 
 /* ---- Being traced ---- */

@@ -19,7 +19,7 @@ static const struct predict_config CONFIGS[] = {
     {2, 1, "steal", "list", "none"},      {2, 1, "static", "lopsided", "none"}};
 enum { N_CONFIGS = sizeof CONFIGS / sizeof *CONFIGS, MOST_ROUNDS = 10 };
 
-/* What was found of all rounds; made once. */
+/* The findings of all rounds; made once. */
 static struct {
     bool made;
     double predicted[N_CONFIGS], median[N_CONFIGS], low[N_CONFIGS], high[N_CONFIGS];

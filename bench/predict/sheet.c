@@ -71,7 +71,7 @@ double predict_makespan(const struct trace_run *run, const struct predict_config
     return predict(run, &cluster, &result, NULL) ? NAN : result.makespan;
 }
 
-/* Of all kept traces of a process; the first one is of the round that is left out. */
+/* All traces of a process are kept; the first one is of the round that is left out. */
 static char *kept_path(size_t number)
 {
     char name[40];

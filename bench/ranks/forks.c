@@ -1,5 +1,5 @@
-/* What a rank pays for tasks that it records, and for those of other ranks that it only hears of.
- */
+/* The cost to a rank of tasks that it records, and for those of other ranks that it only hears
+ * of. */
 #include "bench/ranks/ranks.h"
 
 #include <stdlib.h>

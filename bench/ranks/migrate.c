@@ -106,7 +106,7 @@ static void drop(struct ring *ring)
     duite_graph_free(ring->rt, ring->graph);
 }
 
-/* Whether the blocks, as they lie now, are as much work for one rank as for the other. */
+/* True if the blocks, as they lie now, are as much work for one rank as for the other. */
 static bool is_even(const struct ring *ring)
 {
     double of[2] = {0, 0};

@@ -20,7 +20,7 @@ struct subject_shape ranks_twin(unsigned ranks);
 struct subject_shape ranks_ours_on_hosts(unsigned hosts);
 struct subject_shape ranks_twin_on_hosts(unsigned hosts);
 
-/* Whether this process is on a host of its own. */
+/* True if this process is on a host of its own. */
 bool ranks_on_hosts(void);
 
 /* Starts a runtime (threads=, scheduler=; the rest as `options` has it), the session's of the bench
@@ -38,7 +38,7 @@ int ranks_time_sum(duite *rt, const duite_kernel *kernel, const void *args, int6
 
 /* ---- The twin's solve ---- */
 
-/* What the twin sends in an iteration. */
+/* The twin's messages in an iteration. */
 struct twin_traffic {
     double bytes, messages;
 };

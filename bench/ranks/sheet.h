@@ -33,7 +33,7 @@ int sheet_ready(struct sheet *sheet, uint32_t side, uint32_t grain);
 /* A flow of it alone, as a run of the cloth begins: the model with two iterations and one step. */
 void sheet_model(struct sheet *sheet, uint32_t side, uint32_t grain);
 void sheet_free(struct sheet *sheet);
-/* Of this process, as mpirun says it: MPI may not have begun. */
+/* The rank of this process, as mpirun says it: MPI may not have begun. */
 int sheet_own_rank(void);
 /* Makes sheet->flow for a run, which frees it: rank 0 cuts the model, the others join. 0, or what
  * serve_fail returns. */
@@ -47,10 +47,10 @@ const struct flow_tables *sheet_tables(const struct sheet *sheet);
 size_t sheet_row(const struct sheet *sheet, uint32_t block);
 size_t sheet_halo(const struct sheet *sheet, uint32_t block);
 
-/* What a task of the cloth's solve does on a block: before the first pass; in a pass that reads
- * halo[from] of the neighbours and writes halo[1 - from]. */
+/* A task of the cloth's solve on a block: before the first pass; in a pass that reads halo[from] of
+ * the neighbours and writes halo[1 - from]. */
 void sheet_start(struct sheet *sheet, uint32_t block);
-/* Of n blocks the i-th of a pass: passes go to and fro. */
+/* The i-th of n blocks of a pass: passes go to and fro. */
 static inline uint32_t sheet_order(uint32_t n, uint32_t i, int from)
 {
     return from ? n - 1 - i : i;

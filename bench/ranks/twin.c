@@ -11,8 +11,8 @@
 
 enum { MOST_RANKS = 16 };
 
-/* What goes to another rank, or comes from it: where its rows lie in the halos, three numbers each.
- */
+/* The rows that go to another rank, or come from it: where its rows lie in the halos, three numbers
+ * each. */
 struct traffic {
     size_t n, *at;
     double *packed;
@@ -224,7 +224,7 @@ static int compare(const struct twin *twin, const struct solve_scalars *scalars)
                       s->square);
 }
 
-/* Of all ranks. */
+/* The sum over all ranks. */
 static struct twin_traffic count_traffic(const struct twin *twin)
 {
     struct twin_traffic own = {0}, sum;

@@ -102,7 +102,7 @@ static void meet(void)
     MPI_Barrier(MPI_COMM_WORLD);
 }
 
-/* What others own goes to rank 0. */
+/* Values of other ranks go to rank 0. */
 static int stop(struct twin *twin)
 {
     int code = 0;

@@ -99,8 +99,8 @@ static int answer(const struct session *session, const struct system *s, Vec x, 
 
 /* ---- Choosing ---- */
 
-/* Seconds an iteration of the best of some tries, of the slowest rank. Of tiny systems the choice
- * is idle, and a machine that is full of other work takes its time over every message. */
+/* Seconds an iteration of the best of some tries, of the slowest rank. The choice is idle for tiny
+ * systems, and a machine that is full of other work takes its time over every message. */
 static int try_out(const struct session *session, const struct system *s, double *seconds)
 {
     const bool tiny = session->state.system.n < 1000;
@@ -187,7 +187,7 @@ static int cg(void *context, struct serve_request *request, double *value)
     return code;
 }
 
-/* Whether the error is small enough: looked at after every iteration, not timed. */
+/* True if the error is small enough: looked at after every iteration, not timed. */
 struct search {
     const struct session *session;
     const struct system *system;

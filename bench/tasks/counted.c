@@ -1,6 +1,6 @@
-/* What valgrind counts for `duite-bench tasks --only instructions`: CASE TASKS runs so many tasks
- * of a case on one thread and checks the answer. A program of its own with the shared library, as
- * programs of users have it. */
+/* The program that valgrind counts for `duite-bench tasks --only instructions`: CASE TASKS runs so
+ * many tasks of a case on one thread and checks the answer. A program of its own with the shared
+ * library, as programs of users have it. */
 #include "bench/problem.h"
 #include "bench/tasks/fib.h"
 

@@ -1,4 +1,4 @@
-/* What a task costs when the main program is far ahead: all other workers are held by gates while
+/* The cost of a task when the main program is far ahead: all other workers are held by gates while
  * it forks a batch, then the gates open and all wait for the end. The same number of tasks in
  * batches of 1,000 and in one. */
 #include "bench/tasks/tasks.h"

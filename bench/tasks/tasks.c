@@ -187,7 +187,7 @@ static const char *figure_of(const struct tasks_contest *contest)
     return contest->core ? "core_ns" : "ns_per_task";
 }
 
-/* Of a subject on so many cores. */
+/* The figure of a subject on so many cores. */
 static void plan_figure(struct measure *measure, const struct tasks_contest *contest,
                         const struct measure_series *of, unsigned cores, const char *name)
 {

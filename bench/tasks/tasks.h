@@ -35,7 +35,7 @@ struct tasks_session {
  */
 int tasks_ready(struct tasks_session *session, struct serve_request *request);
 
-/* What a failed call of duite, or one that went well, comes to as the result of a run. */
+/* The result of a run whose call of duite failed, or went well. */
 int tasks_code(int code);
 
 /* n objects, or none at all; and their end. */

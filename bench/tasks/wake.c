@@ -1,5 +1,5 @@
-/* What it takes to sleep: how long a sleeping worker takes from the fork of a task to its body, and
- * what an idle program uses of a core after the time that its workers spin. */
+/* The cost of sleep: how long a sleeping worker takes from the fork of a task to its body, and what
+ * an idle program uses of a core after the time that its workers spin. */
 #include "bench/tasks/tasks.h"
 
 #include <stdlib.h>

@@ -72,10 +72,10 @@ struct loops {
     struct loops_patch *patch; /* the pieces' own ones come first */
 };
 
-/* What a scene's model has: its springs, joints, particles, the body that is met by image, drawn,
- * pieces and patches. Mesh, gravity and h are the model's. 0, or 1 after a sentence on stderr: no
- * memory; or the model has what these loops do not know. The loops belong to the caller, also after
- * a failure. */
+/* The parts of a scene's model: its springs, joints, particles, the body that is met by image,
+ * drawn, pieces and patches. Mesh, gravity and h are the model's. 0, or 1 after a sentence on
+ * stderr: no memory; or the model has what these loops do not know. The loops belong to the caller,
+ * also after a failure. */
 int loops_take(struct loops *loops, const struct model *model);
 void loops_free(struct loops *loops);
 

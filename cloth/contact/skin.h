@@ -121,7 +121,7 @@ struct contact_side {
     const struct contact_skin *skin;
     const void *boxes; /* of x and y */
     const phys_vec *x, *y;
-    /* Of the first side: */
+    /* The first side's: */
     double flat;  /* m: features of one flat part of both skins need to be visited only if they are
                    * nearer than this; 0: than the reach */
     bool ridges;  /* edges that are parted need to be visited only if both have a ridge */

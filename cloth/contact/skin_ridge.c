@@ -10,7 +10,7 @@
 /* A surface that goes down by more from an edge has a ridge there: sine of 3 degrees. Cloth that
  * slides over less has vertices and triangles that are nearer. */
 static const double RIDGE = 0.05;
-/* Of u.v, for rounding. */
+/* A part of u.v, for rounding. */
 static const double ROUNDING = 1e-9;
 
 /* A flat triangle counts at a border of the cloth. */

@@ -19,7 +19,7 @@ static void pressure_pack(const struct element_cloths *cloths, const struct elem
 }
 
 /* The slope of the push on a vertex is some p times an edge, its mass the density times the edge
- * squared. Nothing grows where h^2 times the slope stays below twice the mass. */
+ * squared. Errors do not grow where h^2 times the slope stays below twice the mass. */
 static void pressure_warn(const struct element_sheet *sheet, char *text, size_t size)
 {
     const double p = fabs(sheet->cloth->pressure), h = sheet->model->h;

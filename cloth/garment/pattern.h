@@ -67,7 +67,7 @@ struct garment_pattern {
 
 void garment_pattern_free(struct garment_pattern *pattern);
 
-/* What is taken of a DXF file. Zeroed, or NULL in its place: the usual. */
+/* The choices for a DXF file. Zeroed, or NULL in its place: the usual. */
 struct garment_choice {
     const char *size; /* NULL: the sample size, or the only one */
     bool notches;     /* edges end at notches, too */

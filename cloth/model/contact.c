@@ -1,4 +1,5 @@
-/* What each mode of contact promises is one table; the rest follows from it and from the scene. */
+/* The promises of each mode of contact are one table; the rest follows from it and from the
+ * scene. */
 #include "cloth/model/contact.h"
 
 #include "cloth/model/model.h"
@@ -58,7 +59,7 @@ bool model_meets(const struct model *model, uint32_t cloth, uint32_t other)
            (cloth != other || model->contact.self);
 }
 
-/* What a side has, by its number among materials, then obstacles. */
+/* The properties of a side, by its number among materials, then obstacles. */
 static struct model_sides find_side(const struct model *model, uint32_t of)
 {
     const struct model_contact *all = &model->contact;

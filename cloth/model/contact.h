@@ -58,7 +58,7 @@ struct model_contact {
 
 struct model;
 
-/* What the steps of a model promise. */
+/* The promises of a model's steps. */
 struct model_promise model_promise(const struct model *model);
 /* True if frames have the force of contact. True if a probe reports it; on the rank that has the
  * probes. */

@@ -60,7 +60,7 @@ struct model_phase {
 enum model_integrator { MODEL_ALL_INTEGRATORS(MODEL_INTEGRATOR_ID) };
 enum { MODEL_INTEGRATORS = 0 MODEL_ALL_INTEGRATORS(MODEL_INTEGRATOR_ONE) };
 
-/* What the rest asks of an integrator. */
+/* Properties of an integrator. */
 struct model_scheme {
     const char *name; /* in scenes */
     /* The longest step, s, that lets no vibration of omega, rad/s, with damping, 1/s, grow

@@ -50,12 +50,12 @@ struct phys_pair {
     phys_vec cyclic[3];
 };
 
-/* What a kind does with a list. Force: adds the forces (N) to f, the block's rows, in the air as it
- * blows then. Stiffness: y -= scale K v. Matrix: makes the pairs of elements from .. to - 1; at, of
- * each pair: with bit 0 set where N' is wanted in place of N; NULL: nowhere. System: the same, and
- * the right side of that step: b += push f - h^2 K v, with push h (s), or 0 where the forces are in
- * b. Energy (J) and torque (N m, added): of the elements that count here, those whose corner 0 is
- * one of the block's rows. */
+/* The functions of a kind on a list. Force: adds the forces (N) to f, the block's rows, in the air
+ * as it blows then. Stiffness: y -= scale K v. Matrix: makes the pairs of elements from .. to - 1;
+ * at, of each pair: with bit 0 set where N' is wanted in place of N; NULL: nowhere. System: the
+ * same, and the right side of that step: b += push f - h^2 K v, with push h (s), or 0 where the
+ * forces are in b. Energy (J) and torque (N m, added): of the elements that count here, those whose
+ * corner 0 is one of the block's rows. */
 typedef void phys_force(const struct phys_elements *list, const struct phys_air *air,
                         const struct phys_sight *sight, phys_vec *f);
 typedef void phys_stiffness(const struct phys_elements *list, int full, double scale,

@@ -137,7 +137,8 @@ PHYS_INLINE void multiply(const struct solve_block *block, enum solve_format for
     }
 }
 
-/* Adds the products of ties from .. to - 1 with p to q. Of so many corners each, `own` are rows. */
+/* Adds the products of ties from .. to - 1 with p to q. A tie has so many corners, of which `own`
+ * are rows. */
 PHYS_INLINE void add_ties(const struct solve_ties *ties, size_t from, size_t to, int own,
                           int corners, size_t n_rows, const phys_vec *restrict p,
                           phys_vec *restrict q)

@@ -1,4 +1,4 @@
-# Whether surfaces go through each other, exactly; nothing of it is used by contact, nor uses it. Pure.
+# Exact tests of surfaces that go through each other; shares no code with contact. Pure.
 libduite_cloth_a_SOURCES += \
 	cloth/verify/enter.c \
 	cloth/verify/inside.c \

@@ -140,7 +140,7 @@ int api_agree_at_start(duite *rt, const duite_options *options, int code)
 
 /* ---- Kernels that are added ---- */
 
-/* Whoever looks at kernels without a task is kept away: reports, and sentences about ranks that
+/* Readers of kernels that have no task are kept away: reports, and sentences about ranks that
  * differ. */
 static int kernel_add(duite *rt, const duite_kernel *kernel)
 {

@@ -1,5 +1,5 @@
 /* A library's policy is found by its symbol, so that a file cannot be taken for one of another
- * kind. What was loaded is never unloaded: a policy may be in use as long as the process lives. */
+ * kind. A loaded library is never unloaded: a policy may be in use as long as the process lives. */
 #include "runtime/base/policy.h"
 
 #include "runtime/base/error.h"

@@ -75,7 +75,8 @@ enum base_policy_call { BASE_NO_CALL, BASE_POLICY_FUNCTIONS(BASE_POLICY_CALL) BA
 
 struct base_marks;
 
-/* Of one worker, who alone writes `inside`, with relaxed stores: readers order nothing by it. */
+/* The mark of one worker, who alone writes `inside`, with relaxed stores: readers order nothing by
+ * it. */
 struct base_mark {
     _Alignas(BASE_LINE) _Atomic uint64_t inside; /* 256 times how many calls so far, and which of
                                                     base_policy_call it is in */
@@ -107,7 +108,7 @@ bool base_mark_name(const struct base_marks *marks, unsigned worker, uint64_t in
 void base_mark_enter(struct base_mark *mark, enum base_policy_call call);
 void base_mark_leave(struct base_mark *mark);
 
-/* A call begins; a call is over. Of a NULL mark they do nothing. */
+/* A call begins; a call is over. They do nothing with a NULL mark. */
 static inline void base_mark_begin(struct base_mark *mark, enum base_policy_call call)
 {
     if (__builtin_expect(mark != NULL, 0))

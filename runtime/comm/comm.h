@@ -12,7 +12,7 @@
  * does all it can and never waits. Only the holder of `lock` calls MPI; packets are delivered after
  * the lock is let go. */
 
-/* What the layers above do with messages; `context` is theirs. Any thread. All but `packet` and
+/* The layers above, as they handle messages; `context` is theirs. Any thread. All but `packet` and
  * `broke` are called without the lock. */
 struct comm_owner {
     /* The packet of a letter that is about to be sent, under its key. NULL without memory. */
@@ -40,7 +40,7 @@ struct comm_report {
     void (*ends)(struct worker *worker);
 };
 
-/* What a comm knows of its program. The ranks compare history and homes; a sentence about a
+/* The program, as a comm knows it. The ranks compare history and homes; a sentence about a
  * difference names kernels. */
 struct comm_setup {
     const struct comm_owner *owner;
@@ -92,8 +92,8 @@ bool comm_awaits(struct comm *comm);
 bool comm_poll(struct comm *comm, struct worker *worker);
 
 /* Calls back with everything awaited (see comm_arrivals_look) and, if the lock can be had, with
- * everything being sent. Returns whether it could be had. Who waits for something awaited stays as
- * it is during the call. Any thread. */
+ * everything being sent. Returns whether it could be had. Waiters for awaited values stay as they
+ * are during the call. Any thread. */
 struct comm_looker {
     void *context;
     void (*awaited)(void *context, const struct data_key *key, const struct comm_target *target,

@@ -207,7 +207,7 @@ bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned i
     bool sent = false;
     if (!comm_try_lock(comm))
         return false;
-    /* Nothing follows the abort message. */
+    /* The abort message is the last one. */
     struct data_packet *packet = comm_is_broken(comm) ? NULL : data_packet_new(0, true);
     if (packet) {
         packet->kind = COMM_REQUEST;

@@ -47,7 +47,7 @@ void comm_guests_stop(struct comm_guests *guests);
 
 /* A guest for copies of n requests. NULL without memory. base_free frees it. */
 struct comm_guest *comm_guest_new(int n, const MPI_Request *requests);
-/* Whoever polls next tests its requests. Any thread. */
+/* The next poll tests its requests. Any thread. */
 void comm_guest_add(struct comm_guests *guests, struct comm_guest *guest);
 
 /* True if there is something to test. Any thread. */

@@ -9,8 +9,8 @@
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* Messages between ranks, for those who send and expect them. A message is a packet: bytes and a
- * key. It is sent as soon as its bytes are there and may arrive before its receiver expects it.
- * Whoever sends or expects one is called when it is sent or came. comm.h has the rest. */
+ * key. It is sent as soon as its bytes are there and may arrive before its receiver expects it. Its
+ * sender or receiver is called when it is sent or came. comm.h has the rest. */
 struct comm;
 struct worker; /* the caller, for those who are called back; NULL: no worker */
 
@@ -34,7 +34,7 @@ struct comm_letter {
 typedef void comm_arrived(void *context, struct worker *worker, void *what,
                           struct data_packet *packet);
 
-/* Who expects a packet, and the rank it comes from (-1: several). */
+/* The receiver of a packet, and the rank it comes from (-1: several). */
 struct comm_target {
     comm_arrived *arrived;
     void *what;

@@ -9,8 +9,8 @@
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
-/* Queues of ready tasks, and their two parts: a deque and a heap. Of a task they know where its
- * link is, and its rank, for which they ask. */
+/* Queues of ready tasks, and their two parts: a deque and a heap. They know where a task's link is,
+ * and its rank, for which they ask. */
 struct task;
 
 /* For whoever holds the task: a queue's inbox, or a list. */
@@ -28,7 +28,7 @@ static inline struct task *queue_task(struct queue_link *link)
     return (struct task *)(void *)((char *)link - QUEUE_LINK_AT);
 }
 
-/* What puts a task before others, see DUITE_HIGHEST. */
+/* A task's urgency, see DUITE_HIGHEST. */
 struct queue_rank {
     int32_t priority;
     float path; /* seconds from its begin to the end of the round, or 0 */

@@ -1,5 +1,5 @@
 # shellcheck shell=sh
-# What the tests of duite-bench share, to be sourced after tests/support/tap.sh: the bench, and looks at what it prints.
+# Shared by the tests of duite-bench, to be sourced after tests/support/tap.sh: the bench, and looks at what it prints.
 bench=$PWD/bench/duite-bench
 skip_unless "$bench"
 

@@ -1,4 +1,4 @@
-/* Stands in for a rival in the test of duite-bench. What it does is in its environment, LIAR:
+/* Stands in for a rival in the test of duite-bench. Its behaviour is in its environment, LIAR:
  * "count" answers 1, 2, 3, ... milliseconds, "slow" 1000 seconds, "log" appends its name to the
  * file LIAR_LOG, "wrong" fails its check, "die" ends in the middle, anything else before it says
  * hello. */

@@ -16,7 +16,7 @@ END
 chmod +x "$scratch/tools/valgrind"
 PATH=$scratch/tools:$PATH
 
-# What a user chose for programs of duite in general, even if it makes no sense, is not what is measured.
+# A user's general settings for programs of duite, even if they make no sense, are not measured.
 tasks_in_full() {
     (export DUITE_SCHEDULER=nobody DUITE_MAPPING=nowhere DUITE_BALANCE=never DUITE_THREADS=none DUITE_SEED=no DUITE_TRACE=/no/such/folder/trace
      limited "$bench" tasks "$@")
@@ -59,7 +59,7 @@ same_figures() {
               exit !(n > 10 && !bad) }' "$2"
 }
 
-# What is promised, and nothing else has a target.
+# Promises, and nothing else, have targets.
 targets_listed() {
     "$bench" tasks --list > "$scratch/list" || return 1
     targets "$bench" tasks > "$scratch/targets"

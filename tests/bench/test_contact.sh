@@ -64,7 +64,7 @@ intersections_added() {
     grep -q '^intersections: 0 pairs' "$scratch/lines" && contact --quick --repeats 1 --only intersections > "$scratch/alone" 2>&1 &&
         grep -q '^intersections: no case before it ran scenes' "$scratch/alone"
 }
-# What calls valgrind says so where there is none, and the rest is measured.
+# A case that calls valgrind says so where there is none, and the rest is measured.
 without_tools() {
     mkdir -p "$scratch/empty" && (PATH=$scratch/empty && export PATH && "$bench" contact --quick --repeats 1 --only instructions) > "$scratch/bare" 2>&1 &&
         grep -q '^instructions_nothing_to_touch: not installed: valgrind' "$scratch/bare"

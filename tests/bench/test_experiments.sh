@@ -2,7 +2,7 @@
 # The papers' experiments run in tiny sizes and print their tables. With DUITE_LONG=1 all of them.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
-# What a user chose for programs of duite in general, even if it makes no sense, is not what is measured.
+# A user's general settings for programs of duite, even if they make no sense, are not measured.
 export DUITE_SCHEDULER=nobody DUITE_MAPPING=nowhere DUITE_BALANCE=never DUITE_THREADS=none DUITE_SEED=no DUITE_TRACE=/no/such/folder/trace
 
 experiments=$(cd "$srcdir" && pwd)/bench/experiments
@@ -10,7 +10,7 @@ mkdir -p "$scratch/bench/vassilev" # what it leaves lies there
 ln -s "$PWD/duite-cloth" "$PWD/duite-predict" "$PWD/duite-compare" "$scratch"
 ln -s "$PWD/bench/contact-partition" "$scratch/bench"
 ln -s "$PWD/bench/vassilev/vassilev" "$scratch/bench/vassilev"
-# What ran stands above the table and below it: sizes and lengths are those of --quick, not of what is measured without it.
+# The runs are named above the table and below it: sizes and lengths are those of --quick.
 revision=$(git -C "$srcdir" describe --always --dirty --abbrev=12 2> /dev/null || echo unknown)
 table() { # NAME LINES [WORDS]: so many rows, none of them without figures, and a caption with these words
     status=0
@@ -35,7 +35,7 @@ ok "vassilev" table vassilev 17 "median of 1 run of 10 iterations"
 ok "fabrics" table fabrics 3 "drape coefficient (%) and nodes"
 # Panels of so many vertices that joints pull together around the figure.
 awk -v n=300 -f "$srcdir/bench/vassilev/panels.awk" > "$scratch/panels.yaml"
-# What the loops give: on two threads as many pairs repel each other, and vertices are in the body, as on one, or nearly so.
+# The loops' results: on two threads as many pairs repel each other, and vertices are in the body, as on one, or nearly so.
 loops() { # THREADS: prints pieces, vertices in the body, pairs that repel each other, mean of all iterations
     limited bench/vassilev/vassilev run "$1" 300 on 0 "$scratch/panels.yaml" contact.thickness=0.02 | cut -d ' ' -f 4,12,13
 }

@@ -17,7 +17,7 @@ static int run(size_t i, const char *text, double *value)
     return code;
 }
 
-/* Of ours, traffic of ours, the twin. */
+/* Runs ours, the traffic of ours, and the twin. */
 static int run_each(size_t i)
 {
     char text[100];

@@ -73,7 +73,7 @@ UNIT_TEST(the_step_is_whole)
     ck_assert_double_eq_tol(system.h, 0.02, 1e-12);
 }
 
-/* What is no number cannot be a step. */
+/* A value that is no number cannot be a step. */
 UNIT_TEST(a_step_that_fails_is_told)
 {
     UNIT_OWNED(states_plan_free) struct states_plan plan;

@@ -1,4 +1,4 @@
-/* What limited a run, of reports that are made here: the largest share of its time decides. */
+/* The limit of a run, by reports that are made here: the largest share of its time decides. */
 #include "cloth/app/report/summary.h"
 
 #include "tests/support/unit.h"

@@ -14,7 +14,7 @@
 #     traffic h2              prints what crossed the cable: bytes and packets received, bytes and packets sent
 #     pids h2 NAME            prints the host's processes of that name
 #
-# Nothing is left behind, however it ends: all of it lives in namespaces without a name, and its processes in a PID namespace,
+# It leaves nothing behind, however it ends: all of it lives in namespaces without a name, and its processes in a PID namespace,
 # which the kernel ends with its first process; and that one is killed when this script dies.
 set -u
 case $PATH in *sbin*) ;; *) PATH=$PATH:/usr/sbin:/sbin ;; esac # root has none after su
@@ -55,7 +55,7 @@ outside() { # N RATE COMMAND...
 commands() {
     here="dir=$dir; process() { cat \"\$dir/\$1\" || exit 2; }"
     tool on 'host=$1; shift; exec nsenter --target "$(process "$host")" --net --uts "$@"'
-    # What mpirun takes for ssh: a host, and a line for its shell. No status comes through a cable that is unplugged.
+    # The stand-in for ssh: a host, and a line for its shell. No status comes through a cable that is unplugged.
     tool agent 'host=$1
         shift
         on "$host" sh -c "$*"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What happens to a simulation on two hosts, of which the second one suffers: it goes on, or it ends within fifteen seconds on both,
+# A simulation on two hosts, of which the second one suffers: it goes on, or it ends within fifteen seconds on both,
 # with a sentence that names rank and host, without a process left, and with whole frames on disk. With DUITE_LONG=1: all of it.
 . "${srcdir:-.}/tests/support/tap.sh"
 . "$srcdir/tests/cluster/cluster.sh"
@@ -72,7 +72,7 @@ stops() { kill -USR1 $job && ends 5 30 && says "stopped as asked"; }
 second() { pids h2 "$1" | head -n 1; }
 killed() { begin "$@" && kill -KILL "$(second duite-cloth)" && ends 137 && says "process rank 1 .* on node h2 exited on signal 9"; }
 bereft() { begin "$@" && kill -KILL "$(second orted)" && ends 205; } # the host without its daemon
-# What mpirun makes of a cut it does within the seconds that follow. How long ago it heard of the host when a cut begins differs by
+# Mpirun reacts to a cut within the seconds that follow. How long ago it heard of the host when a cut begins differs by
 # half a second from cut to cut.
 apart() { # CUTS [ARGUMENT of mpirun...]
     cuts=$1
@@ -98,7 +98,7 @@ different() { # scenes on the two ranks
     test $? = 2 && says "ranks 0 and 1 were started with different scenes"
 }
 
-# What follows a fault: nobody is left, files are whole.
+# After a fault no process is left, and files are whole.
 after() {
     ok "... and no process is left" nobody
     ok "... and the frames are whole" whole

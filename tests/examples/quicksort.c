@@ -1,4 +1,4 @@
-/* Quicksort: how deep it goes depends on the values, so tasks fork tasks. Nobody waits: each sort
+/* Quicksort: how deep it goes depends on the values, so tasks fork tasks. No task waits: each sort
  * hands its right to write the result on to the task that joins the halves. It sorts a permutation
  * of 0 ... N - 1. */
 

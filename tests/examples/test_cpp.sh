@@ -53,7 +53,7 @@ int main()
 END
     compile policies "$scratch/policies.cpp"
 }
-# What a body throws and main would catch.
+# An exception that a body throws and main would catch.
 throwing() {
     cat > "$scratch/throwing.cpp" << 'END'
 #include <duite.h>

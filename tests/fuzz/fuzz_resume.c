@@ -29,7 +29,7 @@ static const char SCENE[] =
     "time: {h: 0.002, end: 0.02, fps: 100}\n"
     "grain: 5\n";
 
-/* Of the checkpoint, without padding: 16 bytes of an input. */
+/* A change of the checkpoint, without padding: 16 bytes of an input. */
 struct change {
     uint16_t kind; /* what is done; with FROM_MAIN `at` is within what the main program knew */
     uint16_t n;    /* bytes */
@@ -52,8 +52,8 @@ static void fail(const char *what)
     _exit(99);
 }
 
-/* What MPI and what it loads keep until the process ends is no leak of ours. Weak: only builds with
- * AddressSanitizer have these functions. */
+/* Memory that MPI and its libraries keep until the process ends is no leak of ours. Weak: only
+ * builds with AddressSanitizer have these functions. */
 void __lsan_disable(void) __attribute__((weak));
 void __lsan_enable(void) __attribute__((weak));
 
@@ -126,7 +126,7 @@ static int resume(const struct made *made, struct flow_checkpoint from, struct c
     return code;
 }
 
-/* What was not changed goes on. */
+/* A checkpoint that was not changed goes on. */
 static void make(struct made *made)
 {
     struct cloth_error error = {0};

@@ -1,6 +1,6 @@
 #!/bin/sh
 # run.sh SECONDS [NAME...]: `make fuzz`. Builds the harnesses (all, or those of these names) by clang with libFuzzer, AddressSanitizer and
-# UndefinedBehaviorSanitizer from fuzz-source, in fuzz-build, and lets each look for so many seconds, one after the other. What it finds is
+# UndefinedBehaviorSanitizer from fuzz-source, in fuzz-build, and lets each look for so many seconds, one after the other. Its finds are
 # kept in fuzz-build/found: a file that ends a reader by a crash, a leak, a limit of time (60 s) or of memory (256 MB in one piece, 2 GB in
 # all). The inputs that reach new code are kept in fuzz-build/work/NAME, where the next run goes on. Exits 1 if anything was found.
 #

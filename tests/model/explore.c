@@ -1,4 +1,4 @@
-/* What the tests say: a line of TAP a case, with the number of executions. */
+/* The tests' output: a line of TAP a case, with the number of executions. */
 #include "tests/model/search.h"
 
 #include <stdio.h>

@@ -11,16 +11,16 @@
  * after another from the start. The threads are coroutines; at each atomic operation and each call
  * that may block, the explorer decides who goes on.
  *
- * What is explored: all interleavings, and stores that stay behind. An atomic store that is not
+ * Explored: all interleavings, and stores that stay behind. An atomic store that is not
  * sequentially consistent goes to a buffer of its thread first; it may get to memory at any later
  * moment, after later stores to other places too, but not before its own place's earlier stores
  * and, with memory_order_release, not before any earlier store. A fence or a sequentially
  * consistent or releasing read-modify-write waits until the buffer is empty. So a missing fence
  * (announce, then look) and a missing release are found.
  *
- * What is not: loads never run early, so a missing acquire is not found; a read-modify-write writes
- * at once; weak compare-and-exchange fails for a reason only; mutexes and conditions order as on
- * x86, and conditions do not wake for nothing. Plain data are no business of the explorer
+ * Not explored: loads never run early, so a missing acquire is not found; a read-modify-write
+ * writes at once; weak compare-and-exchange fails for a reason only; mutexes and conditions order
+ * as on x86, and conditions do not wake for nothing. Plain data are no business of the explorer
  * (ThreadSanitizer's). */
 
 enum { EXPLORE_THREADS = 6 };
@@ -72,7 +72,7 @@ int explore_end(void);
 /* For the cases: what must be true; the execution ends where it is not. */
 #define explore_check(condition) explore_check_that(condition, #condition)
 void explore_check_that(bool fine, const char *what);
-/* Whether the plant is this one: for changes of other kinds, which the test makes itself. */
+/* True if the plant is this one: for changes of other kinds, which the test makes itself. */
 bool explore_planted(const char *function, const char *what);
 /* Memory of this execution, zeroed, aligned to 64 bytes. */
 void *explore_alloc(size_t size);

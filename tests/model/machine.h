@@ -36,7 +36,7 @@ struct machine_step {
 
 unsigned machine_actors(void);
 bool machine_ready(unsigned actor);
-/* What the actor does next. */
+/* The actor's next step. */
 void machine_peek(unsigned actor, struct machine_step *step);
 
 enum machine_end { MACHINE_OVER, MACHINE_ALIVE, MACHINE_STUCK, MACHINE_WRONG, MACHINE_CUT };
@@ -54,20 +54,20 @@ uint64_t machine_step(struct machine_step next);
 /* Puts a store into the buffer. */
 void machine_store(struct explore_place place, uint64_t value, bool release);
 bool machine_buffers(void); /* whether stores are in the thread's buffer */
-/* Whether its timed wait may run out. */
+/* True if its timed wait may run out. */
 bool machine_time_left(void);
 /* Threads are numbered from 0; -1 is nobody: the case's start or end. gone is 1 once it is over. */
 int machine_create(void *(*start)(void *), void *argument);
 int machine_self(void);
 uint64_t *machine_gone(int thread);
-/* Whether the plant is here. */
+/* True if the plant is here. */
 enum explore_change machine_change(const char *function, const char *what);
 
 /* ---- The search ---- */
 
 /* The actor of the next step, which is the index-th; -1 ends the execution. */
 int search_next(int current, int *index);
-/* What the step read, or wrote, for whoever reads the schedule. */
+/* The value that the step read, or wrote, for readers of the schedule. */
 void search_result(int index, uint64_t result);
 
 #endif

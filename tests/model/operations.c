@@ -1,5 +1,5 @@
-/* Operations of the code under test as steps of the machine. What C leaves to an order weaker than
- * it needs, the machine does at the worst moment. */
+/* Operations of the code under test as steps of the machine. The machine does at the worst moment
+ * what C leaves to an order weaker than needed. */
 #include "tests/model/machine.h"
 
 static bool releases(memory_order order)

@@ -2,8 +2,8 @@
 #define TESTS_MODEL_PLAIN_QUEUE_H
 
 /* In place of queue.c, where sleep and waking are explored: queues that have what matters for them,
- * in a few steps. A task is a bit, by its number. What is pushed and put is seen
- * at once; a task is there until its bit is in `taken`. */
+ * in a few steps. A task is a bit, by its number. Tasks that are pushed and put are seen at once; a
+ * task is there until its bit is in `taken`. */
 #include "runtime/queue/queue.h"
 
 #include "tests/model/atomics.h"

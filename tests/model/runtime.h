@@ -51,7 +51,7 @@ void *base_arrays(const struct base_array *list)
     return NULL;
 }
 
-/* What of the library is linked as it is finds nothing at hand. */
+/* Parts of the library that are linked as they are find no shelves. */
 static struct base_shelf no_shelves[BASE_POOL_LARGEST / BASE_POOL_GRAIN + 1];
 _Thread_local struct base_shelf *base_shelves = no_shelves;
 

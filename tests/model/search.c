@@ -55,7 +55,7 @@ static bool same_place(const struct machine_step *a, const struct machine_step *
     return a->place.address && a->place.address == b->place.address;
 }
 
-/* Whether the order of an earlier step and a later one matters, or the first made the second
+/* True if the order of an earlier step and a later one matters, or the first made the second
  * possible. */
 static bool depends(int index, const struct machine_step *a, const struct machine_step *b)
 {
@@ -69,7 +69,7 @@ static bool depends(int index, const struct machine_step *a, const struct machin
     return flushed && (b->drained || (b->writes && same_place(a, b)));
 }
 
-/* Whether two steps that are possible now may change places. */
+/* True if two steps that are possible now may change places. */
 static bool independent(const struct machine_step *a, const struct machine_step *b)
 {
     bool writes = a->writes || b->writes || a->kind == MACHINE_COMPARE;
@@ -127,7 +127,7 @@ static uint64_t ready(void)
     return actors;
 }
 
-/* What was tried at the step before and has nothing to do with it need not be tried here. */
+/* A step that was tried before this one, and is independent of it, need not be tried here. */
 static uint64_t still_asleep(void)
 {
     uint64_t asleep = 0;

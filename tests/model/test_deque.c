@@ -60,7 +60,7 @@ static void start(void)
         deque_push(&its.deque, its.task[its.pushed++]);
 }
 
-/* What nobody took is still there, and nothing else. */
+/* Tasks that were not taken are still there, and nothing else. */
 static void end(void)
 {
     struct task *task;

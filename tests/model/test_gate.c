@@ -40,7 +40,7 @@ static void run(uint32_t node, uint64_t number)
     explore_check(number <= NODES || its.ran[number - 1 - NODES]);
 }
 
-/* Whoever has the node goes on with it. */
+/* The holder of the node goes on with it. */
 static void go_on(uint32_t node, struct task *task)
 {
     bool mine = true;

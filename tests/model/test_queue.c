@@ -14,8 +14,8 @@ static unsigned allocations; /* that still succeed */
 
 enum { THREADS = 3, EACH = 3, TASKS = THREADS * EACH }; /* EACH: tasks that a thread makes */
 
-/* What each thread does, one letter each. The first owns the queue: P push, T take the newest, O
- * the oldest, H the highest. Others: p put, S steal. Of a shared queue anybody: p put, t take the
+/* The threads' steps, one letter each. The first owns the queue: P push, T take the newest, O the
+ * oldest, H the highest. Others: p put, S steal. Any thread of a shared queue: p put, t take the
  * newest, o the oldest, h the highest. */
 struct play {
     const char *name;
@@ -87,7 +87,7 @@ static void start(void)
     allocations = play->no_memory ? 0 : 9;
 }
 
-/* What nobody took is still there, and nothing else. */
+/* Tasks that were not taken are still there, and nothing else. */
 static void end(void)
 {
     while (got(queue_take(&its.queue, DUITE_NEWEST)))

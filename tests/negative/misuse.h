@@ -1,8 +1,7 @@
 #ifndef TESTS_NEGATIVE_MISUSE_H
 #define TESTS_NEGATIVE_MISUSE_H
 
-/* What the tests of misuse share: a few kernels, a runtime started with them, and TAP over ranks.
- */
+/* Shared by the tests of misuse: a few kernels, a runtime started with them, and TAP over ranks. */
 
 #include "tests/support/kernel.h"
 
@@ -40,7 +39,7 @@ void tap_case(int right, const char *name);
 const char *misuse_first_ranks(int n);
 /* Keeps duite_message() for misuse_all_told, which calls MPI: when the runtime is stopped. */
 void misuse_keep_message(void);
-/* Whether the kept message contains the text on this rank, and is the same on all; else this rank
+/* True if the kept message contains the text on this rank, and is the same on all; else this rank
  * says on stderr what it is. Collective over MPI_COMM_WORLD. */
 int misuse_all_told(const char *text);
 

@@ -7,7 +7,7 @@ check_PROGRAMS += tests/negative/ranks
 tests_negative_ranks_SOURCES = $(RANKS) tests/negative/ranks_blocking.c tests/negative/ranks_different.c tests/negative/ranks_failures.c \
     tests/negative/ranks_groups.c tests/negative/ranks_large.c tests/negative/ranks_lost.c
 tests_negative_ranks_LDADD = $(CORE_LIBS)
-# What a system refuses, by wraps that also do without the pool of memory.
+# Refusals by the system, through wraps that also do without the pool of memory.
 check_PROGRAMS += tests/negative/starved
 tests_negative_starved_SOURCES = $(RANKS) tests/negative/starve.c tests/negative/starve.h tests/negative/ranks_memory.c \
     tests/negative/ranks_memory_graphs.c tests/negative/ranks_system.c

@@ -108,7 +108,7 @@ static void differ(enum call call, enum call of_last, const char *name)
     tap_case(misuse_all_told(text) && code == DUITE_E_DIFFERENT && !rt, line);
 }
 
-/* Nobody is blamed for being slow: questions are asked, and what they find is nothing. */
+/* Slow ranks are not blamed: questions are asked, and find nothing. */
 static void slow(void)
 {
     duite *rt = begin();

@@ -212,7 +212,7 @@ static void differ(duite *rt, enum difference what, duite_object a, duite_object
         duite_kernel_add(rt, odd ? &UNLISTED : &other);
 }
 
-/* What the message names: where the ranks differ, and the calls of the others and of the last rank
+/* The message names: where the ranks differ, and the calls of the others and of the last rank
  * there; NULL: a wait, or the stop. */
 static const struct {
     const char *name, *where, *others, *last;

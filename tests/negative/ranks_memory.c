@@ -36,7 +36,7 @@ static void work(duite *rt, const duite_object *a)
     duite_free(rt, a[0]);
 }
 
-/* What is said to be good is good, as long as no error was told. */
+/* Results are right as long as no error was told. */
 static int right(duite *rt, const duite_object *a)
 {
     int32_t values[COUNT];

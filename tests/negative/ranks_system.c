@@ -1,4 +1,4 @@
-/* What the system and a program's policies refuse: threads that cannot be started on one rank, and
+/* Refusals by the system and a program's policies: threads that cannot be started on one rank, and
  * mappings that fail or name a rank there is not. The linker puts the function below in place of
  * that of the C library (module.mk). */
 
@@ -90,7 +90,7 @@ static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int 
     return answer < 0 ? -answer : 0;
 }
 
-/* Nothing is forked while objects have no home, and only stop is left. */
+/* Forks are refused while objects have no home, and only stop is left. */
 static void wrong_mapping(int wrong, int code, const char *name)
 {
     const duite_mapping mapping = {.size = sizeof(duite_mapping), .name = "wrong", .map = map};

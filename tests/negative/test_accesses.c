@@ -115,7 +115,7 @@ UNIT_TEST(repeated_forks_after_free)
     b = next;
 }
 
-/* What was refused has left no trace. */
+/* A refused access has left no trace. */
 UNIT_TEST(refused_forks_do_nothing)
 {
     int32_t value[4];

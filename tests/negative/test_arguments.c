@@ -66,7 +66,7 @@ UNIT_TEST(no_runtime)
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
 }
 
-/* What stop leaves behind is no runtime. */
+/* A stopped runtime is no runtime. */
 UNIT_TEST(after_stop)
 {
     refused_end();

@@ -10,7 +10,7 @@
 
 enum { MODES = 8 };
 
-/* What a body asks for. */
+/* The requests of a body. */
 enum deed {
     FORK, /* a child with its parameter in the mode `child` */
     FORK_FOREIGN,
@@ -333,7 +333,7 @@ UNIT_TEST(resizing_what_is_postponed)
     duite_free(rt, sized);
 }
 
-/* Who goes on as if it had been given something fails, too. */
+/* A body that goes on as if it had been given something fails, too. */
 UNIT_TEST(contributing)
 {
     char what[120];

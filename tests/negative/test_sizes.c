@@ -85,7 +85,7 @@ UNIT_TEST(not_changeable)
     refuses((struct wish){.parameter = 3, .count = 2}, DUITE_E_SIZE, "there is no parameter 3");
 }
 
-/* What the body says goes before. */
+/* The body's sentence goes before. */
 UNIT_TEST(code_of_the_body)
 {
     refuses((struct wish){.count = MOST + 1, .code = 5}, 5, "code 5: duite_resize: parameter 0");

@@ -39,7 +39,7 @@ UNIT_TEST(malformed_kernels)
     KERNEL_REFUSED(MANY, kernel.variadic = (duite_mode)-1, "many");
 }
 
-/* What runs on several ranks must leave the same everywhere. */
+/* Starts on several ranks must leave the same everywhere. */
 UNIT_TEST(replicated_kernels)
 {
     KERNEL_REFUSED(EVERYWHERE, (kernel.name = "alike", kernel.side_effects = 1), "side effects");

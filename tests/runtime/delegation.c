@@ -1,4 +1,4 @@
-/* Nothing is kept here: what a test knows of its tasks it keeps itself. */
+/* This file keeps nothing: each test keeps its own knowledge of its tasks. */
 #include "tests/runtime/delegation.h"
 
 #include "tests/negative/misuse.h"

@@ -1,4 +1,4 @@
-/* What the tests of graphs share. */
+/* Shared by the tests of graphs. */
 #include "tests/runtime/graphs_fixture.h"
 #include "tests/support/kernel.h"
 

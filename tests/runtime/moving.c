@@ -1,4 +1,4 @@
-/* What a test wants is the same on all ranks; rank 0's balancer does it. */
+/* A test's wish is the same on all ranks; rank 0's balancer does it. */
 
 #include "tests/runtime/moving.h"
 

@@ -1,5 +1,5 @@
-/* The arithmetic of every random body. What it writes depends on every byte it reads, on their
- * order and on its seed and round; floating-point values differ in magnitude so much that another
+/* The arithmetic of every random body. Its output depends on every byte it reads, on their order
+ * and on its seed and round; floating-point values differ in magnitude so much that another
  * summation tree leaves other bits, and stay far from infinity, since the bits of a NaN are
  * nobody's promise. */
 

@@ -32,7 +32,7 @@ struct prog_cell {
 struct prog_failure prog_first_failure(struct prog_failure a, struct prog_failure b);
 size_t prog_cell_bytes(const struct prog_cell *cell);
 
-/* Of such a shape, all zero. */
+/* A cell of such a shape, all zero. */
 void prog_cell_start(struct prog_cell *cell, const struct prog_object *shape);
 void prog_cell_end(struct prog_cell *cell);
 

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/* Of a type, by its mix of two values. */
+/* The laws of a type, by its mix of two values. */
 #define LAW_OF(name, type, mix, sum)                                                               \
     static type name(enum prog_law law, type l, type r)                                            \
     {                                                                                              \

@@ -11,7 +11,7 @@ enum { WIDTH = 1000, ROUNDS = 20 };
 
 static duite *rt;
 
-/* Whether the data are where duite.h says. */
+/* True if the data are where duite.h says. */
 static int is_in_place(duite_object object, const void *data)
 {
     return (duite_home(rt, object) == rank) == (data != NULL) && (uintptr_t)data % 64 == 0;

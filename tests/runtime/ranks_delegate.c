@@ -105,7 +105,7 @@ static void values(const char *balance)
     delegation_say(balance, "stop", duite_stop(&rt) == DUITE_OK);
 }
 
-/* What must not move does not. */
+/* Tasks that must not move do not. */
 static void pinned(void)
 {
     duite *rt = start("scatter");
@@ -149,7 +149,7 @@ static void sizes(void)
     duite_stop(&rt);
 }
 
-/* Of tasks of the main program. */
+/* Poisoned tasks of the main program. */
 static void poison(void)
 {
     duite *rt = start("scatter");
@@ -173,7 +173,7 @@ static void poison(void)
     tap_case(duite_stop(&rt) == DUITE_OK, "stop after failures");
 }
 
-/* Of children, of guests and of tasks that stay. */
+/* The same of children, of guests and of tasks that stay. */
 static void children(void)
 {
     duite *rt = start("scatter");

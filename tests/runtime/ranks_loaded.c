@@ -20,7 +20,7 @@
 
 enum { CORES = 2, LOOPS = 8, ROUNDS = 400, WORK = 50000 };
 
-/* Of the time. */
+/* A part of the time. */
 #define MOST_GIVEN 0.25
 
 static pid_t loop[LOOPS];

@@ -165,8 +165,8 @@ static unsigned sent_for_sum(unsigned n)
     return n <= DIRECT_RANKS ? n * (n - 1) : n * rounds;
 }
 
-/* What one round sends: the halos twice, and the contributions once; the halos of the second way
- * are there when the contributions of the first are. */
+/* The messages of one round: the halos twice, and the contributions once; the halos of the second
+ * way are there when the contributions of the first are. */
 static void count(duite *rt, struct rod *rod, duite_graph graph)
 {
     const uint64_t halos = 2 * neighbours(rt, rod);

@@ -1,6 +1,5 @@
 /* Programs that stand still for a while, on any number of ranks: the task that all wait for sleeps,
- * or what comes from other ranks is held up on the last one. What is told goes to standard error.
- */
+ * or what comes from other ranks is held up on the last one. Messages go to standard error. */
 #include "tests/support/kernel.h"
 #include "tests/support/ranks.h"
 

@@ -53,7 +53,7 @@ KERNEL(SPILL, "spill", .access = {DUITE_CWP})
     return 0;
 }
 
-/* Nobody contributes, nobody overwrites, and nobody changes the third. */
+/* No task contributes, overwrites, or changes the third. */
 KERNEL(IDLE, "idle", .access = {DUITE_CWP, DUITE_WP, DUITE_RWP})
 {
     (void)call;
@@ -118,7 +118,7 @@ static void values(const char *balance)
     delegation_say(balance, "stop", duite_stop(&rt) == DUITE_OK);
 }
 
-/* What a subtree forks goes on, and home, while bodies wait for it everywhere. */
+/* The tasks that a subtree forks go on, and home, while bodies wait for it everywhere. */
 static void onward(void)
 {
     duite *rt = start("scatter");

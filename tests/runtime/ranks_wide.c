@@ -25,7 +25,7 @@ KERNEL(WIDE, "wide", .access = {READ_37, DUITE_RW, DUITE_CW, DUITE_CW},
     return 0;
 }
 
-/* Nothing but reads and writes: the ranks on which nothing of it is drop it at once. */
+/* Only reads and writes: the ranks on which nothing of it is drop it at once. */
 KERNEL(PLAIN, "plain", .access = {READ_37, DUITE_RW})
 {
     for (int i = 0; i < READS; i++)
@@ -81,7 +81,7 @@ static int64_t value_of(duite *rt, duite_object object)
     return duite_get(rt, object, &value) ? -1 : value;
 }
 
-/* Whether so many rounds ran. */
+/* True if so many rounds ran. */
 static int wide_is(duite *rt, const struct wide *w, int64_t rounds)
 {
     return value_of(rt, w->object[WRITE]) == rounds * w->all &&

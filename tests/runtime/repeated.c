@@ -1,5 +1,5 @@
-/* What the bodies and the main program share is atomic; the expected values are the main program's.
- */
+/* Values that the bodies and the main program share are atomic; the expected values are the main
+ * program's. */
 #include "tests/runtime/repeated.h"
 
 #include "tests/negative/misuse.h"

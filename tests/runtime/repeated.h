@@ -4,7 +4,7 @@
 #include <duite.h>
 #include <stdatomic.h>
 
-/* What the tests of repeated forks share: a program of some numbers, whose values are worked out
+/* Shared by the tests of repeated forks: a program of some numbers, whose values are worked out
  * beside it, one task after the other. Its functions assert that calls succeed. */
 
 enum { OBJECTS = 8, ROUNDS = 60, ALWAYS = 2 };
@@ -32,7 +32,7 @@ extern atomic_int repeated_over;    /* bodies of MIX and TWIN, since the start *
 extern atomic_int repeated_held;    /* not 0: HOLD waits */
 extern atomic_int repeated_held_at; /* the number of the MIX that waits; 0: none */
 
-/* What MIX makes of a number. */
+/* A number after MIX. */
 uint32_t repeated_mixed(uint32_t to, uint32_t from, uint32_t number);
 
 /* Two threads, the kernels, and options.memo. */

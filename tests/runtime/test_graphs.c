@@ -1,5 +1,5 @@
 /* Recorded graphs: what a replay leaves, how many rounds it has, and what may be changed between
- * two of them. What the values must be is computed here by plain loops. */
+ * two of them. The right values are computed here by plain loops. */
 #include "tests/runtime/graphs_fixture.h"
 #include "tests/support/kernel.h"
 

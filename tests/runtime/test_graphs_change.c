@@ -50,8 +50,8 @@ static int round_build(duite *rt, void *context)
     return 0;
 }
 
-/* A body learns its round: of each replay from 0, run from the compiled form or forked. What it
- * forks itself has none, and neither has what the main program forks. */
+/* A body learns its round: of each replay from 0, run from the compiled form or forked. Its own
+ * forks have none, and neither have the main program's. */
 UNIT_TEST(rounds_are_told)
 {
     struct graphs_fixture f = graphs_begin(round_build), forked = f;
@@ -224,7 +224,7 @@ UNIT_TEST(failure_in_a_round)
     ck_assert_str_eq(duite_message(),
                      "task 8 (kernel limit) failed on rank 0 with code 33: x is 111");
     ck_assert_int_eq(duite_wait(f.rt), 0);
-    /* What is poisoned is healed by a round that does not fail. */
+    /* A poisoned object is healed by a round that does not fail. */
     ck_assert_int_eq(duite_set(f.rt, f.a, NULL), 0);
     ck_assert_int_eq(duite_replay(f.rt, f.graph, 2), 0);
     ck_assert_int_eq(graphs_value_of(f.rt, f.b), 11);

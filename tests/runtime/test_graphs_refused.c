@@ -1,4 +1,4 @@
-/* What is refused of recorded graphs, each with its error; nothing has run then. */
+/* Refusals of recorded graphs, each with its error; nothing has run then. */
 #include "tests/runtime/graphs_fixture.h"
 
 #include <pthread.h>

@@ -16,7 +16,7 @@ KERNEL(ADD, "add", .access = {DUITE_RW}, .args_size = sizeof(int64_t))
     return 0;
 }
 
-/* What it calls. `found` is cleared by what is missing. */
+/* The functions that it calls. `found` is cleared by what is missing. */
 struct late {
     bool found;
     __typeof__(&duite_options_set) options_set;

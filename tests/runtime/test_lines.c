@@ -16,7 +16,7 @@ struct line {
     unsigned points;
 };
 
-/* Of what was there, in the order of the line. */
+/* A value that depends on the old ones, in the order of the line. */
 static uint64_t value_after(const uint64_t *old, size_t n)
 {
     uint64_t value = 1;

@@ -24,7 +24,7 @@ static struct {
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t passed = PTHREAD_COND_INITIALIZER;
 
-/* Whether the unit is whole: both are here, or nobody else can come. */
+/* True if the unit is whole: both are here, or nobody else can come. */
 static bool is_whole(void)
 {
     return now.inside == 2 || (!now.free && !now.ready);

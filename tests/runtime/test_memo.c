@@ -336,7 +336,7 @@ UNIT_TEST(rounds_of_a_freed_object)
     ck_assert_uint_eq(repeated_stop(&program), before);
 }
 
-/* Of a round that is recognised, too. */
+/* Arguments in a round that is recognised, too. */
 UNIT_TEST(arguments_that_no_body_finds)
 {
     const duite_options options = repeated_options(ALWAYS);

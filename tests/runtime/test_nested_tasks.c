@@ -1,5 +1,5 @@
 /* Tasks that fork: depth, the memory of a body that forks for ever, and where failures are said to
- * be. What values, sizes and contributions they leave, also in replays, random programs ask. */
+ * be. Random programs check values, sizes and contributions, also in replays. */
 
 #include "tests/support/kernel.h"
 #include "tests/support/unit.h"

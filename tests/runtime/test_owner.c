@@ -28,7 +28,7 @@ UNIT_TEST(nobody)
     ck_assert_uint_eq(OWNER(DUITE_CW, 1000, DUITE_NONE), TASK_NOBODY);
 }
 
-/* Of the further parameters the first one decides, if there is any. */
+/* The first further parameter decides, if there is any. */
 UNIT_TEST(further_parameters)
 {
     ck_assert_uint_eq(OWNER(DUITE_RW, 1, DUITE_R), 0);

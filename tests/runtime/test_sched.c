@@ -1,4 +1,4 @@
-/* What the schedulers decide, seen where they are asked and where tasks run. */
+/* The schedulers' decisions, seen where they are asked and where tasks run. */
 #include "runtime/balance/balance.h"
 #include "runtime/sched/sched.h"
 #include "tests/negative/misuse.h"
@@ -173,7 +173,7 @@ UNIT_TEST(fixed_workers)
     }
 }
 
-/* Whether there is a built-in one of each name, which calls itself so and is, or is not, for tests.
+/* True if there is a built-in one of each name, which calls itself so and is, or is not, for tests.
  */
 static bool are_rows(const char *const *names, bool for_tests)
 {
@@ -253,7 +253,7 @@ UNIT_TEST(chains_at_home)
     free(state);
 }
 
-/* What was run by worker 2, or 3, in a replay. */
+/* The tasks that worker 2, or 3, ran in a replay. */
 UNIT_TEST(stays_warm)
 {
     static const char *const NAMES[] = {"steal", "locality"};

@@ -9,7 +9,7 @@ enum { RANKS = 3, MOST = 40 };
 static struct data_table table;
 static duite_object object[MOST];
 
-/* What the mapping was shown last, as a matrix. */
+/* The graph that the mapping was shown last, as a matrix. */
 static struct {
     int calls;
     size_t n;
@@ -111,8 +111,8 @@ UNIT_TEST(followers)
     }
 }
 
-/* Who follows an object with a home goes there, in a chain too; edges to settled ones do not count.
- */
+/* An object that follows one with a home goes there, in a chain too; edges to settled ones do not
+ * count. */
 UNIT_TEST(of_settled_ones)
 {
     make(0, 5);

@@ -50,7 +50,7 @@ tells "1: kernel take of a recorded graph waits for a message that has not come 
 
 ok "a policy's function that does not return on one of 2 ranks is named there" ranks 2 tests/runtime/ranks stuck_policies
 
-# What a body overwrote beyond its object was a task's: nobody knows any more what that waits for.
+# A body overwrote a task beyond its object, so its waits are unknown.
 overrun() {
     tests/runtime/overrun &
     job=$!

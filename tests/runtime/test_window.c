@@ -90,7 +90,7 @@ UNIT_TEST(forks_go_ahead_without_a_window)
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
 
-/* What they are combined by is forked by the access that comes after them. */
+/* The combining task is forked by the access that comes after them. */
 UNIT_TEST(contributions_do_not_wait_to_be_combined)
 {
     for (unsigned threads = 1; threads <= 3; threads++) {

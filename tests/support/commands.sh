@@ -8,8 +8,8 @@
 #     home FOLDER             makes it a folder like the build folder: the tree's sources and the build's programs
 #     run_commands FILE NAME  a test of each command of a document, in the folder $home
 #
-# Blocks "sh remote" run nowhere: they need other computers. Of what the tests set up for Open MPI commands get the permission to run as root,
-# nothing that makes up for an option. Benches run with --quick.
+# Blocks "sh remote" run nowhere: they need other computers. Commands get the permission to run as root from the
+# tests' settings of Open MPI, and nothing that makes up for an option. Benches run with --quick.
 build=$PWD
 make=$(command -v "${MAKE:-make}") # a path, since a make of our own comes before it
 usr=$scratch/usr

@@ -1,4 +1,4 @@
-# Sourced by run.sh and tap.sh: what Open MPI and hwloc are to do where tests run. What the user set wins. MPICH does without: its mpirun
+# Sourced by run.sh and tap.sh: what Open MPI and hwloc are to do where tests run. The user's own settings win. MPICH does without: its mpirun
 # counts no slots, binds nothing and starts as root. So a test calls mpirun with -n alone; `is_openmpi` is for what only Open MPI can do.
 # Where the size of files is limited, UCX_TLS=self spares a process alone the shared memory of MPICH, which is 4 MiB.
 
@@ -14,7 +14,7 @@ export OMPI_MCA_pml="${OMPI_MCA_pml:-ob1}" OMPI_MCA_btl="${OMPI_MCA_btl:-^ofi,op
 # mpirun ends a job of which a rank failed at once, not after a second.
 export OMPI_MCA_odls_base_sigkill_timeout="${OMPI_MCA_odls_base_sigkill_timeout:-0}"
 is_openmpi() { case $("${MPIRUN:-mpirun}" --version 2> /dev/null) in *"Open MPI"* | *OpenRTE*) ;; *) false ;; esac; }
-# What a user chose for programs of duite in general is not what is tested or measured.
+# A user's general settings for programs of duite are not tested or measured.
 unset DUITE_SCHEDULER DUITE_MAPPING DUITE_BALANCE DUITE_THREADS DUITE_SEED DUITE_TRACE
 # hwloc: silent about caches that a virtual machine reports wrongly, and no look for graphics cards on ten X displays, which
 # takes seconds at each start where localhost has no name.

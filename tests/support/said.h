@@ -1,8 +1,8 @@
 #ifndef TESTS_SUPPORT_SAID_H
 #define TESTS_SUPPORT_SAID_H
 
-/* What a program writes to standard error, for tests of what is said there while it runs. One
- * thread begins and ends; any may count. */
+/* A program's standard error, for tests of its sentences while it runs. One thread begins and ends;
+ * any may count. */
 
 /* From now on standard error goes to a file. */
 void said_begin(void);

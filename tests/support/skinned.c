@@ -20,7 +20,7 @@ uint32_t skinned_triangles(const struct skinned *of)
     return 2 * of->around * (of->along + 1);
 }
 
-/* Of the upper bone. */
+/* The weight of the upper bone. */
 static double weight_at(double y)
 {
     return fmin(fmax((y - MIDDLE + BLEND) / (2 * BLEND), 0), 1);

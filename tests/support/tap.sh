@@ -8,7 +8,7 @@
 #     refuses SENTENCE COMMAND...      for these: COMMAND ends with 2, prints nothing, and says why in one line, which has the sentence
 #     skip NAME REASON                 one case that cannot run here
 #     skip_all REASON                  ends the script as skipped (77)
-# and the plan and the exit status follow at its end. What COMMAND prints is kept in $scratch/output, and shown as
+# and the plan and the exit status follow at its end. COMMAND's output is kept in $scratch/output, and shown as
 # TAP comments when the case fails. Also:
 #     ranks N COMMAND...               COMMAND under mpirun on N ranks, at most $DUITE_TIMEOUT seconds (default 1800): an
 #                                      end for what hangs, far above what any command takes on a busy machine. Leaks are

@@ -32,7 +32,7 @@ enum trace_file_kernel {
 
 /* An object of `slot` (from 1 on), at home where the mapping wants it. */
 void trace_file_object(struct trace_file *file, uint32_t slot, uint64_t bytes);
-/* What the object exchanges with another one; before trace_file_begin. */
+/* The bytes that the object exchanges with another one; before trace_file_begin. */
 void trace_file_hint(struct trace_file *file, uint32_t slot, uint32_t other, double bytes);
 /* All objects up to a slot have homes from now on; then steps are recorded, behind as many forks as
  * `forks` says. */

@@ -1,5 +1,5 @@
 /* The environment is prepared before the first case is made, since check reads its time limit
- * there. What the user set in the environment wins. The list of cases is made before main(). */
+ * there. The user's own environment wins. The list of cases is made before main(). */
 
 #include "tests/support/unit.h"
 

@@ -15,7 +15,7 @@
 #include <check.h>
 #include <string.h>
 
-/* What a file adds to the program's tests. */
+/* A file's cases. */
 struct unit_cases {
     void (*add)(TCase *cases);
     struct unit_cases *next;
@@ -85,9 +85,9 @@ int unit_main(void);
 /* The same of a suite, which it takes over and frees. */
 int unit_run(Suite *suite);
 
-/* Whether only the quick subset is wanted (DUITE_QUICK=1): fewer repetitions, smaller sizes. */
+/* True if only the quick subset is wanted (DUITE_QUICK=1): fewer repetitions, smaller sizes. */
 int unit_quick(void);
-/* Whether mpirun started no other rank. */
+/* True if mpirun started no other rank. */
 int unit_alone(void);
 
 #endif

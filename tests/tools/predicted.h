@@ -4,7 +4,7 @@
 #include "tests/support/trace_file.h"
 #include "tools/predict/predict.h"
 
-/* What tests of predictions share. The mapping is block: of two objects the first lives on host 0,
+/* Shared by tests of predictions. The mapping is block: of two objects the first lives on host 0,
  * the second on host 1. */
 
 #define SLOTS(...) ((const uint32_t[]){__VA_ARGS__})

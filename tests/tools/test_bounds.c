@@ -102,7 +102,7 @@ UNIT_TEST(readers_do_not_hide_flags)
     bounds_are(&file, 6 * MS, 9 * MS);
 }
 
-/* Of a replay that was poisoned from its second round on, later rounds count nothing. */
+/* Rounds of a replay count nothing from the one that was poisoned on. */
 UNIT_TEST(poisoned_rounds_take_no_time)
 {
     struct trace_file file = begun(2);

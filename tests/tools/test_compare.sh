@@ -4,7 +4,7 @@
 plan_later
 
 bin=$PWD
-# What a user chose for programs of duite in general, even if it makes no sense, is not what is compared.
+# A user's general settings for programs of duite, even if they make no sense, are not compared.
 tiny() {
     (export DUITE_SCHEDULER=nobody DUITE_MAPPING=nowhere DUITE_BALANCE=never DUITE_THREADS=none DUITE_SEED=no DUITE_TRACE=/no/such/folder/trace
      cd "$scratch" && DUITE_REPORT=/no/such/folder/report limited "$bin/duite-compare" "$@" --tasks 40 --cost 1e-6 --steps 2 --seed 3)

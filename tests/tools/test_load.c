@@ -1,4 +1,4 @@
-/* What draws a warning about the load of the machine, and whose time on the cores counts. */
+/* Warnings about the load of the machine, and whose time on the cores counts. */
 #include "tests/support/unit.h"
 #include "tools/compare/load.h"
 

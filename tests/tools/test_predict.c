@@ -34,7 +34,7 @@ UNIT_TEST(chain)
     ck_assert_uint_eq(r.messages, 0);
 }
 
-/* Of the same three, and one beside them: what is on the chain is listed by kernels. */
+/* The same three, and one beside them: the bodies on the chain are listed by kernels. */
 UNIT_TEST(bodies_of_the_chain)
 {
     struct trace_file file = predicted_trace(2, 8);
@@ -193,7 +193,7 @@ UNIT_TEST(sums)
     is(predicted(&file, &three).makespan, 4 * MS);
 }
 
-/* What is forked after a wait comes after all before it; after a get, after that object. */
+/* Tasks forked after a wait come after all before it; after a get, after that object. */
 UNIT_TEST(waits)
 {
     for (int get = 0; get < 2; get++) {
@@ -258,7 +258,7 @@ static struct trace_file bodies_one_late(double late)
     return file;
 }
 
-/* Of 1, 1, 1, 9 and 1 ms the median; another kernel's is its own. */
+/* The median of 1, 1, 1, 9 and 1 ms; another kernel has its own. */
 UNIT_TEST(steady)
 {
     for (int is_steady = 0; is_steady < 2; is_steady++) {

@@ -1,4 +1,4 @@
-/* What the predictor charges for the runtime itself, against closed forms: messages where they are
+/* The predictor's charges for the runtime itself, against closed forms: messages where they are
  * handled, sums where they are made, forks of tasks that other hosts run, and packed values. */
 #include "runtime/map/map.h"
 #include "runtime/task/task.h"
@@ -28,7 +28,7 @@ UNIT_TEST(messages_wait_for_one_another)
     nearly(predicted(&file, &three).makespan, 2.2 * MS);
 }
 
-/* What came of the example above, with messages as its trace has them: a worker was busy with them
+/* The costs of the example above, with messages as its trace has them: a worker was busy with them
  * for `handled` s, of which two were sent or taken, and for `looked` s without one. It ran three
  * tasks, 1 ms apart, and so looked twice. A message that an idle worker sends costs nobody time. */
 static struct predict_result with_messages(double handled, double looked,

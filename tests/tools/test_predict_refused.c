@@ -1,4 +1,4 @@
-/* What is not predicted: traces that are damaged or not whole, which cost no memory either, and
+/* Refused by the predictor: traces that are damaged or not whole, which cost no memory either, and
  * clusters that do not fit. */
 #include "runtime/map/map.h"
 #include "tests/support/unit.h"

@@ -29,7 +29,8 @@ UNIT_TEST(packets)
     ck_assert_msg(r.makespan > 12.4 * MS && r.makespan < 12.41 * MS, "%.9g s", r.makespan);
 }
 
-/* What so many rounds of a graph on four objects send, the first two of which live on host 0. */
+/* The messages of so many rounds of a graph on four objects, the first two of which live on host
+ * 0. */
 static struct predict_result sent(uint64_t bytes, uint32_t n, const struct trace_file_node *nodes,
                                   uint32_t rounds)
 {
@@ -64,9 +65,9 @@ UNIT_TEST(replicated_on_both)
     ck_assert_msg(fabs(r.makespan - 5 * 3 * MS) < 1e-5, "%.9g s", r.makespan);
 }
 
-/* What rounds only read goes to another host once, in whatever replay; and not at all if it is
- * there since before the trace, which nothing of it writes. What each replay writes goes in each.
- */
+/* An object that rounds only read goes to another host once, in whatever replay; and not at all if
+ * it is there since before the trace, which nothing of it writes. One that each replay writes goes
+ * in each. */
 UNIT_TEST(reads_last)
 {
     static const struct trace_file_node nodes[] = {{FILE_W, 1 * MS, 0, 1, {0}},

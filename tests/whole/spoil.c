@@ -53,7 +53,7 @@ static bool spoil_corner(const struct opened *of, struct flow_tie_corners *at)
     return true;
 }
 
-/* Of the first contact. */
+/* Spoils the first contact. */
 static bool spoil_contact(const struct opened *of, const char *what)
 {
     struct flow_list *list = find_list(of);
@@ -103,7 +103,7 @@ static bool spoil_main(const struct opened *of, const char *what)
     return true;
 }
 
-/* Of the first object of the first block, its places; of the phases, the word for how one ended. */
+/* Spoils places in the first object of the first block, or the word for how a phase ended. */
 static bool spoil_rest(const struct opened *of, const char *what)
 {
     unsigned char *first = of->flow + of->saved->main_bytes;

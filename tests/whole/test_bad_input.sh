@@ -1,7 +1,7 @@
 #!/bin/sh
 # Contact that the scene leaves no room or no time for: obstacles that close on cloth for good, a ring that it does not fit through, obstacles
 # at 100 m/s, bodies that jump, 50 layers in the room of one. A run goes on, or ends, and names the first pair without room.
-# Nothing goes through anything in its frames, a step takes no more than twice the memory that the cloth takes at rest, and a signal ends it.
+# Surfaces do not intersect in its frames, a step takes no more than twice the memory that the cloth takes at rest, and a signal ends it.
 . "${srcdir:-.}/tests/support/cloth.sh"
 . "$srcdir/tests/support/bodies.sh"
 
@@ -82,7 +82,7 @@ bad layers "$(layers)" "box: {centre: [0, -0.05, 0], size: [0.2, 0.1, 0.2]}, box
 ok "50 layers pressed to a millimetre" named layers "[0-9 ]+of 'l[0-9]+' and .*"
 ok "what they take" remembers layers 0.1
 
-# What is pressed to a twentieth of its thickness takes many short steps, here for hours.
+# Cloth pressed to a twentieth of its thickness takes many short steps, here for hours.
 bad tight "$(sheet a 0.1 11 0.03 0.0015)" "$low, box: {name: high, centre: [-0.05, 0.06, 0], size: [0.2, 0.1, 0.2], $(led 0.1 -0.0099)}" 100000
 rows() { test "$(wc -l < out/probes.csv)" -gt "$1"; }
 stops() { # SIGNAL

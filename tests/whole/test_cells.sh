@@ -1,5 +1,5 @@
 #!/bin/sh
-# What a grid's diagonals do: a sheet that is symmetric has symmetric masses, moves symmetrically, and bends as its rigidity says.
+# A grid's diagonals: a sheet that is symmetric has symmetric masses, moves symmetrically, and bends as its rigidity says.
 # A scene that says nothing of its cells has mirrored ones.
 . "${srcdir:-.}/tests/support/probes.sh"
 

@@ -57,7 +57,7 @@ if grep -q '^#define HAVE_HDF5 1' "$here/config.h"; then # but for the rank of a
     echo 'output: {hdf5: {fields: [velocity, block, strain]}}' >> phases.yaml
 fi
 
-# What a report has that neither times nor the machine decide.
+# The keys of a report that neither times nor the machine decide.
 totals() {
     sed -E '/"(ranks|threads|cores|cores_from|limited_by|[a-z_]*seconds_[a-z_]*|wall_seconds|tasks[a-z_]*|messages|bytes_moved|[a-z_]*fraction|overhead_ns_per_task|peak_memory_bytes|delegated_tasks|migrated_objects|critical_path_seconds|lower_bound_seconds|graphs_recorded)":/ { /"phases"/ !{ /"name":/ !d } }; s/"wall_seconds": [^,}]*/"wall_seconds": 0/' "$1"
 }
@@ -178,7 +178,7 @@ ok "none that is whole" all
 fresh() { many && again sheet.yaml --quiet --end 0.01 --output short && test ! -e short/checkpoints; }
 ok "a run from the start leaves no checkpoints of an earlier one" fresh
 
-# What a hash does not show: a checkpoint made by hand, or by a fault of ours. Each is refused by a sentence, before a frame is written.
+# Checkpoints whose hash is right: a checkpoint made by hand, or by a fault of ours. Each is refused by a sentence, before a frame is written.
 spoil=$here/tests/whole/spoil
 spoilt() { # SCENE WHAT
     rm -rf short && cp -r "kept.$1" short && "$spoil" "$(ls short/checkpoints/*.checkpoint | tail -n 1)" "$2" || return 1

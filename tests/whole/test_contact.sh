@@ -85,7 +85,7 @@ if test "${DUITE_LONG:-}" = 1; then
     done
 fi
 
-# What slides without friction over the edges of what it lies on keeps its speed.
+# Cloth that slides without friction over edges keeps its speed.
 scene slide "$(sheet ground 0.6 25 'translate: [0, 0, 0]' ', pins: [{box: [[-1, -1, -1], [1, 1, 1]]}]')
 $(sheet patch 0.1 6 'translate: [-0.2, 0.00205, 0.003], rotate: [0.99, 0, 0.14, 0]' ', velocity: [1, 0, 0]')" 'probes: [{name: patch, cloth: patch, vertices: [0, 35], values: [velocity]}]' 0.2
 sliding() {

@@ -65,7 +65,7 @@ reports() { # sheets that are pushed and cut change their momentum by so much
 }
 ok "what pushes and cuts change of the momentum is reported" reports
 
-# Of the spin about the origin contact changes the sum of x F, x where the step began, times its length; with implicit Euler also in
+# Contact changes the spin about the origin by the sum of x F, x where the step began, times its length; with implicit Euler also in
 # the positions and velocities of its end, where springs are too soft to be of account.
 spins() { # FRICTION OPTION...: prints what contact, and the motion, changed; the bound by docs/physics.md
     spins_friction=$1

@@ -105,7 +105,7 @@ for is in bdf2 symplectic_euler verlet rk4; do
 done
 ok "two masses in two blocks" two --grain 1
 
-# ---- A free sheet of 36 masses that no force holds flies apart and turns. Nothing but corrections acts, so that momentum and angular
+# ---- A free sheet of 36 masses that no force holds flies apart and turns. Only corrections act, so that momentum and angular
 # ---- momentum are those of the start, to rounding, also where edges are between blocks. ----
 {
     cat << END

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What varies in time, loads and the wind, against closed forms, through probes alone. docs/accuracy.md has errors and orders.
+# Loads and winds that vary in time, against closed forms, through probes alone. docs/accuracy.md has errors and orders.
 . "${srcdir:-.}/tests/support/probes.sh"
 
 largest() { # EXPRESSION: its largest size over the rows
@@ -53,7 +53,7 @@ ok "resonance, rk4" resonance rk4 4e-3 4
 ok "resonance, implicit_euler" resonance implicit_euler 2e-4 1
 ok "resonance, bdf2" resonance bdf2 1e-3 2
 
-# What a load of a held vertex is, its pin carries; the energy of loads is that of the forces of its time.
+# The pin of a held vertex carries its load; the energy of loads is that of the forces of its time.
 told() {
     run driven.yaml --end 0.7 || return 1
     below "a varying load on a pin" "$(largest 'c("p.0.ry") + 0.3 * cos(2 * 3.141592653589793 * c("time"))')" 1e-12 &&

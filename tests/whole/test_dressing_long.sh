@@ -12,7 +12,7 @@ rests() { # NAME WANTED
 ok "the T-shirt on the mannequin" rests dressing "$one"
 ok "the jeans on the mannequin" rests jeans "$one"
 ok "the T-shirt over the jeans on the mannequin" rests layers "$two"
-# Nothing rests on who walks; the drape before the walk rests.
+# Garments of a walker do not rest; the drape before the walk rests.
 walks() { scene layers 6000 3 && scene walk 6000 3 walk && dressed walk "$two end"; }
 ok "both on the mannequin as it walks" walks
 

@@ -70,7 +70,7 @@ ok "two groups of other materials" series --set 'materials.hard={model: triangle
     --set 'materials.soft={model: triangles, density: 0.3, stretch: [100, 240], shear: 60}' \
     --set 'cloths[0].loads=[{edges: [[10, 21], [21, 32], [32, 43], [43, 54]], force: [4e-4, 0, 0]}, {edges: [[0, 11], [11, 22], [22, 33], [33, 44]], force: [-4e-4, 0, 0]}]'
 
-# What is weighed: 0.24 m^2 of one, 0.16 m^2 of the other; and 0.01 kg on each of the 25 vertices that the right group has.
+# Masses: 0.24 m^2 of one, 0.16 m^2 of the other; and 0.01 kg on each of the 25 vertices that the right group has.
 weighed() { # PANELS KG
     run strip.yaml --set 'gravity=[0, -9.81, 0]' --set 'cloths[0].loads=[]' --set "cloths[0].panels=$1" --set 'cloths[0].masses=[{group: right, mass: 0.01}]' \
         --set 'cloths[0].pins=[{group: left}, {group: right}]' --set 'probes=[{name: p, group: whole, values: [total]}]' --end 100 || return 1

@@ -58,7 +58,7 @@ refused() {
 
 changed step 'h: 0.001' 'h: 0'
 refused "a step of zero" "step.yaml:8:11: time.h is 0; a finite number > 0 (s) is expected" step.yaml
-# What only the whole model shows names its place in the scene, too.
+# A fault that only the whole model shows names its place in the scene, too.
 changed mass 'grid: {width.*ny: 8}' 'inline: {vertices: [[0, 0, 0], [1, 0, 0]], edges: [[0, 1]]}'
 sed -i 's/    pins.*/    pins: []/' mass.yaml
 refused "a chain without EA" "mass.yaml:4:15: cloth 'cloth1' has edges without triangles, for which material 'cotton' has no ea; a finite number >= 0 (N) $(
@@ -70,7 +70,7 @@ refused "more frames than a disk holds" \
     "--set time.fps=1e12: time.fps * time.end is 4e+09 frames; at most 2147483647 are possible" scene.yaml --set time.fps=1e12
 refused "a grain of zero on the command line" \
     "--grain 0: grain is 0; a whole number from 1 to 4294967295 is expected" scene.yaml --grain 0
-# What would fill the disk is found before anything is written; what repeats itself, before the run.
+# Runs that would fill the disk are found before anything is written; repeats, before the run.
 refused_room() { # RANKS ARGUMENT...: no room, with an estimate, and nothing is written
     room_ranks=$1
     shift

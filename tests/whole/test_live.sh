@@ -169,7 +169,7 @@ hostile() { # whatever comes, the run goes on to its hash, and says once what ca
         grep -q 'is left without an answer: version 2 of the live view is spoken there' live
 }
 ok "hostile bytes" hostile
-# Of 256 descriptors a crowd that says nothing takes all that it is given: checkpoints are still written, and viewers come through.
+# A silent crowd takes all of 256 descriptors that it is given: checkpoints are still written, and viewers come through.
 crowded() {
     most=$(ulimit -S -n)
     ulimit -S -n 256

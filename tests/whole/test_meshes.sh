@@ -58,7 +58,7 @@ ok "of springs" like turned.obj --set 'materials.cloth={density: 0.25, stretch: 
 ok "with a load along the border of the islands" like turned.obj --set "$ALIKE" \
     --set 'cloths[0].loads=[{edges: [[5, 16], [16, 27], [27, 38], [38, 49]], force: [2, 0, 0]}]'
 
-# What is written is read again as the same mesh, and has the names.
+# A written mesh is read again as the same, and has the names.
 again() {
     run strip.yaml --set 'cloths[0].mesh.file=moved.obj' && cp out/cloth.pc2 one.pc2 && cp out/cloth.obj again.obj &&
         run strip.yaml --set 'cloths[0].mesh.file=again.obj' && cmp out/cloth.pc2 one.pc2 &&

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What the options of duite-cloth do, what it prints and writes, and how it ends.
+# The options of duite-cloth, its output, and how it ends.
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
 plan_later

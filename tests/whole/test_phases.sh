@@ -28,7 +28,7 @@ run() { "$DUITE_CLOTH" sheet.yaml --quiet --report report.json "$@"; }
 hash() { value state_hash; }
 
 # ---- What passes on ----
-# Nothing is kept from step to step but positions and velocities.
+# Steps hand over only positions and velocities.
 as_one() { # SETTING...
     run "$@" && one=$(hash) && run "$@" --set "$two" && echo "$one and $(hash)" && test "$one" = "$(hash)" && test "$(value steps)" = 100
 }

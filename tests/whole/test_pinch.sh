@@ -58,7 +58,7 @@ creeps() { # SCENE OPTION...: how far its held border moves in 5 s
 ok "it does not creep" creeps
 ok "it does not creep, h = 10 ms" creeps --set time.h=0.01
 
-# Nothing moves in it but a flap that waves, so steps are halved where it lands alone: no contact presses harder the shorter they are.
+# Only a flap waves in it, so steps are halved where it lands alone: no contact presses harder the shorter they are.
 pinch flap 0.0005 0.05
 rests() {
     run flap.yaml --report report.json --set time.end=1.5 --set 'cloths[0].mesh={grid: {width: 0.08, height: 0.08, nx: 9, ny: 9}}' || return 1
@@ -66,7 +66,7 @@ rests() {
     test "$(value steps)" -lt 600
 }
 ok "it rests in steps that are seldom halved" rests
-# What a flap does beside it changes no force.
+# A flap beside it changes no force.
 even() { # h: the force after 1 s and in the end
     run flap.yaml --set time.end="${2:-2}" --set 'cloths[0].mesh={grid: {width: 0.08, height: 0.08, nx: 9, ny: 9}}' --set time.h="$1" || return 1
     near "force with a flap in the end, h = $1, N" "$(rows 'END { printf "%.17g", c("low.cy") }')" "${force:=$(after 1 'c("low.cy")')}" 0.02

@@ -53,7 +53,7 @@ every_integrator() { # MODEL SETTING...
     one_hash "$model, bdf2, Newton" "$@" integrator=bdf2 newton.steps=4
     one_hash "$model, long steps that are halved" "$@" time.h=0.02 time.end=0.04 time.stretch_growth=0.02
 }
-# Nothing does work on the cloth: steps that gain energy are made again, by implicit Euler and with half the length.
+# No work is done on the cloth: steps that gain energy are made again, by implicit Euler and with half the length.
 swings() { # MODEL SETTING...
     model=$1
     shift

@@ -29,7 +29,7 @@ END
 sewn() { run tube.yaml --check-intersections --report report.json && grep '"ended": "sewn"' report.json && test "$(value intersections)" = 0; }
 ok "sewn to a tube around a cylinder, certified" sewn
 
-# Of the last row: the mean radius, and what the forces of contact say: those on the front half sum up to 2 T H, their sizes to the pressure.
+# The last row: the mean radius, and the forces of contact: those on the front half sum up to 2 T H, their sizes to the pressure.
 # Both names of a welded vertex are at one place; it counts once.
 awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) { split($i, w, " "); at[i] = w[1] } next }
     { for (i = 1; i <= NF; i++) last[at[i]] = $i }

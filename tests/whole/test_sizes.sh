@@ -52,7 +52,7 @@ time: {h: 0.01, end: 0.5}
 grain: 60
 END
 girth() { awk 'BEGIN { pi = atan2(0, -1); printf "%.17g", 62 * 2 * 0.1012 * sin(pi / 62) }'; }
-# Of the last row, and of vertices so far from the middle: the mean radius R; half the contact of the front half per height, the tension; all of it per area, the pressure.
+# The last row, and vertices so far from the middle: the mean radius R; half the contact of the front half per height, the tension; all of it per area, the pressure.
 ring_has() { # PART_OF_GIRTH MODULUS [FAR]
     awk -F, -v girth="$(girth)" -v part="$1" -v modulus="$2" -v far="${3:-0}" 'NR == 1 { for (i = 1; i <= NF; i++) { split($i, w, " "); at[i] = w[1] } next }
         { for (i = 1; i <= NF; i++) last[at[i]] = $i }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What a run says on the terminal: one line of progress, never wider than the terminal, and a last line that says what limited
+# A run's words on the terminal: one line of progress, never wider than the terminal, and a last line that says what limited
 # the run, in the words of duite-trace.
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Features that are near each other at rest, along the cloth, do not push: cloth at rest stays there for any thickness of contact, slivers
-# and seams included. What is near but not at rest does.
+# and seams included. Cloth that is near but not at rest does.
 . "${srcdir:-.}/tests/support/probes.sh"
 
 # Sheets of 5 mm a cell, 60 mm wide.

@@ -42,7 +42,7 @@ static bool is_number(const char *text)
     return end > text && !*end && isfinite(number);
 }
 
-/* What stands in the journal and in pages: in one field of one line. */
+/* Keeps text for the journal and pages: in one field of one line. */
 static void keep_text(const char *from, size_t n, char *text, size_t size)
 {
     snprintf(text, size, "%.*s", (int)n, from);

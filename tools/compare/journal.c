@@ -60,7 +60,7 @@ static void print_mpi(FILE *out)
     fprintf(out, "mpi: %.*s\n", (int)strcspn(version, ",\n"), version);
 }
 
-/* Of the tree that this program was built in, if it is started there. */
+/* Prints the revision of the tree that this program was built in, if it is started there. */
 static void print_revision(FILE *out)
 {
     char build[COMPARE_PROGRAM], command[COMPARE_PROGRAM + LINE];

@@ -18,7 +18,7 @@ struct point {
     double efficiency;
 };
 
-/* Of a member (all values but the grain) on a subject, from the shortest tasks on. */
+/* The curve of a member (all values but the grain) on a subject, from the shortest tasks on. */
 struct curve {
     const struct compare_config *member; /* at the first grain */
     struct point point[COMPARE_MOST];
@@ -72,7 +72,7 @@ static double cost_of(const struct compare *compare, const struct compare_config
     return strtod(compare->cost, NULL) * strtod(config->value[GRAIN], NULL);
 }
 
-/* Of a kind; all members and grains have as many. 0 without memory. */
+/* The number of tasks of a kind; all members and grains have as many. 0 without memory. */
 static size_t tasks_of(const struct compare *compare, const char *subject)
 {
     struct compare_graph graph = {0};
@@ -160,8 +160,8 @@ static const char *find_half(const struct curve *curve, char *text, size_t size)
 
 /* ---- Files ---- */
 
-/* What makes it another member: the scheduler, and other lists of more than one value. To be freed;
- * NULL without memory. */
+/* A member's name: the scheduler, and other lists of more than one value. To be freed; NULL without
+ * memory. */
 static char *name_of(const struct compare *compare, const struct compare_config *member)
 {
     char *name = NULL;

@@ -11,7 +11,7 @@
 
 /* ---- Text of a page ---- */
 
-/* What `print` writes, as HTML has it. */
+/* Writes HTML with what `print` writes. */
 static void put_printed(void (*print)(const struct compare *compare, FILE *out),
                         const struct compare *compare, FILE *out)
 {

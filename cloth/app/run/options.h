@@ -26,7 +26,7 @@ struct simulate_options {
     bool quiet;               /* neither progress nor summary */
 };
 
-/* Reads A:B, where A or B may be left out: digits, A <= B. What is left out stays. Pure. */
+/* Reads A:B, where A or B may be left out: digits, A <= B. An end that is left out stays. Pure. */
 bool options_range(const char *text, uint64_t *first, uint64_t *last);
 
 /* Sets the defaults of options: the environment, else the built-in values. environment_check looks

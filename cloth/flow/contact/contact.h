@@ -167,8 +167,8 @@ int flow_contact_meet_again(struct flow_state *state, uint32_t n,
  * many. Marks the blocks that may keep contacts with corners in it, of all. Local. (pairs.c) */
 uint32_t flow_contact_lists(const struct flow_state *state, uint32_t block, duite_object *to);
 void flow_contact_keepers(const struct flow_state *state, uint32_t block, unsigned char *keeps);
-/* What is known of one of a block's lists of contacts, the field `contacts` or one of the two
- * behind it. Local. */
+/* The index of one of a block's lists of contacts, the field `contacts` or one of the two behind
+ * it. Local. */
 static inline struct flow_kept_list *flow_kept_list(const struct flow_state *state, uint32_t block,
                                                     enum flow_field_id contacts)
 {

@@ -1,9 +1,9 @@
 /* Ways are changed where solving again does not help. First each pair that fails is pushed apart,
  * by the least that its certificate takes: that loses nothing but the approach, and no momentum
- * between cloths. What still fails after some rounds is cut: each corner goes only as far as
- * divides the pair. The shortest way counts among several pairs, so their order does not matter.
- * A row that was moved gets the velocity of its way. The steps in a row that cut it are counted,
- * but for steps that are given up. */
+ * between cloths. A pair that still fails after some rounds is cut: each corner goes only as far as
+ * divides the pair. The shortest way counts among several pairs, so their order does not matter. A
+ * row that was moved gets the velocity of its way. The steps in a row that cut it are counted, but
+ * for steps that are given up. */
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/cut_run.h"
 #include "cloth/flow/run/step.h"

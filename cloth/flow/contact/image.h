@@ -18,7 +18,7 @@ size_t flow_map_bytes(const struct flow *flow, uint32_t block);
 void flow_map_open(const struct flow *flow, uint32_t obstacle, const duite_param *maps,
                    struct contact_image *image);
 
-/* What the mode project does when x and v have moved. Bodies with frames move in the first, which
+/* The work of the mode project when x and v have moved. Bodies with frames move in the first, which
  * returns when the step began, s: tasks of the step before are done, since it has been settled. The
  * second forks the tasks that put vertices out of obstacles. (project.c) */
 double flow_project_move(struct flow_state *state);

@@ -167,7 +167,7 @@ static void kin_take_reach(const struct flow_source *source, const double *reach
 
 /* ---- A flood ---- */
 
-/* A side that is to be crossed, where its ends were laid; from: the place at a. What is behind it
+/* A side that is to be crossed, where its ends were laid; from: the place at a. The part behind it
  * is on the left of the way from a to b. */
 struct flood_side {
     uint32_t side, from;
@@ -192,7 +192,7 @@ static bool flood_sees(struct flood *flood, uint32_t triangle)
     return first;
 }
 
-/* Of a side from the place where the flood begins, which is at 0. */
+/* The distance of a side from the place where the flood begins, which is at 0. */
 static double distance_of_side(const double a[2], const double b[2])
 {
     const double way[2] = {b[0] - a[0], b[1] - a[1]};

@@ -113,7 +113,7 @@ static double contact_meet_area(const struct meeting *m, const struct corners *c
     return m->body ? area : 0.5 * area;
 }
 
-/* What is clear at rest around corner k: m if n others from one on are its kin, else INFINITY. */
+/* The clearance at rest around corner k: m if n others from one on are its kin, else INFINITY. */
 static double clear_of(const struct meeting *m, const struct corners *corners, int k, int from,
                        uint32_t n)
 {

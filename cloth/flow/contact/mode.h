@@ -6,7 +6,7 @@
 #include "cloth/contact/repulse.h"
 
 /* A contact mode is a row: its part of a step, and what it needs. Each has a file of its own. A run
- * has the first whose `is` is true. What a mode promises outside of flow is in
+ * has the first whose `is` is true. A mode's promises outside of flow are in
  * cloth/model/contact.h. */
 
 struct flow_contact;
@@ -35,7 +35,7 @@ struct flow_contact_mode {
     /* Thicknesses: nearer features are contacts; NULL: the mode looks for none. */
     double (*reach)(const struct model *model);
 
-    /* What it needs. */
+    /* Its needs. */
     bool sweeps;  /* pairs are certified on the whole way of a step, bodies by their skins, and ways
                    * are cut; else the places at its begin are looked at */
     bool carries; /* contacts hand load and slip over to the next step: they are state */

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* Of a pile whose full steps fail for good, a step in 32 halves is then solved in vain. */
+/* A pile whose full steps fail for good then solves a step in 32 halves in vain. */
 enum { MOST_PATIENCE = 16 };
 
 void flow_grid_begin(struct flow_grid *grid, uint64_t n_steps)

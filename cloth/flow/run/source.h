@@ -114,8 +114,8 @@ struct flow_watched {
     struct cloth_pool memory;
 };
 
-/* What is so near to a place at rest, along the cloth, that it would be a contact (contact/kin.c).
- * Places that pulled seams join are one of them: `joined` of struct flow_skins. */
+/* The kin of a place: cloth so near to it at rest, along the cloth, that it would be a contact
+ * (contact/kin.c). Places that pulled seams join are one of them: `joined` of struct flow_skins. */
 struct flow_kin {
     uint32_t *start; /* by place, and one more; NULL: triangles are so high that there is none */
     uint32_t *of;    /* corners of triangles that are so near, ascending from start[place] */

@@ -40,7 +40,7 @@ static size_t matrix_numbers(const struct flow_table *t, bool is_filtered, uint3
            filter;
 }
 
-/* Of one of a block's three lists of contacts. */
+/* The size of one of a block's three lists of contacts. */
 static size_t list_bytes(const struct flow_state *state, uint32_t block,
                          enum flow_field_id contacts)
 {

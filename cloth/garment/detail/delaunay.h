@@ -109,10 +109,10 @@ void delaunay_log_vertex(struct delaunay *plane, uint32_t vertex);
 
 /* Writes a triangle, and that its corners have it. */
 void delaunay_put(struct delaunay *plane, uint32_t triangle, struct delaunay_triangle value);
-/* What was beside a triangle (which may be DELAUNAY_NONE) is another one now. */
+/* The neighbour of a triangle (which may be DELAUNAY_NONE) is another one now. */
 void delaunay_put_beside(struct delaunay *plane, uint32_t triangle, uint32_t before, uint32_t now);
 void delaunay_take_triangle(struct delaunay *plane, uint32_t triangle);
-/* There must be room. What is new has to be put. */
+/* There must be room. New ones have to be put. */
 uint32_t delaunay_new_triangle(struct delaunay *plane);
 
 /* The two triangles at an edge as one quadrilateral, counterclockwise: its corner 0 is the one of
@@ -143,7 +143,7 @@ static inline struct delaunay_quad delaunay_quad_at(const struct delaunay *plane
         {one.fixed >> i2 & 1, two.fixed >> j1 & 1, two.fixed >> j2 & 1, one.fixed >> i1 & 1}};
 }
 
-/* Whether the other diagonal makes two triangles that are not turned over. */
+/* True if the other diagonal makes two triangles that are not turned over. */
 bool delaunay_may_flip(const struct delaunay *plane, const struct delaunay_quad *quad);
 
 /* Flips the edge that is opposite corner i of a triangle; not of a fixed edge or one of the hull.

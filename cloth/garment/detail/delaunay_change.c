@@ -12,7 +12,7 @@ void delaunay_suspect(struct delaunay *plane, uint32_t triangle)
         edge[i] = 3 * triangle + i;
 }
 
-/* Whether the angles opposite an edge sum up to more than half a turn: their sine's sign. Within
+/* True if the angles opposite an edge sum up to more than half a turn: their sine's sign. Within
  * rounding of the circle an edge stays, so that flips end. */
 static bool is_delaunay(const struct delaunay *plane, const struct delaunay_quad *quad)
 {

@@ -203,7 +203,7 @@ void meshing_divide(struct meshing *meshing)
         }
 }
 
-/* Whether the loop, which is counterclockwise, has an angle below 30 degrees inside of place i. */
+/* True if the loop, which is counterclockwise, has an angle below 30 degrees inside of place i. */
 static bool is_sharp(const double (*place)[2], uint32_t n, uint32_t i)
 {
     double sine, cosine;

@@ -136,7 +136,7 @@ void flat_centre(const struct delaunay *plane, uint32_t triangle, double centre[
     centre[1] = a[1] + (ab[0] * cc - ac[0] * bb) / area;
 }
 
-/* Whether a vertex sees an edge of the boundary under so wide an angle that a flat triangle is
+/* True if a vertex sees an edge of the boundary under so wide an angle that a flat triangle is
  * between the two. */
 static bool crowds(const struct delaunay *plane, uint32_t vertex)
 {

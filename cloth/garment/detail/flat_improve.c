@@ -10,7 +10,7 @@ enum { ROUNDS = 8, MOST = 24, MOST_NEAR = 64 };
 static const double AIM = 0.8572;  /* cos 31 degrees: what is blunter is left alone */
 static const double BETTER = 1e-4; /* a smaller gain is none */
 
-/* What a try moved and may move. */
+/* The vertices that a try moved and may move. */
 struct improve {
     struct delaunay *plane;
     const unsigned char *sharp;

@@ -41,7 +41,7 @@ static bool segments_meet(const double *a, const double *b, const double *c, con
     return (across && along) || least < near * near;
 }
 
-/* Whether the way from a over b to c goes back where it came from. */
+/* True if the way from a over b to c goes back where it came from. */
 static bool folds_back(const double *a, const double *b, const double *c)
 {
     double sine, cosine;

@@ -1,7 +1,7 @@
-/* A panel is meshed again only when its divisions changed. What makes them change is found in its
- * mesh: a boundary that crosses itself between its vertices, or triangles that the inside could not
- * make good. Where this does not help, as in strips that are few triangles wide, all is meshed by a
- * somewhat finer spacing. */
+/* A panel is meshed again only when its divisions changed. The reasons for a change are found in
+ * its mesh: a boundary that crosses itself between its vertices, or triangles that the inside could
+ * not make good. Where this does not help, as in strips that are few triangles wide, all is meshed
+ * by a somewhat finer spacing. */
 #include "cloth/garment/detail/meshing.h"
 #include "cloth/base/memory.h"
 #include "cloth/garment/detail/flat.h"
@@ -43,7 +43,7 @@ bool meshing_is_ear(const struct delaunay *plane, uint32_t triangle)
     return n > 1;
 }
 
-/* Whether a triangle is bad, and not excused. What is below 20 degrees and an ear stays so. */
+/* True if a triangle is bad, and not excused. An ear below 20 degrees stays so. */
 static bool is_worth(const struct meshing_panel *of, struct worth worth, uint32_t triangle)
 {
     return delaunay_sharpness_of(&of->plane, triangle) > worth.cosine &&

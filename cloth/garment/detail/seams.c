@@ -61,7 +61,7 @@ static void measure_seam(const struct seams *of, uint32_t s)
 
 /* ---- Which panels have their fronts on one side ---- */
 
-/* What the seams of two panels say: above 0 that their fronts are on one side, below 0 not. */
+/* The vote of the seams of two panels: above 0, their fronts are on one side; below 0 not. */
 struct vote {
     uint32_t panel[2]; /* ascending */
     double sum;

@@ -1,4 +1,4 @@
-/* What all own garments share: their names, sizes and ranges, and how they are drawn. A mirrored
+/* Shared by all own garments: their names, sizes and ranges, and how they are drawn. A mirrored
  * panel has its corners in the opposite order, so that its loop is counterclockwise, too: line i of
  * the drawing is then edge n - 1 - i of the panel. */
 #include "cloth/garment/own/own.h"

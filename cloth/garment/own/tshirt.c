@@ -97,7 +97,7 @@ static struct draw_outline draw_sleeve(const struct shirt *shirt, double length)
             [CAP] = {{0, half}, GARMENT_CUBIC, {{0, 0.1 * half}, {shirt->cap, -0.1 * half}}, 0}}};
 }
 
-/* Whether a cap of this height is longer than the armhole, m. */
+/* True if a cap of this height is longer than the armhole, m. */
 static bool is_longer(struct shirt *shirt, double cap, double sleeve, double hole)
 {
     shirt->cap = cap;

@@ -73,7 +73,8 @@ static double melt(double a, double b, double k)
     return fmin(a, b) - h * h * h * k / 6;
 }
 
-/* Of a part, and of its mirror image if it has one; FAR or more: it is too far to count. */
+/* The distance from a part, and from its mirror image if it has one; FAR or more: it is too far to
+ * count. */
 static double pair_distance(const struct figure_part *part, const double x[3], double *least)
 {
     const double here[3] = {fabs(x[0]), x[1], x[2]}, there[3] = {-here[0], x[1], x[2]};

@@ -51,7 +51,7 @@ double figure_gradient(const struct figure *figure, const double x[3], double gr
 /* How long edges are to be near a point, m, where they are at most `edge`. */
 double figure_edge(const struct figure *figure, const double x[3], double edge);
 
-/* What moves as one: bones, those of the left side; the chest has neck and head, too. */
+/* Parts that move as one: bones, those of the left side; the chest has neck and head, too. */
 enum figure_bone {
     FIGURE_PELVIS,
     FIGURE_CHEST,

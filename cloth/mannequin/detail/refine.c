@@ -1,5 +1,5 @@
-/* A pass goes over the edges in their order. What a change touches is marked, and left alone for
- * the rest of the pass. */
+/* A pass goes over the edges in their order. The surroundings of a change are marked, and left
+ * alone for the rest of the pass. */
 #include "cloth/base/vector.h"
 #include "cloth/mannequin/detail/surface.h"
 
@@ -124,7 +124,7 @@ static uint32_t shared(const struct pass *pass, uint32_t a, uint32_t b)
     return count;
 }
 
-/* Whether the triangles of a but not of b keep their side, and get no long edge, if a moves. */
+/* True if the triangles of a but not of b keep their side, and get no long edge, if a moves. */
 static bool may_move(const struct pass *pass, uint32_t a, uint32_t b, const double to[3],
                      double most)
 {
@@ -247,7 +247,7 @@ static bool is_edge(const struct pass *pass, uint32_t a, uint32_t b)
     return false;
 }
 
-/* Of two triangles a b c and b a d the triangles a d c and d b c: they lie as the old ones do. */
+/* True if the triangles a d c and d b c, made of a b c and b a d, lie as the old ones do. */
 static bool lies_well(const struct surface *surface, uint32_t a, uint32_t b, uint32_t c, uint32_t d)
 {
     const double(*x)[3] = (const double(*)[3])surface->x;

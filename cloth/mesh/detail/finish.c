@@ -175,7 +175,7 @@ static int check_twice(const struct finish *of, const struct mesh_sides *sides)
                   of->source->path ? of->source->edge_line[at] : at);
 }
 
-/* Of the lone edges those that no triangle has come first, else as they were. Uses up the sides. */
+/* Puts lone edges that no triangle has first; else their order stays. Uses up the sides. */
 static int put_bare_first(const struct finish *of, struct mesh_sides *sides)
 {
     struct mesh *mesh = of->mesh;

@@ -1,5 +1,5 @@
-/* Equal names are found by a tree, at the end: a file may have as many groups as faces. Of files of
- * materials only names are kept. */
+/* Equal names are found by a tree, at the end: a file may have as many groups as faces. Files of
+ * materials are kept by name only. */
 #include "cloth/mesh/detail/obj.h"
 
 #include <search.h>

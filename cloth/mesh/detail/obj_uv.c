@@ -27,7 +27,7 @@ static int compare_others(const void *va, const void *vb)
     return order ? order : cloth_compare_u32(a->corner, b->corner);
 }
 
-/* Of all faces, those with a corner without uv. */
+/* Counts the faces that have a corner without uv. */
 static uint32_t count_without(const struct mesh *mesh, const uint32_t (*corner)[2])
 {
     uint32_t without = 0;

@@ -163,7 +163,7 @@ static bool is_simple(const struct polygon *p, uint32_t side[2])
 
 /* ---- Ears ---- */
 
-/* Whether c is in the triangle or on its border. */
+/* True if c is in the triangle or on its border. */
 static bool polygon_is_inside(const struct point t[3], struct point c)
 {
     return polygon_turn(t[0], t[1], c) >= 0 && polygon_turn(t[1], t[2], c) >= 0 &&

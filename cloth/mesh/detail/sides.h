@@ -25,7 +25,7 @@ void mesh_sides_free(struct mesh_sides *sides);
 /* The end (exclusive) of the run of equal pairs that starts at `first` in the order. */
 uint32_t mesh_sides_run(const struct mesh_sides *sides, uint32_t first);
 
-/* Whether some edge has more than two triangles; then side is the first (in triangle order) that is
+/* True if some edge has more than two triangles; then side is the first (in triangle order) that is
  * a third use. */
 bool mesh_sides_third(const struct mesh_sides *sides, uint32_t n_triangles, uint32_t *side);
 

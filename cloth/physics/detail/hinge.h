@@ -92,8 +92,8 @@ PHYS_INLINE void phys_hinge_make(const struct phys_four *four, uint32_t (*corner
     }
 }
 
-/* What moves de of the edge and dr of its third corner, both from corner 0, change of a hinge
- * face's slope and foot. */
+/* The change of a hinge face's slope and foot by moves de of the edge and dr of its third corner,
+ * both from corner 0. */
 PHYS_INLINE void phys_hinge_face_change(const struct phys_hinge *h, int second,
                                         const struct phys_hinge_face *hinge_face,
                                         const struct phys_wide *de, const struct phys_wide *dr,
@@ -121,7 +121,7 @@ PHYS_INLINE void phys_hinge_face_change(const struct phys_hinge *h, int second,
     *foot = (a + b - 2 * hinge_face->foot * c) * h->square;
 }
 
-/* What moves d of the corners change of the slopes of theta. */
+/* The change of the slopes of theta by moves d of the corners. */
 PHYS_INLINE void phys_hinge_change(const struct phys_hinge *h, const struct phys_wide d[4],
                                    struct phys_wide change[4])
 {

@@ -33,7 +33,7 @@ scene_build_step scene_build_check_obstacles;
 scene_build_step scene_build_sides, scene_build_contact, scene_build_check_contact;
 scene_build_step scene_build_contact_idle;
 
-/* What a run reports. */
+/* The report of a run. */
 scene_build_step scene_build_probes, scene_build_hdf5, scene_build_drape;
 
 /* Joints and welds; those of mesh.weld; those of seams, and all vertices that seams make meet as

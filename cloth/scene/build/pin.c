@@ -108,7 +108,7 @@ static int check_follow(enum scene_constraint hold, const struct scene_tree *tre
     return CLOTH_OK;
 }
 
-/* What pulls a vertex to its place never pushes it away. */
+/* A pin that pulls a vertex to its place never pushes it away. */
 static int check_curve(uint32_t curve, const struct scene_tree *tree, int pin)
 {
     const struct model *model = tree->model;

@@ -3,7 +3,7 @@
 
 #include "cloth/garment/pattern.h"
 
-/* Of the shorter edge: so much may lack for the pleats, and is eased. */
+/* So much of the shorter edge may lack for the pleats, and is eased. */
 static const double EASED = 0.01;
 
 /* The stitch that has a side, and as which of its two; NULL: none has. */

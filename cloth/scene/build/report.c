@@ -1,5 +1,5 @@
-/* What a run reports: probes, the fields of scientific frames, the drape test. What a scene cannot
- * have is an error: users do not notice a field that a run leaves out. */
+/* The report of a run: probes, the fields of scientific frames, the drape test. A field that a
+ * scene cannot have is an error: users do not notice a field that a run leaves out. */
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/rules.h"
 

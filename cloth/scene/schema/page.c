@@ -28,7 +28,7 @@ static void print_link(FILE *file, const char *text, const char *section)
     fputc(')', file);
 }
 
-/* What a key with other keys takes. */
+/* The value of a key that has other keys. */
 static void print_map(FILE *file, const struct scene_rule *key)
 {
     const bool list = key->type == SCENE_LIST;
@@ -56,7 +56,7 @@ static void print_expected(FILE *file, const struct scene_rule *key)
     fputs(text, file);
 }
 
-/* What a key takes: a kind and its unit. */
+/* The value of a key: its kind and unit. */
 static void print_value(FILE *file, const struct scene_rule *key)
 {
     if (key->type <= SCENE_NAMED || (key->type == SCENE_LIST && key->inside->type <= SCENE_NAMED))

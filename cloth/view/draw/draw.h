@@ -22,8 +22,8 @@ struct draw_light_block {
     float sky[2 * DRAW_SKY][4]; /* of each: towards it, and to the right in its map; of length 1 */
     float right[4], up[4], toward[4]; /* those of the sun, in all its maps */
     float sphere[4];                  /* that all maps hold: centre (m), 1 / diameter (1/m) */
-    /* Of the sun: metres off the surface where shadows are looked up; blur, of a map's width. The
-     * former of the sky. */
+    /* Metres off the surface where the sun's shadows are looked up; their blur, a part of a map's
+     * width; metres of the sky's. */
     float bias[4];
 };
 

@@ -12,7 +12,7 @@
 enum { COARSE = 3000, MAX_ROUNDS = 3 };
 static const float SHORT = 0.04f, FLAT = 0.002f;
 
-/* What may be joined: m. */
+/* Limits of joining, m. */
 struct joins {
     const float *vertex;
     uint32_t *join;

@@ -1,7 +1,7 @@
-/* Surfaces are drawn first, and shaded a pixel at a time. What is kept between has 8 bits, of roots
- * where it is light, with noise of a step against bands. Colours are linear until `display`, which
- * every pixel passes through last. What lies far away on the ground takes the background's colour
- * at its pixel, so nothing has to be blended, and the order of drawing is free. */
+/* Surfaces are drawn first, and shaded a pixel at a time. Colours kept between have 8 bits, of
+ * roots where they are light, with noise of a step against bands. Colours are linear until
+ * `display`, which every pixel passes through last. Ground that is far away takes the background's
+ * colour at its pixel, so nothing has to be blended, and the order of drawing is free. */
 #include "cloth/view/draw/draw.h"
 
 /* clang-format off */
@@ -267,7 +267,7 @@ const char DRAW_SHADE_FRAGMENT[] =
     "    return solid ? mix(c, vec3(0.12), ink * kept.a) : c;\n"
     "}\n"
     "float kind(float code) { return min(code, SCALE); }\n"
-    /* Whether samples of one kind, with this mean, lie no farther apart than a pixel of the surface reaches. */
+    /* True if samples of one kind, with this mean, lie no farther apart than a pixel of the surface reaches. */
     "bool joined(vec4 surface, float near, float far)\n"
     "{\n"
     "    vec4 q = place(near);\n"

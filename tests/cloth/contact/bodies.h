@@ -65,7 +65,8 @@ static inline void surface_torus(struct surface *s, double radius, double tube, 
         }
 }
 
-/* Of so many halvings of an icosahedron's edges: 20 4^halvings triangles, corners on the sphere. */
+/* A sphere by so many halvings of an icosahedron's edges: 20 4^halvings triangles, corners on the
+ * sphere. */
 static inline void surface_ball(struct surface *s, double radius, int halvings)
 {
     static struct surface from;

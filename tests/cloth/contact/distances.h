@@ -45,7 +45,8 @@ static inline double vertex_distance(const phys_vec p[4])
     return above ? fabs(phys_dot(&normal, &away)) / length(&normal) : least;
 }
 
-/* Of ends from the other edge, or where the lines are nearest if that is inside of both. */
+/* The least distance of ends from the other edge, or where the lines are nearest if that is inside
+ * of both. */
 static inline double edge_distance(const phys_vec p[4])
 {
     const phys_vec u = p[1] - p[0], w = p[3] - p[2], r = p[0] - p[2];

@@ -11,7 +11,7 @@
 
 enum { TIMES = 50, THIRDS = 30 };
 
-/* Of any size between two: as many of each power of ten. */
+/* A random size between two: as many of each power of ten. */
 static inline double any_size(double low, double high)
 {
     return low * pow(high / low, uniform(0, 1));
@@ -211,7 +211,7 @@ static inline double least_level(const struct meeting *m, double s, const phys_v
     return fmin(value[0], value[1]);
 }
 
-/* Whether the triangle is surely outside at a time: all of it as its middle is. */
+/* True if the triangle is surely outside at a time: all of it as its middle is. */
 static inline bool outside_by_middle(const struct meeting *m, double s, const phys_vec x[3])
 {
     const phys_vec middle = (x[0] + x[1] + x[2]) / 3;

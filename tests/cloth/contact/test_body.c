@@ -213,8 +213,8 @@ UNIT_LOOP(boxes, 0, N_MADE)
     ck_assert_uint_eq(n_nodes, body->n_nodes);
 }
 
-/* On edges and corners normals are in their middle, however many triangles a side has there. Of
- * nearest triangles that are as near the first counts: side x < 0 at the centre of a cube. */
+/* On edges and corners normals are in their middle, however many triangles a side has there. The
+ * first counts of nearest triangles that are as near: side x < 0 at the centre of a cube. */
 UNIT_TEST(pseudo_normals)
 {
     surface_box(&made, 1, 1, 1);

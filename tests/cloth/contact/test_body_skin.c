@@ -154,7 +154,7 @@ static bool is_found(const struct found *found, uint32_t kind, uint32_t a, uint3
     return false;
 }
 
-/* Whether a pair is nearer than the reach at one of some times. */
+/* True if a pair is nearer than the reach at one of some times. */
 static bool is_near(const struct contact_side side[2], const struct contact_candidate *candidate)
 {
     uint32_t point[4];

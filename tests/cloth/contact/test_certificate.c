@@ -141,8 +141,8 @@ UNIT_LOOP(cuts, 0, PAIRS_SORTS_N)
     printf("# %s: %d of %d uncut, %d cut, %d refused\n", sort->name, uncut, n, cut, refused);
 }
 
-/* What passes by is farther apart than the reach at both ends, as nearest points are, and all that
- * passes is certified. */
+/* Pairs that pass by are farther apart than the reach at both ends, as nearest points are, and all
+ * that passes is certified. */
 UNIT_LOOP(passes_by, 0, PAIRS_SORTS_N)
 {
     const struct pairs_sort *sort = PAIRS_SORTS + _i;

@@ -1,4 +1,4 @@
-/* What becomes of vertices that meet shapes, against values worked out by hand. */
+/* Vertices that meet shapes, against values worked out by hand. */
 #include "cloth/contact/meet.h"
 #include "tests/support/unit.h"
 
@@ -48,7 +48,7 @@ UNIT_TEST(plane_on_a_slope)
     ck_assert_double_eq(v[0][2], 1);
 }
 
-/* What is nowhere is not put anywhere. */
+/* A vertex that is nowhere is not put anywhere. */
 UNIT_TEST(nowhere)
 {
     const struct contact_hit hit = {.normal = {0, 1, 0, 0}, .gap = NAN};

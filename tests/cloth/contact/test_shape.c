@@ -252,7 +252,7 @@ UNIT_LOOP(keys_say_the_velocity, 0, N_SHAPES)
     }
 }
 
-/* Of a kind that says so: points are apart where each has a gap. */
+/* Where a kind says so, points are apart where each has a gap. */
 UNIT_LOOP(apart, 0, N_SHAPES)
 {
     struct contact_shape shape;

@@ -1,6 +1,7 @@
 /* Skins: a sheet in several parts is met with itself. All pairs of features that brute force finds
  * nearer than the reach, at times of the step, are visited; each pair comes at most once, in one
- * order; none of them shares a vertex. What the boxes do not know of is missed, and seen here. */
+ * order; none of them shares a vertex. A feature that the boxes do not know of is missed, and seen
+ * here. */
 #include "tests/cloth/contact/distances.h"
 #include "tests/cloth/contact/skin_sheet.h"
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Elements of each kind, of cloths that have some of each, as lists that a test calls the functions
- * of the kind on. Who adds a kind gives a material of them its keys. */
+ * of the kind on. A new kind gives a material of them its keys. */
 
 /* ---- Cloths ---- */
 

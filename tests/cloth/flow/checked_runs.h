@@ -77,7 +77,7 @@ static inline int take_system(void *context, const struct solve_system *system,
     return CLOTH_OK;
 }
 
-/* What a run is besides its scene. */
+/* The settings of a run besides its scene. */
 struct how {
     const char *ends; /* part of the error that it is to end with; NULL: with none */
     bool system;

@@ -6,7 +6,7 @@
 /* Joints across the sheet and inside a block, which end some time; or a seam of them. */
 enum tied { APART, JOINED, SEWN };
 
-/* What is not said is as in most: a sheet of 6 x 6 vertices in blocks of about nine. */
+/* Defaults: a sheet of 6 x 6 vertices in blocks of about nine. */
 static const struct kind {
     enum model_integrator integrator;
     enum model_preconditioner preconditioner;

@@ -182,7 +182,7 @@ static void agree(struct record *r)
     MPI_Bcast(&r->error, sizeof r->error, MPI_BYTE, 0, MPI_COMM_WORLD);
 }
 
-/* What rank 0 alone was told, to all. */
+/* Tells all ranks the counts that rank 0 alone was told. */
 static void share(struct record *r)
 {
     uint64_t counts[2] = {r->frames, r->shown};

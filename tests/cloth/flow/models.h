@@ -19,8 +19,8 @@ struct setup {
 #define PLANE(...) ((struct contact_shape){.value = {__VA_ARGS__}})
 
 /* A square sheet of n x n vertices and 1 m, level at y = 0, gravity, springs with damping, no pins,
- * loads or planes; implicit, h = 1 ms, 10 steps, a frame a step, relative tolerance 1e-3, blocks
- * of 30. What differs is set afterwards. */
+ * loads or planes; implicit, h = 1 ms, 10 steps, a frame a step, relative tolerance 1e-3, blocks of
+ * 30. Differences are set afterwards. */
 void setup_sheet(struct setup *setup, uint32_t n);
 
 /* Two vertices joined by an edge of 1 m that hangs down from a pin: 0.1 kg, 40 N/m, damped along
@@ -43,7 +43,7 @@ void setup_pin(struct setup *setup, uint32_t n, const uint32_t *vertices);
 void setup_load(struct setup *setup, uint32_t vertex, double x, double y, double z);
 void setup_free(struct setup *setup);
 
-/* What a run left. */
+/* The outcome of a run. */
 struct record {
     int code;
     struct cloth_error error;

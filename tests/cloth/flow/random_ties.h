@@ -121,7 +121,7 @@ static inline void count_all(void)
     free(scratch);
 }
 
-/* What block b shows before the rows for `other`. */
+/* The rows that block b shows before those for `other`. */
 static inline uint32_t shown_before(uint32_t b, uint32_t other)
 {
     uint32_t rows = 0;

@@ -11,7 +11,7 @@
 enum { LINKS = 20 };
 static const double M = 0.01, K = 5000, G = 9.81, LENGTH = 0.05;
 
-/* What link i (1 .. LINKS) carries, N, and how long it hangs. */
+/* The load of link i (1 .. LINKS), N, and how long it hangs. */
 static double tension(size_t i)
 {
     return (double)(LINKS + 1 - i) * M * G;

@@ -171,7 +171,7 @@ UNIT_TEST(bending_that_does_not_suit)
     says(&record, CLOTH_E_INPUT, "a matrix of springs cannot hold hinges; ");
 }
 
-/* Of a mesh that no file has. */
+/* A mesh that no file has. */
 UNIT_TEST(a_vertex_that_is_nowhere)
 {
     TRIAL(setup_sheet(&setup, 3));

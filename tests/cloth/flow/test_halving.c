@@ -19,8 +19,8 @@ static void setup_jerk(struct setup *setup)
     setup->model.halving = true;
 }
 
-/* Nothing is wrong: the same bits as without, also in frames, some of which show the begin of the
- * step that was accepted last. */
+/* All is well: the same bits as without, also in frames, some of which show the begin of the step
+ * that was accepted last. */
 UNIT_LOOP(steps_that_are_fine, 0, MODEL_INTEGRATORS)
 {
     UNIT_OWNED(record_free) struct record plain = {0}, halving = {0};

@@ -243,7 +243,7 @@ UNIT_TEST(verlet_after_contact)
 
 /* ---- Energies ---- */
 
-/* Of the weight, by the last three positions: v is the mean of two steps. */
+/* The energies of the weight, by the last three positions: v is the mean of two steps. */
 UNIT_LOOP(energies, 0, N_SCHEMES)
 {
     const double h = 1e-4, load = 0.3;

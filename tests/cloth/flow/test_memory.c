@@ -101,7 +101,7 @@ int __wrap_flow_source_gather(struct flow_source *source, uint32_t from, uint32_
     return code;
 }
 
-/* Whether the run fails, by the memory of that rank, and all ranks hear of it. */
+/* True if the run fails, by the memory of that rank, and all ranks hear of it. */
 static bool ends_everywhere(const struct setup *setup, int where)
 {
     UNIT_OWNED(record_free) struct record record = {0};

@@ -56,7 +56,7 @@ UNIT_TEST(no_momentum_is_lost_by_an_exact_solve)
     ck_assert_double_lt(record.report.momentum_lost, 1e-15);
 }
 
-/* What a coarse solve with pins loses, by one block and by many whose borders run through springs
+/* The loss of a coarse solve with pins, by one block and by many whose borders run through springs
  * to pins. */
 UNIT_LOOP(blocks_lose_the_same_momentum, 0, unit_alone())
 {

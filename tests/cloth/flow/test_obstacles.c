@@ -184,7 +184,7 @@ UNIT_TEST(halved_steps_see_their_time)
     }
 }
 
-/* What rests while a shape has yet to move does not end the run. */
+/* Cloth that rests while a shape has yet to move does not end the run. */
 UNIT_TEST(waits_for_a_shape)
 {
     UNIT_OWNED(row_free) struct row row;
@@ -305,8 +305,8 @@ UNIT_TEST(a_ball_of_triangles)
     record_free(on + 1);
 }
 
-/* What crumples on the floor is thrown about less where compressed springs resist being turned: it
- * gains less energy, and its systems are easier. */
+/* Cloth that crumples on the floor is thrown about less where compressed springs resist being
+ * turned: it gains less energy, and its systems are easier. */
 UNIT_TEST(crumples_by_absolute_slopes)
 {
     struct flow_report report[2];

@@ -1,5 +1,5 @@
-/* What a run does besides moving cloth: frames and their times, the hash, counts of iterations,
- * stops, pins and vertices by number. */
+/* A run's work besides moving cloth: frames and their times, the hash, counts of iterations, stops,
+ * pins and vertices by number. */
 #include "cloth/flow/state/state.h"
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"

@@ -36,7 +36,7 @@ UNIT_LOOP(held_blocks, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
     }
 }
 
-/* Nothing is held, and nothing but mass is in the way: all falls, however many pieces it is. */
+/* No vertex is held, and only mass is in the way: all falls, however many pieces it is. */
 UNIT_LOOP(pieces_that_fall, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     static const double vertices[] = {0, 0, 0, 1, 0, 0, 0, 0, 1, 5, 0, 0, 6, 0, 0, 5, 0, 1};

@@ -1,7 +1,7 @@
 /* The skins of a run: every triangle is in the skin of the block of its lowest place, every vertex
  * and every edge is the feature of one skin, points are where the block finds them, also where a
- * cloth has no springs between the corners of its triangles, and across welds. Of what skins find a
- * contact stands once. */
+ * cloth has no springs between the corners of its triangles, and across welds. A contact that skins
+ * find stands once. */
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/skin.h"
 #include "cloth/flow/state/flow.h"
@@ -132,7 +132,7 @@ static void count_features(uint32_t b)
     n_triangles += skin->n_triangles;
 }
 
-/* What triangles have is counted once, what they have not not at all. */
+/* Features of triangles are counted once, others not at all. */
 static void check_features(void)
 {
     const struct mesh *mesh = &setup.cloth.mesh;

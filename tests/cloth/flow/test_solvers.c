@@ -1,6 +1,6 @@
 /* Runs with every preconditioner and stop: the same motion as without, few iterations, errors kept;
- * also of a chain and of springs in compression. What leaves a preconditioner nothing to hold on to
- * is in test_singular.c. */
+ * also of a chain and of springs in compression. Systems that leave a preconditioner nothing to
+ * hold on to are in test_singular.c. */
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 
@@ -220,7 +220,7 @@ UNIT_TEST(compressed_springs)
     check(&setup);
 }
 
-/* Whether the largest error of the run was told and kept. */
+/* True if the largest error of the run was told and kept. */
 UNIT_TEST(stop_in_the_mass_norm)
 {
     struct setup setup;

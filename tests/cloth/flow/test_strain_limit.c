@@ -22,7 +22,7 @@ static void chain(struct setup *s)
     s->model.grain = 3;
 }
 
-/* Of a link under a tension: by its spring alone up to the limit, by both beyond. */
+/* The length of a link under a tension: by its spring alone up to the limit, by both beyond. */
 static double elongation(double tension)
 {
     const double alone = tension / K, free = AT * LENGTH;
@@ -56,7 +56,7 @@ UNIT_LOOP(a_chain_hangs_as_far_as_both_springs_let_it, 0, 3)
     ck_assert_double_le(worst, 1e-9);
 }
 
-/* What is not reached changes no bit. */
+/* A limit that is not reached changes no bit. */
 UNIT_TEST(below_its_limit_an_edge_is_free)
 {
     struct record record[2] = {{0}};

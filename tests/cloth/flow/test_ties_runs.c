@@ -53,7 +53,7 @@ static void run(struct session *s, const struct flow_tie_corners *tie, double po
     }
 }
 
-/* Of the last step. */
+/* The iterations of the last step. */
 static double iterations(struct session *s)
 {
     double status[FLOW_STATUS];
@@ -71,7 +71,7 @@ static double apart(double a[][3], double b[][3])
     return most;
 }
 
-/* Of end e of joint j. */
+/* Puts the corner at end e of joint j. */
 static void put_corner(const struct flow *flow, struct flow_tie_corners *to, uint32_t j, int e,
                        double weight)
 {
@@ -169,7 +169,7 @@ static void say(struct session *s, uint32_t n, const uint32_t *shared)
     said->first[s->flow->tables.n_blocks] = links;
 }
 
-/* Whether the round was recorded again. */
+/* True if the round was recorded again. */
 static bool adopt(struct session *s, uint32_t n, const uint32_t *shared)
 {
     const duite_graph before = s->state.solve;

@@ -116,7 +116,8 @@ UNIT_TEST(a_tube_around_two_legs)
     ck_assert_double_eq_tol(worst.body, around(0.08) + 2 * 0.24, 1e-12);
 }
 
-/* What is not surrounded, or only partly, is not compared; nor is a cut that does not close. */
+/* A girth that is not surrounded, or only partly, is not compared; nor is a cut that does not
+ * close. */
 UNIT_TEST(nothing_to_compare)
 {
     prism_make(&prism, 0.1, 0.5, 0);

@@ -173,7 +173,7 @@ UNIT_LOOP(seams_have_equal_sides, 0, 3)
     check_seam(&garment, &pattern, 0);
 }
 
-/* Of the gathered seam of 0.2 and 0.13 m: the longer edge, side k of the stitch, lies along the
+/* The gathered seam of 0.2 and 0.13 m: its longer edge, side k of the stitch, lies along the
  * shorter one forward, back and forward again, with vertices where it turns; what the pleats leave
  * is gathered evenly. */
 static const struct {

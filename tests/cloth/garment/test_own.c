@@ -8,7 +8,7 @@
 
 enum { TSHIRT, TROUSERS, SKIRT, GARMENTS, SIZES = 5, MIDDLE = 2, RANDOM = 200 };
 
-/* Of a surface: boundary loops, and the Euler number of a sphere with so many holes. */
+/* Surfaces: boundary loops, and the Euler number of a sphere with so many holes. */
 static const struct shape {
     const char *name;
     uint32_t loops;

@@ -16,7 +16,7 @@ static struct cloth_error error;
 
 static int read_message(size_t n)
 {
-    /* Of its own size, so that a sanitizer sees what is read beyond it. */
+    /* A block of its own size, so that a sanitizer sees what is read beyond it. */
     unsigned char *copy = malloc(n ? n : 1);
     ck_assert_ptr_nonnull(copy);
     memcpy(copy, bytes, n);

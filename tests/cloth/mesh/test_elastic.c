@@ -7,7 +7,7 @@
 
 enum { SIDE = 7, MIDDLE = SIDE * SIDE / 2 };
 
-/* Of cells of a x b. */
+/* A grid of cells of a x b. */
 static struct mesh elastic_grid(double a, double b)
 {
     return grid((SIDE - 1) * a, (SIDE - 1) * b, SIDE, SIDE);
@@ -123,7 +123,7 @@ static struct mesh_elastic of(double stretch, double shear, int both)
     return found;
 }
 
-/* What docs/physics.md says of a mesh of equilateral triangles, threads of 1000 and 300 N/m. */
+/* The moduli of a mesh of equilateral triangles in docs/physics.md, threads of 1000 and 300 N/m. */
 UNIT_TEST(equilateral_triangles)
 {
     char text[1024];

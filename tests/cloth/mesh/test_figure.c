@@ -120,7 +120,7 @@ UNIT_TEST(a_mesh_that_hangs_at_a_node)
     free(place);
 }
 
-/* Of the nodes of a file one is read, by its name behind the path. */
+/* One of the nodes of a file is read, by its name behind the path. */
 UNIT_TEST(a_node_of_a_file)
 {
     const struct skinned of = {.around = 3, .along = 1, .keys = 2};

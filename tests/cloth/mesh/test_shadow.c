@@ -92,7 +92,7 @@ UNIT_TEST(any_axis)
     }
 }
 
-/* What lies above one another counts once, holes and single points count nothing. */
+/* Triangles above one another count once, holes and single points count nothing. */
 UNIT_TEST(stacked)
 {
     UNIT_OWNED(mesh_free)

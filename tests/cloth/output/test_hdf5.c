@@ -316,7 +316,7 @@ static void refuse_to_go_on(const char *why)
               sample_has(sample_at("hdf5/frame-000002.vtkhdf")));
 }
 
-/* What is to stay, and does not: nothing is removed. */
+/* A file that is to stay, and does not: nothing is removed. */
 UNIT_TEST(refuses_a_changed_folder)
 {
     char text[TEXT];

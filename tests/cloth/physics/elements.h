@@ -3,7 +3,7 @@
 
 #include "cloth/physics/element.h"
 
-/* What holds of any model of elements, checked by differences. A model is told by its functions;
+/* Properties of any model of elements, checked by differences. A model is told by its functions;
  * `of` are its elements. */
 struct elements {
     const void *of;

@@ -127,7 +127,7 @@ static double cylinder(const double a[2], const double b[2], double along)
     return sum * radius * radius / cell;
 }
 
-/* What docs/physics.md says of the mesh's direction. */
+/* The mesh's direction, as docs/physics.md has it. */
 UNIT_TEST(bias_of_the_mesh)
 {
     const double right[2][2] = {{1, 0}, {0, 1}}, equal[2][2] = {{1, 0}, {-0.5, sqrt(0.75)}};

@@ -7,8 +7,8 @@
 
 #if defined(__x86_64__) || defined(__aarch64__)
 
-/* What becomes of them, in scalars and in vectors: volatile and by a call, so that no compiler
- * knows or moves it. */
+/* Their results, in scalars and in vectors: volatile and by a call, so that no compiler knows or
+ * moves it. */
 __attribute__((noinline)) static double scaled(double value, double factor)
 {
     volatile double a = value, b = factor;

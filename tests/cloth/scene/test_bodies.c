@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the scene that is right has, and the tests replace. */
+/* The parts of a right scene that the tests replace. */
 #define PLANE "plane: {point: [0, -1, 0], normal: [0, 3, 4]}"
 
 #define FRAMES "body: {obj: whole.obj, frames: "

@@ -1,4 +1,4 @@
-/* What a scene says of obstacles and contact arrives in the model. */
+/* A scene's obstacles and contact arrive in the model. */
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
 
@@ -119,7 +119,7 @@ UNIT_LOOP(contact_with_nothing, 0, sizeof idle_scenes / sizeof *idle_scenes)
     ck_assert_int_eq((int)model.contact.mode, MODEL_CONTACT_CERTIFIED);
 }
 
-/* What gives no coefficient has that of contact. */
+/* An obstacle without a coefficient has that of contact. */
 UNIT_TEST(frictions)
 {
     UNIT_OWNED(model_free)

@@ -69,7 +69,7 @@ UNIT_TEST(panels_as_a_mesh)
     free(text);
 }
 
-/* What the scene says of panels and stitches, beside what the pattern says. */
+/* The scene's panels and stitches, beside the pattern's. */
 UNIT_TEST(panels_that_the_scene_places_and_sews)
 {
     char *text = scene_of("{pattern: {file: pillow.json, edge: 0.03, place: {back: {rotation: [0, "

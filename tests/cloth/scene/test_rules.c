@@ -16,7 +16,7 @@ struct structure {
 
 static unsigned n_fields, n_places;
 
-/* What a value takes. */
+/* The kinds of a value. */
 static size_t width_of(const struct scene_rule *rule)
 {
     if (rule->count.width)

@@ -1,6 +1,6 @@
-/* What is said of scenes that are wrong, or have a key that does nothing, stands in sentences.txt,
- * with the place in the file or the set: this compares. `make golden-sentences` writes the
- * sentences again where they are said in other words, of the same places:
+/* The sentences about scenes that are wrong, or have a key that does nothing, stand in
+ * sentences.txt, with the place in the file or the set: this compares. `make golden-sentences`
+ * writes the sentences again where they are said in other words, of the same places:
  *
  *     [NAME]           a section: a test of its own, of the scene that is right (scene_file.c)
  *     file NAME TEXT   a file beside the scene
@@ -165,7 +165,7 @@ static const char *read_case(struct section *section)
     return code ? "= " : warned ? "~ " : "ok";
 }
 
-/* What stands behind the word with which the line begins, or NULL. */
+/* The text behind the word with which the line begins, or NULL. */
 static const char *after(const char *line, const char *word)
 {
     const size_t n = strlen(word);

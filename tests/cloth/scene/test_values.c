@@ -1,4 +1,4 @@
-/* What a scene says arrives in the model: every key, every default, aliases. */
+/* A scene's values arrive in the model: every key, every default, aliases. */
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
 

@@ -26,7 +26,7 @@ UNIT_TEST(the_last_pass_at_every_size)
     }
 }
 
-/* What a neighbour sees of some rows, through packed numbers in another order, has their bits. */
+/* The rows that a neighbour sees, through packed numbers in another order, have their bits. */
 UNIT_TEST(ghosts_keep_the_bits)
 {
     static const uint32_t halo[] = {1, 4, 5, 7}, at[] = {3, 0, 2};
@@ -281,7 +281,7 @@ UNIT_LOOP(how_much_more_the_true_residual_may_be, 0, 3)
     }
 }
 
-/* Nothing on the right side, or so little that its square is nothing. */
+/* The right side is zero, or so little that its square is. */
 UNIT_TEST(nothing_to_solve)
 {
     static const double sizes[] = {0, 1e-150, 1e-170};
@@ -312,8 +312,8 @@ UNIT_TEST(breakdowns)
     ck_assert_int_eq(code, SOLVE_BREAKDOWN);
 }
 
-/* What rounding leaves of a guess that was right is no breakdown, against what there was to solve;
- * more than that is one. */
+/* The rounding of a guess that was right is no breakdown, against what there was to solve; more
+ * than that is one. */
 UNIT_TEST(little_left_of_a_guess)
 {
     const struct solve_stop stop = {.relative = true, .tolerance = 1e-20, .max = 9};

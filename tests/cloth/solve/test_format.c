@@ -88,7 +88,7 @@ UNIT_LOOP(what_moves_as_a_whole_keeps_its_momentum, SOLVE_SPRINGS, SOLVE_HALF_FL
     }
 }
 
-/* Of a block the entries between a free row here and a held one, each by its free row. */
+/* A block's entries between a free row here and a held one, each by its free row. */
 static uint32_t find_held(const struct system_block *block, uint32_t (*held)[2])
 {
     const struct solve_block *m = &block->matrix;

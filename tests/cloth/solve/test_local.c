@@ -27,7 +27,7 @@ static void apply(enum solve_local kind, const phys_vec *q, phys_vec *s)
         ck_assert_double_eq(s[a][3], 0);
 }
 
-/* What is left of float in an incomplete factor. */
+/* The accuracy of float in an incomplete factor. */
 static const double FLOAT = 1e-6;
 
 /* M^-1 A x = x to `tolerance` of the largest x. */
@@ -192,8 +192,8 @@ UNIT_TEST(all_rows_held)
         ck_assert(s[a][0] == 0 && s[a][1] == 0 && s[a][2] == 0);
 }
 
-/* Springs that only resist along themselves, hardly any mass: pivots of IC(0) fail. What it falls
- * back to is still symmetric and positive. */
+/* Springs that only resist along themselves, hardly any mass: pivots of IC(0) fail. Its fallback is
+ * still symmetric and positive. */
 UNIT_TEST(pivots_that_fail)
 {
     int tried[SOLVE_SSOR + 1] = {0};

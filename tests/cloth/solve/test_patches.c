@@ -1,5 +1,5 @@
-/* What patches of blocks add to the coarse matrix is P' A P, each patch with columns of its own, in
- * every format, with rows that are held and rows in contact. */
+/* Patches of blocks add P' A P to the coarse matrix, each patch with columns of its own, in every
+ * format, with rows that are held and rows in contact. */
 #include "cloth/solve/patches.h"
 #include "tests/cloth/solve/system.h"
 #include "tests/support/unit.h"

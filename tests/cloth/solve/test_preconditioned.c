@@ -46,7 +46,7 @@ static double turn(enum kind kind, const phys_vec *q, phys_vec *s)
     return system_dot(&sys, q, s);
 }
 
-/* What a block's pass reads of others is p as it will be. */
+/* A block's pass reads p of others as it will be. */
 static void ghosts_of(const struct run *run, enum kind kind, const struct system_block *block,
                       phys_vec *p)
 {

@@ -104,7 +104,7 @@ static size_t count_pairs(const phys_vec *at)
     return pairs.n;
 }
 
-/* Of a vertex and a triangle without it. */
+/* The least gap between a vertex and a triangle without it. */
 static double least_gap(void)
 {
     double least = INFINITY;

@@ -1,4 +1,4 @@
-/* Signs and pairs against rational numbers (GMP). What triangles that have an area do is said here
+/* Signs and pairs against rational numbers (GMP). Triangles that have an area are told apart here
  * once more, without signs of corners: two convex bodies are apart if and only if the normal of a
  * face, or what is normal to an edge of each, or in a plane to an edge of one, keeps them apart. */
 #include "cloth/verify/orient.h"

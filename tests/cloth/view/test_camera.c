@@ -198,7 +198,7 @@ UNIT_TEST(turns_around_the_target)
     ck_assert_double_eq(orbit.elevation, 89);
 }
 
-/* What is in the middle moves by the parts of the height that are asked for, at any zoom. */
+/* The point in the middle moves by the parts of the height that are asked for, at any zoom. */
 UNIT_LOOP(pans_by_parts_of_the_height, 0, 2)
 {
     struct view_orbit orbit;
@@ -298,7 +298,7 @@ UNIT_TEST(picks_chains)
     ck_assert_uint_eq(pick_beside(&mesh, 4 * SHEET, 0), VIEW_PICKED_NONE);
 }
 
-/* Of two cloths, one of two panels, as cloth.obj has them. */
+/* Two cloths, one of two panels, as cloth.obj has them. */
 UNIT_TEST(names_what_is_picked)
 {
     char *group[] = {"shirt", "front", "back", "scarf"};

@@ -72,7 +72,7 @@ UNIT_TEST(small_pieces)
     ck_assert_uint_eq(draw_coarsen(N * N, vertex[0], 2, 0, join, 2, two), 0);
 }
 
-/* Of waves along x, 0.5 m high, a crest every 12 m, no vertex that is left stands for one that is
+/* In waves along x, 0.5 m high, a crest every 12 m, no vertex that is left stands for one that is
  * farther off its plane than allowed: the light of the sky is looked for just off the surface. */
 UNIT_TEST(folds_stay)
 {

@@ -8,7 +8,7 @@ plan_later
 viewer= simulator=
 trap 'status=$?; kill $xvfb $viewer $simulator 2> /dev/null; (exit $status); tap_end' EXIT
 
-# Nothing moves, so that all frames are alike.
+# The cloth rests, so that all frames are alike.
 sed 's/nx: 150, ny: 150/nx: 20, ny: 20/' "$srcdir/cloth/scenes/sheet.yaml" > "$scratch/still.yaml"
 port=$((10000 + $$ % 20000))
 simulate() {

@@ -280,8 +280,7 @@ typedef struct duite_kernel {
                                       many as there are modes (DUITE_LAWS). NULL: duite_sum for all */
     const duite_law *variadic_law; /* if variadic is DUITE_CW or CWP; NULL: duite_sum */
     int replicated;                /* 1: a task of the main program runs on every rank, see below */
-    int events; /* 1: its tasks may end later than their bodies, see duite_event_new. Rounds with
-                   such a task are forked when they are replayed */
+    int events; /* 1: its tasks may end later than their bodies, see duite_event_new */
 } duite_kernel;
 
 /* The laws of a kernel by parameter, at file scope: .law = DUITE_LAWS([1] = &duite_max). In a

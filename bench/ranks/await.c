@@ -1,7 +1,8 @@
 /* A halo exchange by the program's own requests of MPI, in tasks, against the same by hand. Each
  * rank has a ring of cells in blocks. In a step it sends the cells at its two ends to its
  * neighbours and receives theirs (one task, which ends with its requests; by hand MPI_Waitall);
- * then each block becomes a mean of neighbouring cells. The blocks inside need no message. */
+ * then each block becomes a mean of neighbouring cells. The blocks inside need no message. Ours
+ * replays two recorded steps, or forks each. */
 #include "bench/ranks/ranks.h"
 
 #include <mpi.h>
@@ -17,11 +18,15 @@ static void plan(struct measure *measure, const struct bench_options *options)
     const char *const command = "%s steps=%u threads=1 scheduler=%s";
     const struct measure_series *ours =
         measure_series(measure, ranks_ours(ranks, 1), command, "await", steps, options->scheduler);
+    const struct measure_series *forks = measure_series(measure, ranks_ours(ranks, 1), command,
+                                                        "await_forks", steps, options->scheduler);
     const struct measure_series *twin = measure_series(measure, ranks_twin(ranks), command,
                                                        "twin_await", steps, options->scheduler);
     measure_value(measure, ours, 1e6 / steps, "us", "await_mpi_us");
+    measure_value(measure, forks, 1e6 / steps, "us", "await_mpi_forks_us");
     measure_value(measure, twin, 1e6 / steps, "us", "await_mpi_twin_us");
     measure_ratio(measure, ours, twin, "await_mpi_vs_twin");
+    measure_ratio(measure, forks, twin, "await_mpi_forks_vs_twin");
 }
 
 /* ---- The arithmetic ---- */
@@ -182,17 +187,30 @@ static int set_blocks(duite *rt, struct line *line, int rank)
     return code;
 }
 
-static int run_steps(duite *rt, struct line *line, unsigned steps, double *value)
+/* All ranks' steps from the old cells to the new ones and back. */
+static int fork_two_steps(duite *rt, void *context)
 {
-    const int ranks = duite_ranks(rt);
+    const struct line *line = context;
     int code = 0;
-    for (int r = 0; r < ranks; r++)
+    for (int now = 0; now < 2; now++)
+        for (int r = 0; r < duite_ranks(rt); r++)
+            code |= fork_step(rt, &line[r], r, now);
+    return code;
+}
+
+/* steps: an even number. */
+static int run_steps(duite *rt, struct line *line, const duite_graph *graph, unsigned steps,
+                     double *value)
+{
+    int code = 0;
+    for (int r = 0; r < duite_ranks(rt); r++)
         code |= set_blocks(rt, &line[r], r);
     code |= duite_wait(rt);
     const double start = serve_seconds();
-    for (unsigned step = 0; step < steps && !code; step++)
-        for (int r = 0; r < ranks; r++)
-            code |= fork_step(rt, &line[r], r, (int)(step % 2));
+    if (graph)
+        code |= duite_replay(rt, *graph, steps / 2);
+    for (unsigned step = 0; step < steps && !graph && !code; step += 2)
+        code |= fork_two_steps(rt, line);
     code |= duite_wait(rt);
     *value = serve_seconds() - start;
     return tasks_code(code);
@@ -234,7 +252,23 @@ static int check(duite *rt, const struct line *line, unsigned steps)
     return code ? tasks_code(code) : wrong ? serve_fail("wrong answer") : 0;
 }
 
-static int run_ours(void *context, struct serve_request *request, double *value)
+static int run_lines(duite *rt, struct line *line, bool replays, unsigned steps, double *value)
+{
+    duite_graph graph;
+    const duite_graph *const replayed = replays ? &graph : NULL;
+    int code = replays ? tasks_code(duite_graph_new(rt, fork_two_steps, line, &graph)) : 0;
+    if (!code)
+        code = run_steps(rt, line, replayed, steps / 10, value);
+    if (!code)
+        code = run_steps(rt, line, replayed, steps, value);
+    if (!code)
+        code = check(rt, line, steps);
+    if (!code && replays)
+        duite_graph_free(rt, graph);
+    return code;
+}
+
+static int run_ours(void *context, struct serve_request *request, bool replays, double *value)
 {
     static const duite_kernel *const kernels[] = {&PASS, &STEP, NULL};
     const unsigned steps = (unsigned)serve_number(request, "steps");
@@ -250,17 +284,24 @@ static int run_ours(void *context, struct serve_request *request, double *value)
     for (int r = 0; !code && r < duite_ranks(rt); r++)
         code = tasks_code(line_new(rt, &line[r]));
     if (!code)
-        code = run_steps(rt, line, steps / 10, value);
-    if (!code)
-        code = run_steps(rt, line, steps, value);
-    if (!code)
-        code = check(rt, line, steps);
+        code = run_lines(rt, line, replays, steps, value);
     for (int r = 0; !code && r < duite_ranks(rt); r++)
         line_free(rt, &line[r]);
     return ranks_stop(&rt, code);
 }
 
-static const struct serve_run RUNS[] = {{"await", run_ours}, {"twin_await", run_twin}, {0}};
+static int run_replays(void *context, struct serve_request *request, double *value)
+{
+    return run_ours(context, request, true, value);
+}
+
+static int run_forks(void *context, struct serve_request *request, double *value)
+{
+    return run_ours(context, request, false, value);
+}
+
+static const struct serve_run RUNS[] = {
+    {"await", run_replays}, {"await_forks", run_forks}, {"twin_await", run_twin}, {0}};
 
 const struct bench_case ranks_await = {
     "await", "a halo exchange by requests of the program, as tasks and by hand", plan, RUNS, 0};

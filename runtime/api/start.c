@@ -103,7 +103,7 @@ static int instance_start_graph(duite *rt, const duite_options *options)
                                                .n_kernels = rt->graph.n_kernels,
                                                .monitor = &rt->monitor,
                                                .report = options->trace ? &work_report : NULL});
-    comm_guests_start(&rt->graph.guests, rt->comm, task_guest_over, &rt->graph);
+    comm_guests_start(&rt->graph.guests, rt->comm, work_guest_over, &rt->graph);
     return code;
 }
 

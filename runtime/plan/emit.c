@@ -2,6 +2,7 @@
  * once, here; afterwards only bindings, arguments and replays change it. It lives as long as its
  * record or a replay of it. */
 #include "runtime/plan/plan.h"
+#include "runtime/task/event.h"
 #include "runtime/task/ready.h"
 
 #include "runtime/base/error.h"
@@ -99,6 +100,7 @@ static void emit_call(struct plan *plan, const struct plan_record *record,
         return;
     const duite_kernel *kernel = record->graph->kernels[fork->kernel];
     task->kernel = fork->kernel;
+    task->state = kernel->events ? TASK_HELD : TASK_LOCAL;
     task->placed = at_home && !kernel->replicated && fork->options.at == TASK_ANYWHERE;
     task->priority = fork->options.priority;
     task->cost = (float)fork->options.cost;
@@ -206,6 +208,18 @@ static size_t emit_count_trees(const struct plan_round *round)
     return n;
 }
 
+static bool emit_has_events(const struct emit *emit)
+{
+    const struct plan_record *record = emit->record;
+    bool has = false;
+    for (size_t i = 0; i < emit->round->n_nodes && !has; i++) {
+        const struct plan_round_node *node = &emit->round->node[i];
+        has = node->kind == PLAN_TASK &&
+              record->graph->kernels[record->fork[node->fork].kernel]->events;
+    }
+    return has;
+}
+
 static bool emit_room(struct plan *plan, const struct emit *emit)
 {
     const struct plan_round *round = emit->round;
@@ -216,6 +230,7 @@ static bool emit_room(struct plan *plan, const struct emit *emit)
                                         BASE_ARRAY(plan->first, nodes),
                                         BASE_ARRAY(plan->call, nodes),
                                         BASE_ARRAY(plan->owner, nodes),
+                                        BASE_ARRAY(plan->held, emit_has_events(emit) ? nodes : 0),
                                         BASE_ARRAY(plan->use, uses),
                                         BASE_ARRAY(plan->param, uses),
                                         BASE_ARRAY(plan->param_of, uses),

@@ -3,6 +3,7 @@
 
 #include "runtime/plan/plan.h"
 #include "runtime/task/call.h"
+#include "runtime/task/event.h"
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
@@ -114,6 +115,8 @@ __attribute__((always_inline)) static inline bool plan_node_run_body(struct task
     }
     if (failure)
         plan_taint(plan, PLAN_POISONED);
+    if (failure && task->state == TASK_HELD)
+        task_held_fail(frame->body.held, failure);
     if (taint & PLAN_POISONED || failure)
         plan_node_set_poison(plan, task, failure);
     return runs;

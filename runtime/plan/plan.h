@@ -75,9 +75,10 @@ struct plan {
     unsigned char *nodes; /* the tasks: PLAN_NODE_BYTES each */
     struct task **root;   /* nodes without predecessors in their own round */
     struct task **next;
-    uint32_t *first; /* by node: predecessors in the first round */
-    uint32_t *call;  /* by node: tasks forked before it, for its number */
-    uint32_t *owner; /* by node: the place that it runs for, or PLAN_NONE */
+    uint32_t *first;        /* by node: predecessors in the first round */
+    uint32_t *call;         /* by node: tasks forked before it, for its number */
+    uint32_t *owner;        /* by node: the place that it runs for, or PLAN_NONE */
+    struct task_held *held; /* by node, if some kernel has `events` */
     struct plan_node_use *use;
     duite_param *param; /* one a use */
     uint32_t *param_of;
@@ -246,7 +247,8 @@ static inline void plan_forked(struct plan *plan, struct worker *worker, uint32_
         plan_unpark(plan, worker, i, number);
 }
 
-/* Run: runs a node and returns whether a body ran. Finish: counts its successors down. */
+/* Run: runs a node and returns whether a body ran. Finish: counts its successors down, unless the
+ * node waits for events, which hand it to the workers; then the caller has it no more. */
 bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task *task,
                    const duite_call *call);
 void plan_node_finish(struct task_graph *graph, struct worker *worker, struct task *task);

@@ -179,7 +179,6 @@ int plan_record_fork(struct plan_record *record, const struct task_options *opti
     if (!fork)
         return DUITE_E_MEMORY;
     record_use_all(record, &call);
-    record->forked |= kernel->events != 0;
     if (owner != TASK_NOBODY)
         fork->owner = record->access[fork->first + owner].object;
     if (graph->n_ranks > 1)

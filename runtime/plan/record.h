@@ -69,7 +69,7 @@ struct plan_record {
     uint64_t fits; /* table->changes, plus 1, when all bound objects were last found to exist */
     bool rebound;  /* since all bound objects were last found to differ */
     bool forked;   /* has no plan: contributions of two rounds make one sum, the size of an object
-                      changes, a right is postponed, or a kernel has events */
+                      changes, or a right is postponed */
     bool leads;    /* contributions to some object come before any other access in a round */
     bool trails;   /* some object's contributions stay open after the last round */
     int failed;    /* code of the first call of build that failed */

@@ -263,12 +263,21 @@ static void node_run_flag(struct task_graph *graph, struct task *task)
         atomic_store_explicit(&plan->last, round, memory_order_relaxed);
 }
 
+static struct task_held *node_held(const struct task *task)
+{
+    return task->node->plan->held + plan_node_number(task);
+}
+
 bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task *task,
                    const duite_call *call)
 {
+    if (task->state == TASK_ENDED)
+        return false;
     if (task->type == TASK_NODE) {
         struct task_frame frame;
         task_frame_init(&frame, graph, worker, call);
+        if (task->state == TASK_HELD)
+            task_held_start(frame.body.held = node_held(task));
         return plan_node_run_body(&frame, task);
     }
     atomic_store_explicit(&task->pending, task->node->steady, memory_order_relaxed);
@@ -283,7 +292,24 @@ bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task 
     return false;
 }
 
+/* Returns whether a node with events is over. */
+static bool node_let_go(struct task *task)
+{
+    struct plan *plan = task->node->plan;
+    struct task_held *held = node_held(task);
+    if (task->state == TASK_HELD && !task_held_release(held))
+        return false; /* its events end it, at any moment from now on */
+    const struct data_failure *failure = atomic_load(&held->failure);
+    if (failure) {
+        plan_taint(plan, PLAN_POISONED);
+        plan_node_set_poison(plan, task, failure);
+    }
+    task->state = TASK_HELD; /* in its next round */
+    return true;
+}
+
 void plan_node_finish(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    plan_node_count_down(graph, worker, task, plan_node_ready, NULL);
+    if (task->state == TASK_LOCAL || node_let_go(task))
+        plan_node_count_down(graph, worker, task, plan_node_ready, NULL);
 }

@@ -12,6 +12,7 @@ struct duite_call_private {
     struct task_graph *graph;
     struct worker *worker;
     struct task *task;
+    struct task_held *held;   /* of a HELD task; of others unset */
     const duite_param *param; /* as the runtime keeps them */
     struct task_scope *scope; /* what its children may use, or NULL as long as it has none */
     int refused;       /* code of a duite_resize or duite_contribute that failed, or 0: the body

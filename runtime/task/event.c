@@ -1,6 +1,6 @@
 /* Events: a task of a kernel with `events` is HELD. It ends when its body is over and all events
- * that the body made are completed. task->pending counts both; the last one ends the task. A thread
- * of the program cannot end tasks, so it hands the task to the workers by the shared queue.
+ * that the body made are completed: held->left counts both, and the last one ends the task. A
+ * thread of the program cannot end tasks, so it hands the task to the workers by the shared queue.
  * Requests of MPI that a body hands over are one event, which the worker that finds them over
  * completes. */
 #include "runtime/task/event.h"
@@ -15,41 +15,36 @@
 /* The generation of a slot is odd while its event is not completed. */
 struct task_event {
     struct task *task;
+    struct task_held *held;      /* the task's */
     uint32_t generation, vacant; /* vacant: the next slot without an event, or 0 */
     int requests;                /* of MPI, which complete it; 0: the program does */
 };
 
 /* ---- The held task ---- */
 
-static _Atomic(const struct data_failure *) *held_failure(struct task *task)
+void task_held_start(struct task_held *held)
 {
-    const size_t args_size = task->scope->graph->kernels[task->kernel]->args_size;
-    return (void *)((char *)task_rest(task, task->n) + task_held_at(args_size));
+    atomic_store_explicit(&held->failure, NULL, memory_order_relaxed);
+    atomic_store_explicit(&held->left, 1, memory_order_relaxed);
 }
 
-void task_held_start(struct task *task)
-{
-    atomic_store_explicit(held_failure(task), NULL, memory_order_relaxed);
-    atomic_store_explicit(&task->pending, 1, memory_order_relaxed);
-}
-
-void task_held_fail(struct task *task, const struct data_failure *failure)
+void task_held_fail(struct task_held *held, const struct data_failure *failure)
 {
     const struct data_failure *none = NULL;
-    atomic_compare_exchange_strong(held_failure(task), &none, failure);
+    atomic_compare_exchange_strong(&held->failure, &none, failure);
 }
 
-/* True if this was the last of what holds it. */
-static bool held_release(struct task *task)
+bool task_held_release(struct task_held *held)
 {
-    return atomic_fetch_sub_explicit(&task->pending, 1, memory_order_acq_rel) == 1;
+    return atomic_fetch_sub_explicit(&held->left, 1, memory_order_acq_rel) == 1;
 }
 
 void task_held_over(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    if (task->state == TASK_HELD && !held_release(task))
+    struct task_held *held = task_held_of(graph, task);
+    if (task->state == TASK_HELD && !task_held_release(held))
         return; /* its events end it, at any moment from now on */
-    const struct data_failure *failure = atomic_load(held_failure(task));
+    const struct data_failure *failure = atomic_load(&held->failure);
     if (failure)
         task_poison_outputs(task, failure);
     const duite_kernel *kernel = graph->kernels[task->kernel];
@@ -86,6 +81,7 @@ static int event_make(const duite_call *call, const char *name, int requests, du
 {
     struct task *task = call->own->task;
     struct task_graph *graph = call->own->graph;
+    struct task_held *held = call->own->held;
     uint32_t slot;
     *event = (duite_event){0, 0};
     if (task->state != TASK_HELD)
@@ -95,10 +91,11 @@ static int event_make(const duite_call *call, const char *name, int requests, du
     struct task_event *own = event_take(&graph->events, &slot);
     if (own) {
         own->task = task;
+        own->held = held;
         own->requests = requests;
         graph->events.pending += !requests;
         *event = (duite_event){slot, own->generation};
-        atomic_fetch_add_explicit(&task->pending, 1, memory_order_relaxed);
+        atomic_fetch_add_explicit(&held->left, 1, memory_order_relaxed);
     }
     pthread_mutex_unlock(&graph->lock);
     return own ? DUITE_OK : base_no_memory("an event");
@@ -112,29 +109,42 @@ int duite_event_new(const duite_call *call, duite_event *event)
 }
 
 /* Takes the event out of the table, one that requests of MPI complete or one of the program's.
- * NULL: it is not there. */
-static struct task *event_remove(struct task_graph *graph, duite_event name, bool requests)
+ * False: it is not there. */
+static bool event_remove(struct task_graph *graph, duite_event name, bool requests,
+                         struct task_event *removed)
 {
     struct task_events *events = &graph->events;
-    struct task *task = NULL;
     pthread_mutex_lock(&graph->lock);
     struct task_event *event = name.slot < events->n ? events->event + name.slot : NULL;
-    if (event && event->generation == name.generation && name.generation % 2 &&
-        requests == (event->requests != 0)) {
-        task = event->task;
+    const bool there = event && event->generation == name.generation && name.generation % 2 &&
+                       requests == (event->requests != 0);
+    if (there) {
+        *removed = *event;
         event->generation++;
         event->vacant = events->vacant;
         events->vacant = name.slot;
         events->pending -= !requests;
     }
     pthread_mutex_unlock(&graph->lock);
+    return there;
+}
+
+/* Completes a removed event; failure: NULL, or of the event. Returns its task if nothing holds that
+ * any more: it is ENDED. */
+static struct task *event_complete(const struct task_event *event,
+                                   const struct data_failure *failure)
+{
+    struct task *task = event->task;
+    if (failure)
+        task_held_fail(event->held, task_fail_task(task, NULL, failure));
+    if (!task_held_release(event->held))
+        return NULL;
+    task->state = TASK_ENDED;
     return task;
 }
 
-/* The task may end at once, and the program may stop the runtime. */
-static void event_pass_on(struct task_graph *graph, struct task *task)
+void task_end_later(struct task_graph *graph, struct task *task)
 {
-    task->state = TASK_ENDED;
     queue_put(&graph->pool->shared, task);
     queue_wake_one(graph->pool, DUITE_NO_QUEUE);
 }
@@ -147,16 +157,15 @@ void task_events_settle(struct task_graph *graph)
 
 int task_complete(struct task_graph *graph, duite_event event, int code)
 {
+    const struct data_failure failure = {.code = code, .text = "its event was completed with it"};
+    struct task_event removed;
     atomic_fetch_add_explicit(&graph->events.inside, 1, memory_order_relaxed);
-    struct task *task = event_remove(graph, event, false);
-    if (task && code) {
-        struct data_failure failure = {.code = code, .text = "its event was completed with it"};
-        task_held_fail(task, task_fail_task(task, NULL, &failure));
-    }
-    if (task && held_release(task))
-        event_pass_on(graph, task);
-    atomic_fetch_sub_explicit(&graph->events.inside, 1, memory_order_release);
+    const bool there = event_remove(graph, event, false, &removed);
+    struct task *task = there ? event_complete(&removed, code ? &failure : NULL) : NULL;
     if (task)
+        task_end_later(graph, task);
+    atomic_fetch_sub_explicit(&graph->events.inside, 1, memory_order_release);
+    if (there)
         return DUITE_OK;
     return base_error(DUITE_E_OBJECT, "duite_complete: event %u.%u was %s", event.slot,
                       event.generation, event.slot ? "completed already" : "never made");
@@ -242,23 +251,14 @@ int duite_await_fortran(const duite_call *call, int n, MPI_Fint *requests)
     return code;
 }
 
-void task_guest_over(void *context, struct worker *worker, struct comm_guest *guest)
+struct task *task_guest_over(struct task_graph *graph, struct comm_guest *guest)
 {
-    struct task_graph *graph = context;
-    struct task *task = event_remove(graph, guest->event, true);
-    if (task && guest->failed) {
-        struct data_failure failure = {.code = DUITE_E_MPI};
+    struct task_event removed;
+    struct data_failure failure = {.code = DUITE_E_MPI};
+    const bool there = event_remove(graph, guest->event, true, &removed), failed = guest->failed;
+    if (failed)
         snprintf(failure.text, sizeof failure.text, "request %d of the %d that it awaits: %.120s",
                  guest->failed, guest->n, guest->text);
-        task_held_fail(task, task_fail_task(task, NULL, &failure));
-    }
     base_free(guest);
-    if (!task || !held_release(task))
-        return;
-    if (worker) {
-        task->state = TASK_ENDED;
-        task_held_over(graph, worker, task);
-    } else {
-        event_pass_on(graph, task);
-    }
+    return there ? event_complete(&removed, failed ? &failure : NULL) : NULL;
 }

@@ -234,7 +234,7 @@ static struct task *fork_body(const struct task_fork_call *call, const struct ta
     const size_t round_at = task_round_at(kernel->args_size);
     size_t rest = options->round ? round_at + sizeof options->round : kernel->args_size;
     if (kernel->events)
-        rest = task_held_at(kernel->args_size) + sizeof(const struct data_failure *);
+        rest = task_held_at(kernel->args_size) + sizeof(struct task_held);
     struct task *task = task_new(scope, TASK_BODY, call->n, rest);
     if (!task)
         return NULL;

@@ -207,7 +207,7 @@ __attribute__((always_inline)) static inline bool body_run(struct task_graph *gr
         failure = elsewhere->take(task, param, elsewhere->result);
     }
     if (failure && task->state == TASK_HELD)
-        task_held_fail(task, failure);
+        task_held_fail(frame->body.held, failure);
     else if (failure)
         task_poison_outputs(task, failure);
     else if (other)
@@ -272,12 +272,12 @@ bool task_run(struct task_graph *graph, struct worker *worker, struct task *task
     }
     if (task->state == TASK_ENDED)
         return false;
-    if (task->state == TASK_HELD)
-        task_held_start(task);
     struct task_frame frame; /* of a body; not set otherwise */
     switch (task->type) {
     case TASK_BODY:
         task_frame_init(&frame, graph, worker, call);
+        if (task->state == TASK_HELD)
+            task_held_start(frame.body.held = task_held_of(graph, task));
         return task_run_body(&frame, task);
     case TASK_COMBINE:
         task_run_combine(task);

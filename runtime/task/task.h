@@ -54,8 +54,8 @@ enum task_state {
     TASK_VOID, /* memory ran out while it was forked: does not run, and poisons what it writes */
     TASK_DELEGATED, /* a BODY: goes to another rank in a message, until that rank answers */
     TASK_LEAVES,    /* PIECES, OFFLOADED: it ran, and its results are to be sent */
-    TASK_HELD,      /* a BODY whose kernel has `events`: ends when they are completed, too */
-    TASK_ENDED      /* ... which they are: it ran, and is to be ended */
+    TASK_HELD, /* a BODY or NODE whose kernel has `events`: ends when they are completed, too */
+    TASK_ENDED /* ... which they are: it ran, and is to be ended */
 };
 
 struct task_scope;
@@ -83,8 +83,7 @@ _Static_assert(sizeof(struct task_access) == 16, "tasks that wait take little me
 /* One cache line, then the accesses, then, at a multiple of 16 bytes, the arguments or the union's
  * target. */
 struct task {
-    _Atomic uint32_t pending; /* accesses that wait, and 1 while it is being forked; then of a HELD
-                                 one its events, and 1 while the body runs */
+    _Atomic uint32_t pending; /* accesses that wait, and 1 while it is being forked */
     uint32_t n;
     struct queue_link link; /* for whoever holds the task: queues, lists */
     union {

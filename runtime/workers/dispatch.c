@@ -50,6 +50,16 @@ void work_finish(struct task_graph *graph, struct worker *worker, struct task *t
 
 /* ---- Messages ---- */
 
+void work_guest_over(void *context, struct worker *worker, struct comm_guest *guest)
+{
+    struct task_graph *graph = context;
+    struct task *task = task_guest_over(graph, guest);
+    if (task && worker)
+        work_finish(graph, worker, task);
+    else if (task)
+        task_end_later(graph, task);
+}
+
 static void message_sent(void *graph, struct worker *worker, struct comm_letter *letter)
 {
     work_finish(graph, worker, letter->sender);

@@ -116,10 +116,11 @@ static inline bool run_fits(const struct worker *worker, const struct task *task
                             enum run_form form)
 {
     const struct work_pool *pool = worker->pool;
-    const bool body = task->type == TASK_BODY && task->state == TASK_LOCAL && pool->plain;
+    const bool local = task->state == TASK_LOCAL, node = local && task->type == TASK_NODE;
+    const bool body = local && task->type == TASK_BODY && pool->plain;
     if (form != RUN_ANY)
-        return form == RUN_NODE ? task->type == TASK_NODE : body;
-    return !body && !(task->type == TASK_NODE && pool->plain_nodes && !worker->waits);
+        return form == RUN_NODE ? node : body;
+    return !body && !(node && pool->plain_nodes && !worker->waits);
 }
 
 /* The next one of the worker's own queue, if it would take that. NULL: let it look around. */

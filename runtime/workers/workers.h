@@ -42,6 +42,7 @@ struct work_setup {
  * the work of a busy worker on them: looking for them, sending, taking them. A begin within another
  * one does not count. Times below a microsecond are not noted. */
 extern const struct comm_owner work_messages;
+comm_guest_over work_guest_over;
 extern const struct comm_report work_report;
 
 /* Errors: memory, DUITE_E_SYSTEM. The calling thread becomes worker 0. */

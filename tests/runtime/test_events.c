@@ -192,8 +192,30 @@ UNIT_TEST(many_at_once)
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
 
+struct round {
+    const struct hold_args *args;
+    duite_object a, b;
+};
+
+static int build(duite *runtime, void *context)
+{
+    const struct round *round = context;
+
+    DUITE_FORK(runtime, &HOLD, round->args, round->a);
+    return DUITE_FORK(runtime, &TWICE, NULL, round->a, round->b);
+}
+
+static void replay(struct round *round, uint64_t rounds)
+{
+    duite_graph graph;
+
+    ck_assert_int_eq(duite_graph_new(rt, build, round, &graph), DUITE_OK);
+    ck_assert_int_eq(duite_replay(rt, graph, rounds), DUITE_OK);
+    duite_graph_free(rt, graph);
+}
+
 /* An event, or the body, fails the task: it poisons, once, and only after the other events. */
-UNIT_TEST(failures)
+UNIT_LOOP(failures, 0, 2)
 {
     static const struct hold_args CASES[] = {{.events = 1, .code = 7},
                                              {.events = 2, .code = 7, .wait = LATE},
@@ -205,8 +227,11 @@ UNIT_TEST(failures)
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         start(2, 0, 0);
         const duite_object a = number(), b = number();
-        DUITE_FORK(rt, &HOLD, &CASES[i], a);
-        DUITE_FORK(rt, &TWICE, NULL, a, b);
+        struct round round = {&CASES[i], a, b};
+        if (_i)
+            replay(&round, 3);
+        else
+            build(rt, &round);
         ck_assert_int_eq(duite_get(rt, b, &value), 7);
         ck_assert_ptr_nonnull(strstr(duite_message(), "kernel hold"));
         ck_assert_int_eq(duite_wait(rt), 7);
@@ -432,28 +457,13 @@ UNIT_TEST(requests_misused)
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
 
-struct round {
-    duite_object a, b;
-};
-
-static int build(duite *runtime, void *context)
-{
-    const struct hold_args args = {.events = 1, .wait = 200};
-    const struct round *round = context;
-
-    DUITE_FORK(runtime, &HOLD, &args, round->a);
-    return DUITE_FORK(runtime, &TWICE, NULL, round->a, round->b);
-}
-
 UNIT_TEST(replays)
 {
+    const struct hold_args args = {.events = 1, .wait = 200};
     start(2, 0, 0);
-    struct round round = {number(), number()};
-    duite_graph graph;
-    ck_assert_int_eq(duite_graph_new(rt, build, &round, &graph), DUITE_OK);
-    ck_assert_int_eq(duite_replay(rt, graph, 5), DUITE_OK);
+    struct round round = {&args, number(), number()};
+    replay(&round, 5);
     ck_assert_int_eq(value_of(round.b), 20);
-    duite_graph_free(rt, graph);
     duite_free(rt, round.a);
     duite_free(rt, round.b);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);

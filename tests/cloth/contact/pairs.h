@@ -2,7 +2,7 @@
 #define TESTS_CLOTH_CONTACT_PAIRS_H
 
 /* Random pairs of features that move, of several sorts. */
-#include "cloth/contact/pair.h"
+#include "cloth/contact/certificate.h"
 #include "tests/support/random.h"
 
 #include <check.h>
@@ -25,7 +25,7 @@ static const struct pairs_sort PAIRS_SORTS[] = {
     {"a large common velocity", 0.01, 0.002, 100, 1, 0, 0},
     {"gaps of 1e-6 m", 0.01, 1e-6, 0.001, 1, 1e-6, 0},
     {"gaps of 1e-6 m, a large common velocity, far away", 0.01, 2e-6, 1000, 1e6, 1e-6, 0},
-    {"gaps of 2e-9 m", 0.01, 1e-9, 1e-3, 1, 2e-9, 0},
+    {"gaps of two margins", 0.01, CONTACT_MARGIN, 1e-3, 1, 2 * CONTACT_MARGIN, 0},
     {"far away", 0.01, 0.002, 0.002, 1e6, 0, 0},
     {"nearly parallel edges, needles", 0.01, 0.002, 0.002, 1, 0, 1e-7},
     {"nearly parallel edges and needles at 1e-6 m", 0.01, 2e-6, 0.002, 1, 1e-6, 1e-9},

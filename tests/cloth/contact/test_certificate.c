@@ -45,11 +45,35 @@ UNIT_TEST(known)
         ck_assert(certain(pair, 1e-3, 5, 6));
         ck_assert(certain(pair, 1e-4, 0.49e-4, 0)); /* half of a small gap is left */
         ck_assert(!certain(pair, 1e-4, 0.51e-4, 0));
-        ck_assert(certain(pair, 1e-9, 0, 0));
-        ck_assert(certain(pair, 0.6e-9, -1e-10, 0)); /* opens */
-        ck_assert(!certain(pair, 1.5e-9, 0.6e-9, 0));
+        ck_assert(certain(pair, CONTACT_MARGIN, 0, 0));
+        ck_assert(certain(pair, 0.6 * CONTACT_MARGIN, -0.1 * CONTACT_MARGIN, 0)); /* opens */
+        ck_assert(!certain(pair, 1.5 * CONTACT_MARGIN, 0.6 * CONTACT_MARGIN, 0));
         ck_assert(!certain(pair, 0, 0, 0));
         ck_assert(!certain(pair, 0, -1, 0)); /* touches at the start */
+    }
+}
+
+/* A pair at the margin, within 2 m of the origin, does not touch in floats. */
+UNIT_TEST(apart_in_floats)
+{
+    static const struct pairs_sort AT_MARGIN = {"", 0.01, 0, 0, 1.9, CONTACT_MARGIN, 0};
+    for (int i = 0; i < 20000; i++) {
+        const enum contact_pair pair = KINDS[i & 1];
+        struct contact_nearest nearest;
+        phys_vec x[4], y[4];
+        pairs_draw(pair, &AT_MARGIN, x, y);
+        contact_nearest_of(pair, x, &nearest);
+        for (int k = 0; k < 4; k++)
+            for (int c = 0; c < 3; c++)
+                y[k][c] = (float)x[k][c];
+        double between[2] = {INFINITY, INFINITY}; /* least of the first, of minus the second */
+        for (int k = 0; k < 4; k++) {
+            const bool first = k < (pair == CONTACT_VT ? 1 : 2);
+            const phys_vec from = y[k] - y[3];
+            const double height = phys_dot(&nearest.normal, &from);
+            between[!first] = fmin(between[!first], first ? height : -height);
+        }
+        ck_assert_double_gt(between[0] + between[1], 0);
     }
 }
 

@@ -1,20 +1,25 @@
 #ifndef CLOTH_CONTACT_PUSH_H
 #define CLOTH_CONTACT_PUSH_H
 
+#include "cloth/contact/certificate.h"
+
 #include <math.h>
 
 /* Pushes that part two features where a step ends, along a normal out of the second one. Pure; m.
  */
 
-/* Parts of the gap at the step's begin, and of the thickness: pushed features end the step as far
- * apart as the less of both. Certificates ask for half of the first, or a tenth of the second
- * (certificate.h). The features still come nearer, so pushes take energy away. */
+/* Parts of the gap at the step's begin, of the thickness, and of the margin: pushed features end
+ * the step as far apart as the less of the first two, but at least the third. Certificates ask for
+ * half of the first, or a tenth of the second, and the margin (certificate.h). The features still
+ * come nearer, so pushes take energy away. */
 #define CONTACT_PUSH_OF_GAP       0.75
 #define CONTACT_PUSH_OF_THICKNESS 0.12
+#define CONTACT_PUSH_OF_MARGIN    1.2
 
 static inline double contact_push_gap(double gap, double thickness)
 {
-    return fmin(CONTACT_PUSH_OF_GAP * gap, CONTACT_PUSH_OF_THICKNESS * thickness);
+    const double less = fmin(CONTACT_PUSH_OF_GAP * gap, CONTACT_PUSH_OF_THICKNESS * thickness);
+    return fmax(less, CONTACT_PUSH_OF_MARGIN * CONTACT_MARGIN);
 }
 
 /* Corners 0 .. first - 1 are of the first feature, the others, to n - 1, of the second. */

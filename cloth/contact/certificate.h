@@ -19,9 +19,10 @@
  * A difference is off by u of itself and a product with n by 3 u more, so f is off by less than 5 u
  * S. The test takes off 8 u S, for coordinates and ways of any size. */
 
-/* m: a step does not bring features nearer than this. Floats of up to 8 m change a distance by less
- * (sqrt(3) 2^-21 m), so frames do not intersect where steps do not. */
-#define CONTACT_MARGIN 0x1p-20
+/* m: a step does not bring features nearer than this. Floats of up to 2 m change a distance by less
+ * (sqrt(3) 2^-23 m), so frames do not intersect where steps do not. A larger one would end runs in
+ * which pins lead cloth together: gaps may halve in each step down to it. */
+#define CONTACT_MARGIN 0x1p-22
 
 /* True if the pair provably never touches, and f(1) is enough for the next steps: at least
  * CONTACT_MARGIN and min(f(0) / 2, thickness / 10), or no less than f(0). Half the margin is enough

@@ -82,12 +82,12 @@ bad layers "$(layers)" "box: {centre: [0, -0.05, 0], size: [0.2, 0.1, 0.2]}, box
 ok "50 layers pressed to a millimetre" named layers "[0-9 ]+of 'l[0-9]+' and .*"
 ok "what they take" remembers layers 0.1
 
-# Cloth pressed to a twentieth of its thickness takes many short steps, here for hours.
+# Cloth pressed to a tenth of its thickness, which stretches it beyond the usual bound, takes many short steps, here for hours.
 bad tight "$(sheet a 0.1 11 0.03 0.0015)" "$low, box: {name: high, centre: [-0.05, 0.06, 0], size: [0.2, 0.1, 0.2], $(led 0.1 -0.0099)}" 100000
 rows() { test "$(wc -l < out/probes.csv)" -gt "$1"; }
 stops() { # SIGNAL
     rm -rf out
-    "$DUITE_CLOTH" tight.yaml --threads 2 --quiet --output out --set 'probes=[{cloth: a, vertices: [0]}]' > said 2>&1 &
+    "$DUITE_CLOTH" tight.yaml --threads 2 --quiet --output out --set time.stretch_growth=0 --set 'probes=[{cloth: a, vertices: [0]}]' > said 2>&1 &
     job=$!
     awaits $job rows 30 && kill -"$1" $job
     got=0

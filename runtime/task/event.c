@@ -131,8 +131,7 @@ static bool event_remove(struct task_graph *graph, duite_event name, bool reques
 
 /* Completes a removed event; failure: NULL, or of the event. Returns its task if nothing holds that
  * any more: it is ENDED. */
-static struct task *event_complete(const struct task_event *event,
-                                   const struct data_failure *failure)
+static struct task *event_complete(const struct task_event *event, struct data_failure *failure)
 {
     struct task *task = event->task;
     if (failure)
@@ -157,7 +156,7 @@ void task_events_settle(struct task_graph *graph)
 
 int task_complete(struct task_graph *graph, duite_event event, int code)
 {
-    const struct data_failure failure = {.code = code, .text = "its event was completed with it"};
+    struct data_failure failure = {.code = code, .text = "its event was completed with it"};
     struct task_event removed;
     atomic_fetch_add_explicit(&graph->events.inside, 1, memory_order_relaxed);
     const bool there = event_remove(graph, event, false, &removed);

@@ -86,7 +86,7 @@ void measure_worst(struct measure *measure, const char *kind, const char *name);
 /* Gives the metrics planned so far their targets, by name. */
 void measure_targets(struct measure *measure, const struct measure_target *targets);
 
-/* True if a metric with a target, once measured, keeps to it. */
+/* The verdict on a metric with a target, once it is measured. */
 enum measure_verdict measure_verdict(const struct measure_metric *metric);
 
 /* A random number below n. */

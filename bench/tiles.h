@@ -59,7 +59,7 @@ size_t tiles_bytes(struct tiles tiles);
 double *tiles_make(struct tiles tiles);
 /* Factorises such tiles by a loop. */
 void tiles_factor(struct tiles tiles, double *a);
-/* True if a factorised tile is another than the factors say; whether any of all is. */
+/* True if a factorised tile is another than the factors say; if any of all is. */
 int tiles_wrong(struct tiles tiles, size_t place, const double *tile);
 int tiles_all_wrong(struct tiles tiles, const double *a);
 

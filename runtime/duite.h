@@ -314,7 +314,8 @@ int duite_kernel_add(duite *rt, const duite_kernel *kernel);
  * all its events are completed; only then others see its results. Until then its parameters' data
  * stay where they are and may be read and written by their modes; `call`, args and the calls of a
  * body end with the body. Such tasks run on the rank that duite_fork says. Checking mode calls
- * their bodies once, with the parameters themselves. */
+ * their bodies once, with the parameters themselves. A replay (duite_replay) is over when the
+ * events of its tasks are completed, too. */
 
 /* Names something that is to happen: a value, freely copied, of this rank. */
 typedef struct duite_event {
@@ -758,10 +759,10 @@ void duite_prefetch(const duite *rt, size_t n, const duite_object *objects);
  * recorded: same results, failures and task numbers, in less time. A round may have up to 4,096
  * forks without options. Their kernels have up to 16 parameters under r, w and rw and write
  * something; objects have fixed sizes; arguments may change. Rounds with a kernel that accumulates,
- * postpones, is replicated or variadic are not recognised. Any other call of the main program ends
- * the replay, and it begins again after two equal rounds. Bodies must have run, to be known as
- * short: on one thread with window 0 none runs before the first get or wait, and no round is
- * recognised. Rounds whose arguments come to more than 1 MiB ahead of the bodies are forked.
+ * postpones, has events, is replicated or variadic are not recognised. Any other call of the main
+ * program ends the replay, and it begins again after two equal rounds. Bodies must have run, to be
+ * known as short: on one thread with window 0 none runs before the first get or wait, and no round
+ * is recognised. Rounds whose arguments come to more than 1 MiB ahead of the bodies are forked.
  * Checking mode and traces switch it off, as does options.memo. Errors: DUITE_E_ARGUMENT,
  * DUITE_E_KERNEL, DUITE_E_ACCESS, DUITE_E_OBJECT, DUITE_E_LAW, DUITE_E_MEMORY; in a body
  * DUITE_E_RIGHT. */

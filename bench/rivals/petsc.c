@@ -187,7 +187,9 @@ static int cg(void *context, struct serve_request *request, double *value)
     return code;
 }
 
-/* True if the error is small enough: looked at after every iteration, not timed. */
+/* A search for the iteration after which the error is small enough: looked at after each, not
+ * timed.
+ */
 struct search {
     const struct session *session;
     const struct system *system;

@@ -76,6 +76,9 @@ double contact_nearest_way(const struct contact_solid *solid, const struct conta
     return point.gap;
 }
 
+/* A sum of two unit vectors that is no longer counts as none. */
+static const double OPPOSITE = 1e-9;
+
 static void put_mean(const double a[3], const double b[3], double mean[3])
 {
     double length = 0;
@@ -85,7 +88,7 @@ static void put_mean(const double a[3], const double b[3], double mean[3])
     }
     length = sqrt(length);
     for (int c = 0; c < 3; c++) /* of two that are opposite it is neither */
-        mean[c] = length > CONTACT_MARGIN ? mean[c] / length : a[c];
+        mean[c] = length > OPPOSITE ? mean[c] / length : a[c];
 }
 
 void contact_divide_pair(const struct contact_solid *solid, int i, const double begin[3],

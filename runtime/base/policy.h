@@ -75,7 +75,7 @@ enum base_policy_call { BASE_NO_CALL, BASE_POLICY_FUNCTIONS(BASE_POLICY_CALL) BA
 
 struct base_marks;
 
-/* The mark of one worker, who alone writes `inside`, with relaxed stores: readers order nothing by
+/* A worker's mark. Only that worker writes `inside`, with relaxed stores: readers order nothing by
  * it. */
 struct base_mark {
     _Alignas(BASE_LINE) _Atomic uint64_t inside; /* 256 times how many calls so far, and which of

@@ -1,10 +1,12 @@
 /* Running a plan. A node belongs to the worker that runs it from the moment its counter is 0 until
- * its last successor is counted down; a worker owns an awaited node (node.h) from the moment
- * nothing is missing. Its own counter goes back to `steady` before the first of these decrements,
- * to count for its next round, where no node that it waits for has run yet (see edges.c). A replay
- * is over when all sinks of its last round are. Every other node comes before one of these, and a
- * node with successors to count down keeps one of them waiting. So after its last decrement, of a
- * successor or of the sinks, a worker must not touch the plan: it may be freed.
+ * its last successor is counted down, but for one with events: between the end of its body and of
+ * its last event it is nobody's (task/event.c). A worker owns an awaited node (node.h) from the
+ * moment nothing is missing. Its own counter goes back to `steady` before the first of these
+ * decrements, to count for its next round, where no node that it waits for has run yet (see
+ * edges.c). A replay is over when all sinks of its last round are. Every other node comes before
+ * one of these, and a node with successors to count down keeps one of them waiting. So after its
+ * last decrement, of a successor or of the sinks, a worker must not touch the plan: it may be
+ * freed.
  *
  * Poison is kept by place, under the same dependences as the bytes. Workers look at it only once
  * something failed: a worker that sees the effects of a failure also sees `tainted`. */

@@ -229,8 +229,8 @@ struct task_graph {
         uint32_t owner[2]; /* which of n objects, of more than n, a task runs for: see owner.h */
         uint32_t grains;   /* of a task with n objects */
         uint64_t hash;     /* of a fork that names no rank, before its objects */
-        bool few;          /* r, w, rw and cw alone, few of them, no others; and it is not
-                              replicated */
+        bool few;          /* r, w, rw and cw alone, few of them, no others; it is not replicated
+                              and has no events */
         bool plain;        /* ... and no cw */
         bool direct;       /* ... and there is one rank */
         struct task *head; /* plain: template of a task that was just forked; owned */

@@ -60,7 +60,7 @@ bool machine_time_left(void);
 int machine_create(void *(*start)(void *), void *argument);
 int machine_self(void);
 uint64_t *machine_gone(int thread);
-/* True if the plant is here. */
+/* The change of the plant, if it is here. */
 enum explore_change machine_change(const char *function, const char *what);
 
 /* ---- The search ---- */

@@ -32,7 +32,7 @@ tests_runtime_overrun_LDADD = $(CORE_LIBS)
 
 if HAVE_CHECK
 LEAK_TESTS += tests/runtime/test_window tests/runtime/test_memo tests/runtime/test_memo_ahead tests/runtime/test_late \
-    tests/runtime/test_events tests/runtime/test_laws tests/runtime/test_sched tests/runtime/test_sched_told \
+    tests/runtime/test_events tests/runtime/test_requests tests/runtime/test_laws tests/runtime/test_sched tests/runtime/test_sched_told \
     tests/runtime/test_makespan tests/runtime/test_check tests/runtime/test_busy tests/runtime/test_environment tests/runtime/test_nested_tasks \
     tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_lines
 TSAN_TESTS += tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_comm tests/runtime/test_settle \
@@ -57,8 +57,10 @@ tests_runtime_test_owner_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_late_LDADD = tests/support/libunit.a $(CHECK_LIBS)
 EXTRA_tests_runtime_test_late_DEPENDENCIES = libduite.la
 tests_runtime_test_pool_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_events_SOURCES = tests/runtime/test_events.c tests/negative/misuse.c tests/negative/misuse.h
+tests_runtime_test_events_SOURCES = tests/runtime/test_events.c tests/runtime/events.h tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_events_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_requests_SOURCES = tests/runtime/test_requests.c tests/runtime/events.h tests/negative/misuse.c tests/negative/misuse.h
+tests_runtime_test_requests_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_laws_SOURCES = tests/runtime/test_laws.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_laws_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_settle_LDADD = $(DUITE_TEST_LIBS)

@@ -1,7 +1,6 @@
 /* Events: tasks end when their bodies are over and their events are completed, in any order and by
  * any thread; until then nobody sees their results. */
-#include "tests/negative/misuse.h"
-#include "tests/support/unit.h"
+#include "tests/runtime/events.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -12,8 +11,6 @@
 #include <unistd.h>
 
 enum { LATE = 3000 /* microseconds after the body */, AT_ONCE = 200 };
-
-static duite *rt;
 
 /* ---- A thread of the program that completes events ---- */
 
@@ -110,32 +107,11 @@ KERNEL(PARENT, "parent", .access = {DUITE_RWP})
     return value == 3 ? duite_wait(call->rt) : 2;
 }
 
-static void start_with(const duite_kernel *const *kernels, unsigned threads, int check,
-                       size_t window)
-{
-    duite_options options = misuse_options(MPI_COMM_WORLD);
-
-    misuse_mpi();
-    options.kernels = kernels;
-    options.threads = threads;
-    options.check = check;
-    options.window = window;
-    ck_assert_msg(!duite_start(&rt, &options), "%s", duite_message());
-}
-
 static void start(unsigned threads, int check, size_t window)
 {
     static const duite_kernel *const KERNELS[] = {&HOLD, &LEAVE, &TWICE, &WITHOUT, &PARENT, NULL};
 
     start_with(KERNELS, threads, check, window);
-}
-
-static duite_object number(void)
-{
-    duite_object object;
-
-    ck_assert_int_eq(duite_new(rt, DUITE_I64, 1, &object), DUITE_OK);
-    return object;
 }
 
 static int64_t value_of(duite_object object)
@@ -189,6 +165,31 @@ UNIT_TEST(many_at_once)
         ck_assert_int_eq(value_of(object[i]), 1);
         duite_free(rt, object[i]);
     }
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+}
+
+/* Repeated forks with events are not recognised: a get does not wait for the events of others. */
+UNIT_TEST(repeated)
+{
+    enum { ROUNDS = 100 };
+
+    setenv("DUITE_MEMO", "always", 1);
+    start(2, 0, 0);
+    const duite_object a = number(), b = number(), c = number();
+    for (int i = 0; i < ROUNDS; i++) {
+        DUITE_FORK(rt, &LEAVE, NULL, a);
+        DUITE_FORK(rt, &TWICE, NULL, b, c);
+    }
+    ck_assert_int_eq(value_of(c), 0);
+    for (int i = 0; i < ROUNDS; i++) {
+        while (atomic_load(&n_left) <= i)
+            usleep(100);
+        ck_assert_int_eq(duite_complete(rt, left[i], 0), DUITE_OK);
+    }
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+    duite_free(rt, a);
+    duite_free(rt, b);
+    duite_free(rt, c);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
 
@@ -275,25 +276,6 @@ UNIT_TEST(children)
     }
 }
 
-/* Gets the object for longer than a standstill: the report has the sentence. */
-static void reports(duite_object object, void *value, const char *sentence)
-{
-    const int standard_error = dup(STDERR_FILENO);
-    FILE *said = tmpfile();
-    char text[2000] = "";
-
-    ck_assert_ptr_nonnull(said);
-    dup2(fileno(said), STDERR_FILENO);
-    const int code = duite_get(rt, object, value);
-    dup2(standard_error, STDERR_FILENO);
-    ck_assert_int_eq(code, DUITE_OK);
-    rewind(said);
-    ck_assert_uint_gt(fread(text, 1, sizeof text - 1, said), 0);
-    ck_assert_msg(strstr(text, sentence), "%s", text);
-    fclose(said);
-    close(standard_error);
-}
-
 /* The report of a standstill names the task and its event. */
 UNIT_TEST(never_completed)
 {
@@ -307,153 +289,6 @@ UNIT_TEST(never_completed)
     reports(a, &value, "(kernel hold) ends when the program completes event 1.1");
     ck_assert_int_eq(value, 2);
     duite_free(rt, a);
-    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
-}
-
-/* ---- Requests of MPI ---- */
-
-static int32_t there; /* that goes to this process itself */
-
-/* Receives parameter 0, and a SENDER or this body itself sends it, which may hand Fortran's handles
- * over. */
-enum { AWAITS_SENDER, SENDS, SENDS_BY_HANDLES };
-KERNEL(RECEIVE, "receive", .access = {DUITE_W}, .args_size = sizeof(int), .events = 1)
-{
-    const int how = *(const int *)call->args, sends = how != AWAITS_SENDER;
-    MPI_Request request[2];
-    MPI_Fint handle[2];
-
-    there = 9;
-    ck_assert_int_eq(duite_mpi_begin(call->rt), DUITE_OK);
-    MPI_Irecv(call->param[0].data, 1, MPI_INT32_T, 0, 5, MPI_COMM_SELF, &request[0]);
-    if (sends)
-        MPI_Isend(&there, 1, MPI_INT32_T, 0, 5, MPI_COMM_SELF, &request[1]);
-    for (int i = 0; i < 2 && how == SENDS_BY_HANDLES; i++)
-        handle[i] = MPI_Request_c2f(request[i]);
-    ck_assert_int_eq(duite_mpi_end(call->rt), DUITE_OK);
-    if (how != SENDS_BY_HANDLES)
-        return duite_await_mpi(call, 1 + sends, request);
-    const int code = duite_await_fortran(call, 2, handle);
-    ck_assert(MPI_Request_f2c(handle[0]) == MPI_REQUEST_NULL);
-    ck_assert(MPI_Request_f2c(handle[1]) == MPI_REQUEST_NULL);
-    return code;
-}
-
-KERNEL(SEND_LATE, "send_late")
-{
-    usleep(1000000);
-    ck_assert_int_eq(duite_mpi_begin(call->rt), DUITE_OK);
-    MPI_Send(&there, 1, MPI_INT32_T, 0, 5, MPI_COMM_SELF); /* its receive is there */
-    return duite_mpi_end(call->rt);
-}
-
-/* Each call is refused with its sentence. */
-KERNEL(MISUSES, "misuses", .events = 1)
-{
-    MPI_Request request[2] = {MPI_REQUEST_NULL, MPI_REQUEST_NULL};
-    MPI_Fint handle[2] = {MPI_Request_c2f(MPI_REQUEST_NULL), 0};
-
-    ck_assert_int_eq(duite_await_mpi(call, 0, NULL), DUITE_OK);
-    ck_assert_int_eq(duite_await_mpi(call, 1, NULL), DUITE_E_ARGUMENT);
-    ck_assert_ptr_nonnull(strstr(duite_message(), "at NULL"));
-    ck_assert_int_eq(duite_await_mpi(call, -1, request), DUITE_E_ARGUMENT);
-    ck_assert_ptr_nonnull(strstr(duite_message(), "-1 requests"));
-    ck_assert_int_eq(duite_await_mpi(call, 2, request), DUITE_E_ARGUMENT);
-    ck_assert_ptr_nonnull(strstr(duite_message(), "request 1 of 2 is MPI_REQUEST_NULL"));
-    ck_assert_int_eq(duite_await_fortran(call, 1, NULL), DUITE_E_ARGUMENT);
-    ck_assert_ptr_nonnull(strstr(duite_message(), "at NULL"));
-    ck_assert_int_eq(duite_await_fortran(call, 1, handle), DUITE_E_ARGUMENT);
-    ck_assert_ptr_nonnull(strstr(duite_message(), "request 1 of 1 is MPI_REQUEST_NULL"));
-    ck_assert_int_eq(duite_mpi_end(call->rt), DUITE_E_STATE);
-    ck_assert_int_eq(duite_mpi_begin(call->rt), DUITE_OK);
-    ck_assert_int_eq(duite_mpi_begin(call->rt), DUITE_E_STATE);
-    ck_assert_int_eq(duite_mpi_end(call->rt), DUITE_OK);
-    return 0;
-}
-
-KERNEL(WITHOUT_EVENTS, "without_events")
-{
-    MPI_Request request;
-
-    MPI_Irecv(&there, 1, MPI_INT32_T, MPI_PROC_NULL, 5, MPI_COMM_SELF, &request);
-    ck_assert_int_eq(duite_await_mpi(call, 1, &request), DUITE_E_STATE);
-    ck_assert_ptr_nonnull(strstr(duite_message(), "kernel without_events"));
-    return MPI_Wait(&request, MPI_STATUS_IGNORE);
-}
-
-/* Keeps MPI: ends, or waits for a child. */
-KERNEL(KEEP, "keep", .access = {DUITE_RWP}, .args_size = sizeof(int))
-{
-    const int waits = *(const int *)call->args;
-    int code = duite_mpi_begin(call->rt);
-
-    if (waits && !code) {
-        code = DUITE_FORK(call->rt, &HOLD, DUITE_ARGS(struct hold_args, .at_once = 0),
-                          call->param[0].object);
-        code = code ? code : duite_wait(call->rt);
-        duite_fail(call, code, "%s", duite_message());
-        ck_assert_int_eq(duite_mpi_end(call->rt), DUITE_OK);
-    }
-    return code;
-}
-
-static const duite_kernel *const MPI_KERNELS[] = {&HOLD,    &TWICE,          &RECEIVE, &SEND_LATE,
-                                                  &MISUSES, &WITHOUT_EVENTS, &KEEP,    NULL};
-
-UNIT_TEST(requests)
-{
-    for (unsigned threads = 1; threads < 4; threads++)
-        for (int check = 0; check < 2; check++) {
-            start_with(MPI_KERNELS, threads, check, threads == 2);
-            for (int i = 0; i < 50; i++) {
-                duite_object a;
-                int32_t value = 0;
-
-                ck_assert_int_eq(duite_new(rt, DUITE_I32, 1, &a), DUITE_OK);
-                DUITE_FORK(rt, &RECEIVE, DUITE_ARGS(int, SENDS + i % 2), a);
-                ck_assert_int_eq(duite_get(rt, a, &value), DUITE_OK);
-                ck_assert_int_eq(value, 9);
-                duite_free(rt, a);
-            }
-            ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
-        }
-}
-
-/* The report of a standstill names the task. */
-UNIT_TEST(requests_late)
-{
-    duite_object a;
-    int32_t value = 0;
-
-    setenv("DUITE_STUCK_SECONDS", "0.2", 1);
-    start_with(MPI_KERNELS, 2, 0, 0);
-    ck_assert_int_eq(duite_new(rt, DUITE_I32, 1, &a), DUITE_OK);
-    DUITE_FORK(rt, &RECEIVE, DUITE_ARGS(int, AWAITS_SENDER), a);
-    duite_fork(rt, &SEND_LATE, NULL, 0, NULL);
-    reports(a, &value, "(kernel receive) waits for 1 requests of MPI that it handed over");
-    ck_assert_int_eq(value, 9);
-    duite_free(rt, a);
-    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
-}
-
-UNIT_TEST(requests_misused)
-{
-    start_with(MPI_KERNELS, 2, 0, 0);
-    ck_assert_int_eq(duite_fork(rt, &MISUSES, NULL, 0, NULL), DUITE_OK);
-    ck_assert_int_eq(duite_fork(rt, &WITHOUT_EVENTS, NULL, 0, NULL), DUITE_OK);
-    ck_assert_msg(!duite_wait(rt), "%s", duite_message());
-    const duite_object a = number();
-    for (int waits = 0; waits < 2; waits++) {
-        DUITE_FORK(rt, &KEEP, &waits, a);
-        ck_assert_int_eq(duite_wait(rt), DUITE_E_STATE);
-        ck_assert_ptr_nonnull(
-            strstr(duite_message(), waits ? "waits between duite_mpi_begin and duite_mpi_end"
-                                          : "returned between duite_mpi_begin and duite_mpi_end"));
-        duite_set(rt, a, NULL);
-    }
-    duite_free(rt, a);
-    ck_assert_int_eq(duite_mpi_begin(rt), DUITE_OK); /* no body has kept it */
-    ck_assert_int_eq(duite_mpi_end(rt), DUITE_OK);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
 

@@ -220,7 +220,7 @@ UNIT_TEST(compressed_springs)
     check(&setup);
 }
 
-/* True if the largest error of the run was told and kept. */
+/* The largest error of the run is told and kept. */
 UNIT_TEST(stop_in_the_mass_norm)
 {
     struct setup setup;

@@ -29,7 +29,7 @@ void sample_positions(unsigned run, uint64_t frame, double *position);
 __attribute__((format(printf, 1, 2))) const char *sample_at(const char *format, ...);
 /* The file in the frames folder, likewise. */
 const char *sample_path(const char *name);
-/* True if something is at the path, and what it is. */
+/* True if something is at the path; its properties. */
 bool sample_has(const char *path);
 struct stat sample_stat(const char *path);
 /* Reads up to size bytes of a file and ends them with '\0'; returns their number. */

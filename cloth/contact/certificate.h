@@ -13,11 +13,19 @@
  * plane across n lies between them at every s. Any n proves it; the closest direction at the start
  * is tried, then that at the end.
  *
+ * Features that touch have their four corners in a plane. The volume a.(b x c) of three differences
+ * of corners is a cubic in s. If its four coefficients in Bernstein's basis have one sign, it is
+ * never 0 (Tang, Manocha, Tong 2010, Fast Continuous Collision Detection using Deforming
+ * Non-Penetration Filters). So near features may turn together, which no plane across one n
+ * divides.
+ *
  * Rounding: f(0) is made of differences against corner 0 at the start, f(1) of those at the end. So
  * motion that all corners share, and distance from the origin, cancel before anything is
- * multiplied. Let S be the sum of the absolute components of the three differences, and u = 2^-53.
- * A difference is off by u of itself and a product with n by 3 u more, so f is off by less than 5 u
- * S. The test takes off 8 u S, for coordinates and ways of any size. */
+ * multiplied. Let S be the sum of the absolute components of the three differences at both ends,
+ * and u = 2^-53. A difference is off by u of itself and a product with n by 3 u more, so f is off
+ * by less than 5 u S. The test takes off 8 u S, for coordinates and ways of any size. Three times a
+ * coefficient is off by less than 11 u of its terms, which sum to S^3 / 9 at most. The test takes
+ * off 2 u S^3. */
 
 /* m: a step does not bring features nearer than this. Floats of up to 2 m change a distance by less
  * (sqrt(3) 2^-23 m), so frames do not intersect where steps do not. A larger one would end runs in

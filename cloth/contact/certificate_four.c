@@ -1,7 +1,8 @@
 /* Pairs are certified four of one kind at once, a lane each: most of them by the sum of the
  * directions across both features at the start and at the end, the others by the closest directions
- * at either end. Lanes do not depend on each other, so a pair has the same verdict among others as
- * alone. Only the comparisons with a bound on rounding, here, make a pair certain. */
+ * at either end or by their volume. Lanes do not depend on each other, so a pair has the same
+ * verdict among others as alone. Only the comparisons with a bound on rounding, here, make a pair
+ * certain. */
 #include "cloth/contact/direction.h"
 
 #include <math.h>
@@ -38,6 +39,17 @@ PHYS_INLINE void quick_dot(const struct contact_lanes *a, const struct contact_l
     *to = (a->c[2] * b->c[2] + a->c[1] * b->c[1]) + (a->c[0] * b->c[0] + 0.0);
 }
 
+/* The product a x b. */
+PHYS_INLINE void quick_product(const struct contact_lanes *a, const struct contact_lanes *b,
+                               struct contact_lanes *to)
+{
+    PHYS_UNROLL
+    for (int c = 0; c < 3; c++) {
+        const int d = (c + 1) % 3, e = (c + 2) % 3;
+        to->c[c] = a->c[d] * b->c[e] - a->c[e] * b->c[d];
+    }
+}
+
 /* Adds the direction across both features, from the second to the first. */
 PHYS_INLINE void quick_across(enum contact_pair pair, const struct quick_end *end,
                               struct contact_lanes *n)
@@ -50,11 +62,7 @@ PHYS_INLINE void quick_across(enum contact_pair pair, const struct quick_end *en
     quick_subtract(p + 2 - is_edges, p + 1 - is_edges, &a);
     quick_subtract(p + 3, p + 1 + is_edges, &b);
     quick_subtract(p, p + 1 + is_edges, &way);
-    PHYS_UNROLL
-    for (int c = 0; c < 3; c++) {
-        const int d = (c + 1) % 3, e = (c + 2) % 3;
-        across.c[c] = a.c[d] * b.c[e] - a.c[e] * b.c[d];
-    }
+    quick_product(&a, &b, &across);
     quick_dot(&across, &way, &dot);
     const contact_mask sign = (contact_mask)dot & bit;
     PHYS_UNROLL
@@ -214,9 +222,11 @@ PHYS_INLINE void closely_widen(const struct closely_along *along, phys_vec *gap)
     contact_choose(&is, &own, gap, gap);
 }
 
-/* The lanes that are proven, with an f(1) that is enough after a gap, m. NaN fails. */
+/* The lanes in which an f(1) is enough after a gap, m, and those that are proven: in which f(0) is
+ * above 0, too. NaN fails. */
 PHYS_INLINE void closely_prove(const struct closely_along *along, const phys_vec *gap,
-                               double thickness, const phys_vec *off, contact_mask *proven)
+                               double thickness, const phys_vec *off, contact_mask *enough,
+                               contact_mask *proven)
 {
     const double part = 0.1 * thickness;
     const phys_vec half = 0.5 * *gap, parts = {part, part, part, part};
@@ -225,8 +235,50 @@ PHYS_INLINE void closely_prove(const struct closely_along *along, const phys_vec
     quick_choose(false, &half, &parts, &asked);
     quick_choose(true, &asked, &margin, &asked);
     quick_choose(false, &asked, gap, &asked);
-    *proven |= (along->length > CONTACT_TINY) & (along->before > certain) &
-               (along->after > certain) & (along->after >= along->length * asked);
+    const contact_mask is = (along->length > CONTACT_TINY) & (along->after > certain) &
+                            (along->after >= along->length * asked);
+    *enough |= is;
+    *proven |= is & (along->before > certain);
+}
+
+/* The volume that the corners span, a cubic in the part of the step, in Bernstein's basis: three
+ * times its coefficients, at the ends themselves. */
+PHYS_INLINE void closely_volume(const struct contact_lanes *a, const struct contact_lanes *b,
+                                phys_vec volume[4])
+{
+    struct contact_lanes begin, mixed, part, end;
+    phys_vec more[2];
+    quick_product(a + 1, a + 2, &begin);
+    quick_product(a + 1, b + 2, &mixed);
+    quick_product(b + 1, a + 2, &part);
+    quick_product(b + 1, b + 2, &end);
+    PHYS_UNROLL
+    for (int c = 0; c < 3; c++)
+        mixed.c[c] += part.c[c];
+    contact_lanes_dot(a, &begin, volume);
+    contact_lanes_dot(a, &mixed, volume + 1);
+    contact_lanes_dot(b, &begin, more);
+    contact_lanes_dot(b, &mixed, volume + 2);
+    contact_lanes_dot(a, &end, more + 1);
+    contact_lanes_dot(b, &end, volume + 3);
+    volume[1] += more[0];
+    volume[2] += more[1];
+}
+
+/* The lanes whose corners never lie in a plane. size: S of certificate.h. */
+PHYS_INLINE void closely_spans(const struct quick_end *begin, const struct quick_end *end,
+                               const phys_vec *size, contact_mask *spans)
+{
+    const phys_vec off = CONTACT_VOLUME_ROUNDING * *size * *size * *size;
+    phys_vec volume[4];
+    closely_volume(begin->against, end->against, volume);
+    contact_mask above = volume[0] > off, below = volume[0] < -off;
+    PHYS_UNROLL
+    for (int k = 1; k < 4; k++) {
+        above &= volume[k] > off;
+        below &= volume[k] < -off;
+    }
+    *spans = above | below;
 }
 
 /* The lanes in which both are above `far`, m. */
@@ -270,8 +322,8 @@ PHYS_INLINE bool closely_any(const contact_mask *is)
     return (*is)[0] | (*is)[1] | (*is)[2] | (*is)[3];
 }
 
-/* Finds which of four pairs the closest directions at the start and at the end prove, or the best
- * ones of features that are very near. */
+/* Finds which of four pairs the closest directions at the start and at the end prove, the best ones
+ * of features that are very near, or the volume that their corners span. */
 PHYS_INLINE void pass_closely(enum contact_pair pair, const phys_vec *const x[4],
                               const phys_vec *const y[4], double thickness, double reach,
                               contact_mask *passing)
@@ -279,12 +331,12 @@ PHYS_INLINE void pass_closely(enum contact_pair pair, const phys_vec *const x[4]
     struct quick_end begin, end;
     struct contact_lanes n[6];
     struct closely_along along[6];
-    phys_vec off, gap = {0};
-    contact_mask near[2], proven = {0}, by = {0};
+    phys_vec size, off, gap = {0};
+    contact_mask near[2], enough = {0}, proven = {0}, by = {0};
     quick_open(x, &begin);
     quick_open(y, &end);
-    closely_size(&begin, &end, &off);
-    off *= CONTACT_ROUNDING;
+    closely_size(&begin, &end, &size);
+    off = CONTACT_ROUNDING * size;
     const phys_vec far = contact_far_of(reach) + off;
     closely_directions(pair, &begin, n, near);
     closely_directions(pair, &end, n + 2, near + 1);
@@ -302,11 +354,17 @@ PHYS_INLINE void pass_closely(enum contact_pair pair, const phys_vec *const x[4]
         closely_measure(pair, &begin, &end, n + 4 + i, along + 4 + i);
         if (!i)
             closely_widen(along + 4, &gap);
-        closely_prove(along + 4 + i, &gap, thickness, &off, &proven);
+        closely_prove(along + 4 + i, &gap, thickness, &off, &enough, &proven);
     }
     PHYS_UNROLL
     for (int i = 0; i < 4; i++)
-        closely_prove(along + i, &gap, thickness, &off, &proven);
+        closely_prove(along + i, &gap, thickness, &off, &enough, &proven);
+    const contact_mask rest = enough & ~proven;
+    if (closely_any(&rest)) {
+        contact_mask spans;
+        closely_spans(&begin, &end, &size, &spans);
+        proven |= rest & spans;
+    }
     *passing = (int64_t)CONTACT_MAY_TOUCH + proven + (proven & by); /* true is -1 */
 }
 

@@ -206,6 +206,9 @@ void contact_direction_best(enum contact_pair pair, const phys_vec x[4], phys_ve
 /* The loss of f by rounding, see the header. */
 #define CONTACT_ROUNDING 0x1p-50
 
+/* The rounding of three times a coefficient of the volume, in parts of S^3, see the header. */
+#define CONTACT_VOLUME_ROUNDING 0x1p-52
+
 /* The least f at the start: rounding of a direction must not lose a pair that the step before has
  * left at the margin. */
 #define CONTACT_LEAST (CONTACT_MARGIN / 2)

@@ -17,18 +17,22 @@ struct pairs_sort {
     double offset; /* m: of the pair from the origin along each axis, at most */
     double gap;    /* m: the features start so far apart; 0: as it falls */
     double flat;   /* how much of the triangle's or the edges' angle is left; 0: all */
+    double turn;   /* of all corners about each axis through the cube's middle, at most */
 };
 
 static const struct pairs_sort PAIRS_SORTS[] = {
-    {"as the bench has them", 0.01, 0.002, 0.002, 1, 0, 0},
-    {"fast ones", 0.01, 0.02, 0.01, 1, 0, 0},
-    {"a large common velocity", 0.01, 0.002, 100, 1, 0, 0},
-    {"gaps of 1e-6 m", 0.01, 1e-6, 0.001, 1, 1e-6, 0},
-    {"gaps of 1e-6 m, a large common velocity, far away", 0.01, 2e-6, 1000, 1e6, 1e-6, 0},
-    {"gaps of two margins", 0.01, CONTACT_MARGIN, 1e-3, 1, 2 * CONTACT_MARGIN, 0},
-    {"far away", 0.01, 0.002, 0.002, 1e6, 0, 0},
-    {"nearly parallel edges, needles", 0.01, 0.002, 0.002, 1, 0, 1e-7},
-    {"nearly parallel edges and needles at 1e-6 m", 0.01, 2e-6, 0.002, 1, 1e-6, 1e-9},
+    {"as the bench has them", 0.01, 0.002, 0.002, 1, 0, 0, 0},
+    {"fast ones", 0.01, 0.02, 0.01, 1, 0, 0, 0},
+    {"a large common velocity", 0.01, 0.002, 100, 1, 0, 0, 0},
+    {"gaps of 1e-6 m", 0.01, 1e-6, 0.001, 1, 1e-6, 0, 0},
+    {"gaps of 1e-6 m, a large common velocity, far away", 0.01, 2e-6, 1000, 1e6, 1e-6, 0, 0},
+    {"gaps of two margins", 0.01, CONTACT_MARGIN, 1e-3, 1, 2 * CONTACT_MARGIN, 0, 0},
+    {"far away", 0.01, 0.002, 0.002, 1e6, 0, 0, 0},
+    {"nearly parallel edges, needles", 0.01, 0.002, 0.002, 1, 0, 1e-7, 0},
+    {"nearly parallel edges and needles at 1e-6 m", 0.01, 2e-6, 0.002, 1, 1e-6, 1e-9, 0},
+    {"turned together at 1e-6 m", 0.01, 1e-6, 1e-3, 1, 1e-6, 0, 0.5},
+    {"turned together at two margins, far away", 0.01, CONTACT_MARGIN, 1, 1e3, 2 * CONTACT_MARGIN,
+     0, 0.1},
 };
 enum { PAIRS_SORTS_N = sizeof PAIRS_SORTS / sizeof *PAIRS_SORTS };
 
@@ -49,19 +53,30 @@ static inline void pairs_corners(enum contact_pair pair, const struct pairs_sort
         x[3] = x[2] + uniform(-2, 2) * (x[1] - x[0]) + sort->flat * x[3];
 }
 
+/* Adds the way of a corner that turns about an axis through the cube's middle. */
+static inline void pairs_turn(const phys_vec *axis, const phys_vec *x, phys_vec *way)
+{
+    const phys_vec a = *axis, b = *x;
+    *way += (phys_vec){a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                       a[0] * b[1] - a[1] * b[0], 0};
+}
+
 static inline void pairs_draw(enum contact_pair pair, const struct pairs_sort *sort, phys_vec x[4],
                               phys_vec y[4])
 {
     struct contact_nearest nearest;
-    phys_vec common, offset, way;
+    phys_vec common, offset, way, axis = {0};
     pairs_corners(pair, sort, x);
     contact_nearest_of(pair, x, &nearest);
     for (int k = 0; k < (pair == CONTACT_VT ? 1 : 2) && sort->gap > 0; k++)
         x[k] -= (nearest.gap - sort->gap) * nearest.normal;
     pairs_vector(sort->common, &common);
     pairs_vector(sort->offset, &offset);
+    if (sort->turn > 0)
+        pairs_vector(sort->turn, &axis);
     for (int k = 0; k < 4; k++) {
         pairs_vector(sort->way, &way);
+        pairs_turn(&axis, x + k, &way);
         x[k] += offset;
         y[k] = x[k] + common + way;
     }

@@ -56,7 +56,7 @@ UNIT_TEST(known)
 /* A pair at the margin, within 2 m of the origin along each axis, does not touch in floats. */
 UNIT_TEST(apart_in_floats)
 {
-    static const struct pairs_sort AT_MARGIN = {"", 0.01, 0, 0, 1.9, CONTACT_MARGIN, 0};
+    static const struct pairs_sort AT_MARGIN = {"", 0.01, 0, 0, 1.9, CONTACT_MARGIN, 0, 0};
     for (int i = 0; i < 20000; i++) {
         const enum contact_pair pair = KINDS[i & 1];
         struct contact_nearest nearest;
@@ -75,6 +75,23 @@ UNIT_TEST(apart_in_floats)
         }
         ck_assert_double_gt(between[0] + between[1], 0);
     }
+}
+
+/* Features 1 um apart turn together by 0.2: no plane of one direction divides them. */
+UNIT_TEST(turned)
+{
+    static const double TURN = 0.2, GAP = 1e-6;
+    for (int i = 0; i < 2; i++)
+        for (int closes = 0; closes < 2; closes++) {
+            phys_vec x[4], y[4];
+            lay(KINDS[i], GAP, closes ? 0.6 * GAP : 0, 0, x, y);
+            for (int k = 0; k < 4; k++) {
+                const phys_vec at = y[k];
+                y[k] = (phys_vec){cos(TURN) * at[0] - sin(TURN) * at[2], at[1],
+                                  sin(TURN) * at[0] + cos(TURN) * at[2], 0};
+            }
+            ck_assert(contact_certify(KINDS[i], x, y, THICKNESS) == !closes);
+        }
 }
 
 UNIT_TEST(not_finite)

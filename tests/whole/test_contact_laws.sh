@@ -59,9 +59,9 @@ gains_none() { # FRICTION
 ok "by triangles, without friction" gains_none 0
 ok "by triangles, with friction" gains_none 0.3
 reports() { # sheets that are pushed and cut change their momentum by so much
-    thrown --set contact.friction=0.3 --set 'cloths[0].velocity=[0, 20, 0]' || return 1
+    thrown --set contact.friction=0.3 --set 'cloths[0].velocity=[0, 30, 0]' || return 1
     test "$(value contact_pushes)" -gt 0 && below "momentum beyond what pushes and cuts change, of all" \
-        "$(momentum | awk -v cut="$(value contact_cut_momentum)" '{ print ($1 - cut) / 0.16 }')" 1e-12
+        "$(momentum | awk -v cut="$(value contact_cut_momentum)" '{ print ($1 - cut) / 0.24 }')" 1e-12
 }
 ok "what pushes and cuts change of the momentum is reported" reports
 

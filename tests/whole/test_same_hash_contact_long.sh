@@ -45,7 +45,7 @@ peer() { # SCENE GRID BLOCKS HALVED KEY=VALUE...: grids of GRID
     coarse "$peer_scene" "$@"
 }
 ok "drape of peers, steps halved" peer drape "nx: 10, ny: 10" 8 1 time.end=0.25 grain=60
-ok "curtain of peers, steps halved" peer curtain "nx: 8, ny: 8" 8 1 time.end=0.6 grain=80
+ok "curtain of peers, steps halved" peer curtain "nx: 8, ny: 8" 8 1 time.end=0.9 grain=80
 ok "twist of peers, steps halved" peer twist "" 8 1 time.end=0.24 grain=80
 ok "needle of peers, steps halved" peer needle "nx: 11, ny: 11" 8 1 time.end=0.3 grain=70
 ok "stack of peers, steps halved" peer stack "nx: 8, ny: 8" 8 1 time.end=0.1 grain=70

@@ -71,13 +71,14 @@ int main(int argc, char **argv)
 }
 END
 
-compare() { # NAME OPTIONS... -- PROGRAM...: 12 configurations, each of which has a figure, and a page that stands alone
+aligned() { awk '/^[|]/ { n[length($0)]++ } END { for (l in n) k++; exit k != 1 }' "$scratch/said"; }
+compare() { # NAME OPTIONS... -- PROGRAM...: 12 configurations, each of which has a figure, a table in columns, and a page that stands alone
     name=$1
     shift
     status=0
     (cd "$scratch" && limited "$bin/duite-compare" --output "pages/$name" --rounds 1 "$@" > said 2>&1) || status=$?
     cat "$scratch/said" "$scratch/pages/$name/summary.csv"
-    test $status = 0 && grep -q "^12 configurations, 1 rounds" "$scratch/said" && test "$(grep -c ',fine$' "$scratch/pages/$name/summary.csv")" = 12 &&
+    test $status = 0 && grep -q "^12 configurations, 1 rounds" "$scratch/said" && aligned && test "$(grep -c ',fine$' "$scratch/pages/$name/summary.csv")" = 12 &&
         test "$(grep -c '^<tr><td>' "$scratch/pages/$name/compare.html")" = 12 && grep -q '^<svg' "$scratch/pages/$name/compare.html" &&
         ! grep -q 'href=\|src=\|<script' "$scratch/pages/$name/compare.html"
 }

@@ -38,12 +38,12 @@ static void put_box(FILE *out, double x, double y, double width, double height, 
             width, height, colour);
 }
 
-static void begin_plot(FILE *out, const char *title, int height)
+static void begin_plot(FILE *out, const char *title, int width, int height)
 {
     fprintf(out,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" width=\"%d\" "
             "height=\"%d\" font-family=\"sans-serif\" font-size=\"12\" role=\"img\">\n<title>",
-            WIDTH, height, WIDTH, height);
+            width, height, width, height);
     chart_escape(out, title);
     fputs("</title>\n<g font-size=\"14\">", out);
     put_words(out, LEFT, 18, "start", title);
@@ -128,6 +128,9 @@ static void put_axis_y(FILE *out, const struct axis *axis, double left, double r
 
 /* ---- Lines ---- */
 
+/* From the axis' end to a line's name. */
+enum { BEFORE_NAME = 46 };
+
 static void put_one_line(FILE *out, const struct axis *x, const struct axis *y,
                          const struct plot_line *line, size_t number)
 {
@@ -146,28 +149,30 @@ static void put_one_line(FILE *out, const struct axis *x, const struct axis *y,
     }
     const double row = TOP + 10 + ROW * (double)number, left = x->end + 16;
     put_line(out, left, row - 4, left + 24, row - 4, style);
-    put_words(out, left + 30, row, "start", line->name);
+    put_words(out, x->end + BEFORE_NAME, row, "start", line->name);
 }
 
 void plot_lines(const struct plot *plot, FILE *out)
 {
     enum { HEIGHT = 320, LEGEND = 270 };
     const int legend = TOP + ROW * (int)plot->n, height = legend > HEIGHT ? legend : HEIGHT;
-    double least_x = INFINITY, most_x = 0, most_y = 0;
-    for (size_t k = 0; k < plot->n; k++)
+    double least_x = INFINITY, most_x = 0, most_y = 0, room = LEGEND;
+    for (size_t k = 0; k < plot->n; k++) {
+        room = fmax(room, BEFORE_NAME + LETTER * (double)strlen(plot->line[k].name));
         for (size_t i = 0; i < plot->line[k].n; i++) {
             const struct plot_point *point = &plot->line[k].point[i];
             least_x = fmin(least_x, point->x);
             most_x = fmax(most_x, point->x);
             most_y = fmax(most_y, fmax(point->y, point->high));
         }
+    }
     if (!(most_x > 0))
         return;
     struct axis x = axis_to(most_x, LEFT, WIDTH - LEGEND);
     if (plot->log_x)
         x = axis_of_logs(least_x, most_x, LEFT + 20, WIDTH - LEGEND - 20);
     const struct axis y = axis_to(plot->ideal ? fmax(most_y, 1) : most_y, HEIGHT - BOTTOM, TOP);
-    begin_plot(out, plot->title, height);
+    begin_plot(out, plot->title, WIDTH - LEGEND + (int)room, height);
     put_axis_x(out, &x, TOP, HEIGHT - BOTTOM, plot->x);
     put_axis_y(out, &y, LEFT, WIDTH - LEGEND, plot->y);
     const double ideal = fmin(most_x, y.to);
@@ -195,7 +200,7 @@ void plot_bars(const char *title, const struct plot_bar *bar, size_t n, FILE *ou
     }
     const double bottom = TOP + ROW * (double)n + 6;
     const struct axis x = axis_to(most, left, WIDTH - LEFT);
-    begin_plot(out, title, (int)bottom + 26);
+    begin_plot(out, title, WIDTH, (int)bottom + 26);
     put_axis_x(out, &x, TOP, bottom, "");
     for (size_t i = 0; i < n; i++) {
         const double y = TOP + 4 + ROW * (double)i, middle = y + (ROW - 6) / 2.0;
@@ -270,7 +275,7 @@ void plot_histograms(const char *title, const struct plot_histogram *histogram, 
     char text[40];
     const struct axis x = axis_of_bins(histogram, n);
     const double bottom = TOP + HEIGHT * (double)n;
-    begin_plot(out, title, (int)bottom + 26);
+    begin_plot(out, title, WIDTH, (int)bottom + 26);
     for (int bin = (int)x.from; bin <= (int)x.to; bin++) {
         put_line(out, place_on(&x, bin), TOP, place_on(&x, bin), bottom, GRID);
         if (x.to - x.from < 15 || bin % 2)

@@ -61,7 +61,7 @@ size_t compare_sort(const struct compare *compare, const char *subject, size_t *
 
 /* ---- The table ---- */
 
-enum { CELL = 60 };
+enum { CELL = 60, NUMBER = 10 /* the width of a column of numbers */ };
 
 struct table {
     FILE *out;
@@ -97,7 +97,7 @@ static void put_number(const struct table *table, double number)
     char text[CELL] = "";
     if (isfinite(number))
         snprintf(text, sizeof text, "%.4g", number);
-    put_cell(table, 9, text);
+    put_cell(table, NUMBER, text);
 }
 
 static const char *verdict(const struct compare *compare, const struct compare_config *config)
@@ -126,6 +126,19 @@ static bool has_bodies(const struct compare *compare)
     return false;
 }
 
+enum { LEAST_WIDTH = 10 };
+
+/* The width of a dimension's column: of its name or its longest value. */
+static int width_of(const struct compare *compare, int dimension)
+{
+    size_t most = strlen(compare->name[dimension]);
+    for (size_t i = 0; i < compare->n; i++) {
+        const size_t length = strlen(compare->config[i].value[dimension]);
+        most = length > most ? length : most;
+    }
+    return most > LEAST_WIDTH ? (int)most : LEAST_WIDTH;
+}
+
 static void begin_row(const struct table *table)
 {
     fputs(table->html ? "<tr>" : "|", table->out);
@@ -143,17 +156,17 @@ static void print_head(const struct compare *compare, struct table *table)
     begin_row(table);
     for (int d = 0; d < compare->dimensions; d++)
         if (compare_varies(compare, d))
-            put_cell(table, -10, compare->name[d]);
+            put_cell(table, -width_of(compare, d), compare->name[d]);
     snprintf(time, sizeof time, "%s [95 %% of the median]", compare_unit(compare));
     put_cell(table, -34, time);
     if (has_bodies(compare)) {
-        put_cell(table, -9, "in bodies");
-        put_cell(table, -9, "outside");
+        put_cell(table, -NUMBER, "in bodies");
+        put_cell(table, -NUMBER, "outside");
     }
     put_cell(table, -34, "times the fastest");
     if (has_speedups(compare)) {
-        put_cell(table, -9, "speed-up");
-        put_cell(table, -9, "efficiency");
+        put_cell(table, -NUMBER, "speed-up");
+        put_cell(table, -NUMBER, "efficiency");
     }
     put_cell(table, -16, "");
     end_row(table);
@@ -163,12 +176,15 @@ static void print_rule(const struct compare *compare, FILE *out)
 {
     fputs("|", out);
     for (int d = 0; d < compare->dimensions; d++)
-        if (compare_varies(compare, d))
-            fputs("------------|", out);
+        if (compare_varies(compare, d)) {
+            for (int i = width_of(compare, d) + 2; i; i--)
+                fputc('-', out);
+            fputc('|', out);
+        }
     fputs("------------------------------------|", out);
-    fputs(has_bodies(compare) ? "----------:|----------:|" : "", out);
+    fputs(has_bodies(compare) ? "-----------:|-----------:|" : "", out);
     fputs("------------------------------------|", out);
-    fputs(has_speedups(compare) ? "----------:|----------:|------------------|\n"
+    fputs(has_speedups(compare) ? "-----------:|-----------:|------------------|\n"
                                 : "------------------|\n",
           out);
 }
@@ -179,7 +195,7 @@ static void print_row(const struct compare *compare, const struct compare_config
     begin_row(table);
     for (int d = 0; d < compare->dimensions; d++)
         if (compare_varies(compare, d))
-            put_cell(table, -10, config->value[d]);
+            put_cell(table, -width_of(compare, d), config->value[d]);
     put_interval(table, "%.4g", compare_scale(compare),
                  (const double[]){config->median, config->low, config->high});
     if (has_bodies(compare)) {

@@ -34,7 +34,7 @@
 
 /* True if the pair provably never touches, and f(1) is enough for the next steps: at least
  * CONTACT_MARGIN and min(f(0) / 2, thickness / 10), or no less than f(0). Half the margin is enough
- * for f(0). thickness: m, >= 0. False for values that are not finite. */
+ * for the f(0) of a plane. thickness: m, >= 0. False for values that are not finite. */
 bool contact_certify(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
                      double thickness);
 

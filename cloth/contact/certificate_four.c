@@ -4,6 +4,7 @@
  * verdict among others as alone. Only the comparisons with a bound on rounding, here, make a pair
  * certain. */
 #include "cloth/contact/direction.h"
+#include "cloth/contact/volume.h"
 
 #include <math.h>
 #include <string.h>
@@ -39,17 +40,6 @@ PHYS_INLINE void quick_dot(const struct contact_lanes *a, const struct contact_l
     *to = (a->c[2] * b->c[2] + a->c[1] * b->c[1]) + (a->c[0] * b->c[0] + 0.0);
 }
 
-/* The product a x b. */
-PHYS_INLINE void quick_product(const struct contact_lanes *a, const struct contact_lanes *b,
-                               struct contact_lanes *to)
-{
-    PHYS_UNROLL
-    for (int c = 0; c < 3; c++) {
-        const int d = (c + 1) % 3, e = (c + 2) % 3;
-        to->c[c] = a->c[d] * b->c[e] - a->c[e] * b->c[d];
-    }
-}
-
 /* Adds the direction across both features, from the second to the first. */
 PHYS_INLINE void quick_across(enum contact_pair pair, const struct quick_end *end,
                               struct contact_lanes *n)
@@ -62,7 +52,7 @@ PHYS_INLINE void quick_across(enum contact_pair pair, const struct quick_end *en
     quick_subtract(p + 2 - is_edges, p + 1 - is_edges, &a);
     quick_subtract(p + 3, p + 1 + is_edges, &b);
     quick_subtract(p, p + 1 + is_edges, &way);
-    quick_product(&a, &b, &across);
+    contact_lanes_product(&a, &b, &across);
     quick_dot(&across, &way, &dot);
     const contact_mask sign = (contact_mask)dot & bit;
     PHYS_UNROLL
@@ -222,7 +212,7 @@ PHYS_INLINE void closely_widen(const struct closely_along *along, phys_vec *gap)
     contact_choose(&is, &own, gap, gap);
 }
 
-/* The lanes in which an f(1) is enough after a gap, m, and those that are proven: in which f(0) is
+/* Adds the lanes in which f(1) is enough after a gap, m, and those that are proven, as f(0) is
  * above 0, too. NaN fails. */
 PHYS_INLINE void closely_prove(const struct closely_along *along, const phys_vec *gap,
                                double thickness, const phys_vec *off, contact_mask *enough,
@@ -239,46 +229,6 @@ PHYS_INLINE void closely_prove(const struct closely_along *along, const phys_vec
                             (along->after >= along->length * asked);
     *enough |= is;
     *proven |= is & (along->before > certain);
-}
-
-/* The volume that the corners span, a cubic in the part of the step, in Bernstein's basis: three
- * times its coefficients, at the ends themselves. */
-PHYS_INLINE void closely_volume(const struct contact_lanes *a, const struct contact_lanes *b,
-                                phys_vec volume[4])
-{
-    struct contact_lanes begin, mixed, part, end;
-    phys_vec more[2];
-    quick_product(a + 1, a + 2, &begin);
-    quick_product(a + 1, b + 2, &mixed);
-    quick_product(b + 1, a + 2, &part);
-    quick_product(b + 1, b + 2, &end);
-    PHYS_UNROLL
-    for (int c = 0; c < 3; c++)
-        mixed.c[c] += part.c[c];
-    contact_lanes_dot(a, &begin, volume);
-    contact_lanes_dot(a, &mixed, volume + 1);
-    contact_lanes_dot(b, &begin, more);
-    contact_lanes_dot(b, &mixed, volume + 2);
-    contact_lanes_dot(a, &end, more + 1);
-    contact_lanes_dot(b, &end, volume + 3);
-    volume[1] += more[0];
-    volume[2] += more[1];
-}
-
-/* The lanes whose corners never lie in a plane. size: S of certificate.h. */
-PHYS_INLINE void closely_spans(const struct quick_end *begin, const struct quick_end *end,
-                               const phys_vec *size, contact_mask *spans)
-{
-    const phys_vec off = CONTACT_VOLUME_ROUNDING * *size * *size * *size;
-    phys_vec volume[4];
-    closely_volume(begin->against, end->against, volume);
-    contact_mask above = volume[0] > off, below = volume[0] < -off;
-    PHYS_UNROLL
-    for (int k = 1; k < 4; k++) {
-        above &= volume[k] > off;
-        below &= volume[k] < -off;
-    }
-    *spans = above | below;
 }
 
 /* The lanes in which both are above `far`, m. */
@@ -362,7 +312,7 @@ PHYS_INLINE void pass_closely(enum contact_pair pair, const phys_vec *const x[4]
     const contact_mask rest = enough & ~proven;
     if (closely_any(&rest)) {
         contact_mask spans;
-        closely_spans(&begin, &end, &size, &spans);
+        contact_spans(begin.against, end.against, &size, &spans);
         proven |= rest & spans;
     }
     *passing = (int64_t)CONTACT_MAY_TOUCH + proven + (proven & by); /* true is -1 */

@@ -123,6 +123,17 @@ PHYS_INLINE void contact_lanes_dot(const struct contact_lanes *a, const struct c
     *to = (a->c[0] * b->c[0] + a->c[1] * b->c[1]) + a->c[2] * b->c[2];
 }
 
+/* a x b. */
+PHYS_INLINE void contact_lanes_product(const struct contact_lanes *a, const struct contact_lanes *b,
+                                       struct contact_lanes *to)
+{
+    PHYS_UNROLL
+    for (int c = 0; c < 3; c++) {
+        const int d = (c + 1) % 3, e = (c + 2) % 3;
+        to->c[c] = a->c[d] * b->c[e] - a->c[e] * b->c[d];
+    }
+}
+
 /* The sum of the squares of all. */
 PHYS_INLINE double contact_square(const struct contact_lanes *x)
 {
@@ -205,9 +216,6 @@ void contact_direction_best(enum contact_pair pair, const phys_vec x[4], phys_ve
 
 /* The loss of f by rounding, see the header. */
 #define CONTACT_ROUNDING 0x1p-50
-
-/* The rounding of three times a coefficient of the volume, in parts of S^3, see the header. */
-#define CONTACT_VOLUME_ROUNDING 0x1p-52
 
 /* The least f at the start: rounding of a direction must not lose a pair that the step before has
  * left at the margin. */

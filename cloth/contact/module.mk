@@ -10,7 +10,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/contact/body_tree.c \
 	cloth/contact/box.c \
 	cloth/contact/capsule.c \
-	cloth/contact/certificate.c cloth/contact/certificate_four.c cloth/contact/certificate.h cloth/contact/direction.h \
+	cloth/contact/certificate.c cloth/contact/certificate_four.c cloth/contact/certificate.h cloth/contact/direction.h cloth/contact/volume.h \
 	cloth/contact/cylinder.c \
 	cloth/contact/image.c cloth/contact/image.h cloth/contact/image_draw.c \
 	cloth/contact/meet.c cloth/contact/meet.h \

@@ -118,9 +118,12 @@ static void fill_springs(const struct maker *m, struct part *part, uint32_t n,
 {
     const struct solve_system *s = &m->state->system;
     uint32_t *row = part->owned[2], *column = part->owned[3], (*end)[2] = part->owned[4];
+    uint32_t span = 0;
     for (uint32_t i = 0; i < n_inner; i++) {
+        const uint32_t length = side[i].there - side[i].here;
         row[side[i].here + 1]++;
         column[i] = side[i].there;
+        span = span > length ? span : length;
     }
     for (uint32_t a = 0; a < n; a++)
         row[a + 1] += row[a];
@@ -130,8 +133,13 @@ static void fill_springs(const struct maker *m, struct part *part, uint32_t n,
     }
     for (size_t i = n_inner; i < n_sides; i++)
         end[i - n_inner][0] = side[i].here;
-    part->matrix =
-        (struct solve_block){n, part->owned[0], part->owned[1], row, column, SOLVE_SPRINGS, NULL};
+    part->matrix = (struct solve_block){.n = n,
+                                        .diagonal = part->owned[0],
+                                        .free = part->owned[1],
+                                        .row = row,
+                                        .column = column,
+                                        .span = span,
+                                        .format = SOLVE_SPRINGS};
     part->cut.n = n_sides - n_inner;
     part->cut.end = (const uint32_t(*)[2])end;
 }

@@ -3,14 +3,13 @@
  * and is zero in every result.
  *
  * A pass is one sweep: its first half is as far before the product as the product's entries reach,
- * so that both work in the nearest cache. While the product computes, the rows and entries of the
- * next stretch are fetched. */
+ * so that both work in the nearest cache. Rows and entries farther on are fetched meanwhile. */
 #include "cloth/solve/block.h"
 
 enum {
-    STRETCH = 64,           /* rows: they and their entries take a cache of 32 KiB or half of it */
-    AHEAD = 96,             /* rows, */
-    BYTES_AHEAD = 256 * 32, /* and about as much of the entries: enough for memory to answer */
+    STRETCH = 64, /* rows: they and their entries take a cache of 32 KiB or half of it */
+    BYTES_OF_ROWS_AHEAD = 96 * sizeof(phys_vec), /* about as far as */
+    BYTES_AHEAD = 256 * 32,                      /* of the entries: enough for memory to answer */
     LINE = 64
 };
 
@@ -23,6 +22,10 @@ PHYS_INLINE void begin_rows(bool preconditioned, size_t from, size_t to, double 
     phys_vec *restrict p = rows->p, *restrict q = rows->q;
     phys_vec square = sum[SOLVE_RR], product = sum[SOLVE_RZ];
     for (size_t a = from; a < to; a++) {
+        phys_fetch(dv + a, BYTES_OF_ROWS_AHEAD, 1);
+        phys_fetch(r + a, BYTES_OF_ROWS_AHEAD, 1);
+        phys_fetch(p + a, BYTES_OF_ROWS_AHEAD, 1);
+        phys_fetch(q + a, BYTES_OF_ROWS_AHEAD, 1);
         const phys_vec before = q[a]; /* in registers: compilers read again what they stored */
         phys_vec left = r[a], next = p[a];
         dv[a] += alpha * next;
@@ -44,30 +47,14 @@ PHYS_INLINE void begin_rows(bool preconditioned, size_t from, size_t to, double 
     sum[SOLVE_RZ] = product;
 }
 
-/* Prefetches rows beyond a, and entries beyond i, the first of row a. */
-PHYS_INLINE void fetch_row(enum solve_format format, const struct solve_values *values, size_t i,
-                           size_t a, const struct solve_rows *rows)
+/* Prefetches three entries, beyond entry i. */
+PHYS_INLINE void fetch_entries(enum solve_format format, const struct solve_values *values,
+                               size_t i)
 {
     static const size_t bytes[] = {
         [SOLVE_SPRINGS] = 32, [SOLVE_HALF] = 72, [SOLVE_HALF_FLOAT] = 36}; /* an entry */
-    phys_fetch(rows->dv + a, AHEAD * sizeof(phys_vec), 1);
-    phys_fetch(rows->r + a, AHEAD * sizeof(phys_vec), 1);
-    phys_fetch(rows->p + a, AHEAD * sizeof(phys_vec), 1);
-    phys_fetch(rows->q + a, AHEAD * sizeof(phys_vec), 1);
-    for (size_t line = 0; line < 3 * bytes[format]; line += LINE) /* of three entries */
+    for (size_t line = 0; line < 3 * bytes[format]; line += LINE)
         phys_fetch((const char *)values->entry + bytes[format] * i, BYTES_AHEAD + line, 0);
-}
-
-/* Number of rows begun once all rows at the far ends of entries of rows from .. to - 1 have. */
-PHYS_INLINE size_t reach(const struct solve_block *block, size_t from, size_t to, size_t begun)
-{
-    size_t last = begun > to ? begun : to;
-    for (size_t a = from; a < to; a++) {
-        const uint32_t end = block->row[a + 1];
-        if (end > block->row[a] && block->column[end - 1] >= last)
-            last = block->column[end - 1] + (size_t)1;
-    }
-    return last;
 }
 
 /* Entries from .. to - 1 of row a: takes each from its other row and returns the sum for this one.
@@ -125,7 +112,7 @@ PHYS_INLINE void multiply(const struct solve_block *block, enum solve_format for
     for (size_t a = from; a < to; a++) {
         const size_t end = block->row[a + 1];
         phys_vec total;
-        fetch_row(format, values, i, a, rows);
+        fetch_entries(format, values, i);
         row(format, i, end, values->entry, block->column, a, rows->p, rows->q, &total);
         i = end;
         if (a != halo) {
@@ -206,9 +193,9 @@ PHYS_INLINE void pass(const struct solve_block *block, enum solve_format format,
     size_t met = 0, begun = 0;
     for (size_t from = 0; from < block->n; from += STRETCH) {
         const size_t to = block->n - from > STRETCH ? from + STRETCH : block->n;
-        const size_t next = reach(block, from, to, begun);
-        begin_rows(preconditioned, begun, next, alpha, beta, rows, sum);
-        begun = next;
+        const size_t reach = block->n - to > block->span ? to + block->span : block->n;
+        begin_rows(preconditioned, begun, reach, alpha, beta, rows, sum);
+        begun = reach;
         multiply(block, format, preconditioned, cut, &met, from, to, &values, rows, sum);
     }
     end_halo(block, format, preconditioned, cut, &values, p_other, rows, sum);

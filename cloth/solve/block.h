@@ -18,6 +18,7 @@ struct solve_block {
     const double *free;     /* n: 1, or 0 for a particle that is held */
     const uint32_t *row;    /* n + 1: the inner entries of row a are row[a] .. row[a + 1] - 1 */
     const uint32_t *column; /* row[n]: the higher end of each inner entry, ascending in a row */
+    uint32_t span;          /* no inner entry ends more rows away */
     enum solve_format format;
     const phys_vec *filter; /* n: rows of S that are more than free (solve_filter); NULL: none */
 };

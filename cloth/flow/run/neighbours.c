@@ -56,6 +56,7 @@ static void join_blocks(struct finder *finder, uint32_t a, uint32_t b, struct fl
         block[free_q]->n_held++;
     if (bp == bq) {
         block[0]->n_entries++;
+        block[0]->span = (uint32_t)cloth_larger(block[0]->span, p > q ? p - q : q - p);
         block[0]->joined |= solve_patch_bit(kp, kq) | solve_patch_bit(kq, kp);
         return;
     }

@@ -56,7 +56,12 @@ void flow_table_open(struct flow_table *t, const void *memory)
 #define OPEN(type, name, rows) t->name = arrays.name;
 #define OPEN_PAIRS(name, rows) t->name = (const uint32_t(*)[2])arrays.name;
     FLOW_TABLE_ARRAYS(OPEN, OPEN_PAIRS)
-    t->matrix = (struct solve_block){t->n, NULL, t->free, t->row, t->column, t->format, NULL};
+    t->matrix = (struct solve_block){.n = t->n,
+                                     .free = t->free,
+                                     .row = t->row,
+                                     .column = t->column,
+                                     .span = t->span,
+                                     .format = t->format};
     t->held = (struct solve_held){*t->held_entries, t->held_at};
     memcpy(t->list, arrays.list, sizeof t->list);
 }

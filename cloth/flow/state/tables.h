@@ -92,6 +92,7 @@ struct flow_table {
     uint32_t n_stiff;                                /* of them, those that are more than links */
     uint32_t n_elements[ELEMENT_KINDS], n_materials; /* of a kind; of the model */
     uint32_t n_entries, n_cut_entries; /* of the matrix: what is counted here may be one entry */
+    uint32_t span; /* rows that an entry within the block joins are no farther apart */
     enum solve_format format;
     uint32_t n_halo;          /* rows that any neighbour needs */
     uint32_t n_held;          /* springs from free rows here to held ends: entries at most */

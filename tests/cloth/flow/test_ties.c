@@ -62,7 +62,8 @@ static void see(uint32_t b, enum solve_format format, struct seen *s)
     s->ties = flow_ties_open(table[b]);
     for (uint32_t row = 0; row < n_rows[b]; row++)
         s->free[row] = 1;
-    s->block = (struct solve_block){n_rows[b], diagonal[b], s->free, s->row, NULL, format, NULL};
+    s->block = (struct solve_block){
+        .n = n_rows[b], .diagonal = diagonal[b], .free = s->free, .row = s->row, .format = format};
     for (uint32_t i = 0; i < s->ties.n; i++)
         s->value[i] = values[s->ties.of[i]];
     for (uint32_t g = 0; g < s->ties.n_ghosts; g++)

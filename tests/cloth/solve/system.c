@@ -216,7 +216,7 @@ static void cut_block(struct system *s, struct system_block *b, uint32_t first, 
 {
     bool seen[SYSTEM_ROWS] = {0}, halo[SYSTEM_ROWS] = {0};
     struct phys_pair sums[SYSTEM_SPRINGS] = {{{{0}}}};
-    uint32_t inner = 0;
+    uint32_t inner = 0, span = 0;
     *b = (struct system_block){.first = first};
     memcpy(b->diagonal, s->diagonal + first, n * sizeof *b->diagonal);
     memcpy(b->free, s->free + first, n * sizeof *b->free);
@@ -226,6 +226,7 @@ static void cut_block(struct system *s, struct system_block *b, uint32_t first, 
         if (x < n && y < n) {
             add_entry(s, i, inner, false, b, sums);
             b->column[inner++] = y;
+            span = span > y - x ? span : y - x;
             b->row[x + 1] = inner;
         } else if (x < n || y < n) {
             seen[(x < n ? y : x) + first] = true;
@@ -241,8 +242,14 @@ static void cut_block(struct system *s, struct system_block *b, uint32_t first, 
         if (seen[a])
             b->ghost[b->n_ghosts++] = a;
     cut_entries(s, b, n, sums);
-    b->matrix = (struct solve_block){n, b->diagonal, b->free, b->row, b->column, s->format, NULL};
-    b->matrix.filter = s->filtered ? s->filter + first : NULL;
+    b->matrix = (struct solve_block){.n = n,
+                                     .diagonal = b->diagonal,
+                                     .free = b->free,
+                                     .row = b->row,
+                                     .column = b->column,
+                                     .span = span,
+                                     .format = s->format,
+                                     .filter = s->filtered ? s->filter + first : NULL};
     b->cut.end = (const uint32_t(*)[2])b->end;
     b->cut.halo = b->halo;
     if (s->format != SOLVE_SPRINGS)

@@ -119,6 +119,20 @@ static void compare(const char *what, const phys_vec *got, const phys_vec *wante
                           wanted[a][c]);
 }
 
+static struct solve_block block_of(const struct whole *w)
+{
+    struct solve_block block = {.n = w->n,
+                                .diagonal = w->diagonal,
+                                .free = w->free,
+                                .row = w->row,
+                                .column = w->column,
+                                .format = SOLVE_SPRINGS};
+    for (uint32_t a = 0; a < w->n; a++)
+        for (uint32_t i = w->row[a]; i < w->row[a + 1]; i++)
+            block.span = w->column[i] - a > block.span ? w->column[i] - a : block.span;
+    return block;
+}
+
 static void check(size_t n, uint32_t far, int halo)
 {
     static struct whole wanted;
@@ -126,8 +140,7 @@ static void check(size_t n, uint32_t far, int halo)
     make(&whole, n, far, halo);
     wanted = whole;
     expect(&wanted, 0.3, 0.7, right);
-    const struct solve_block block = {
-        n, whole.diagonal, whole.free, whole.row, whole.column, SOLVE_SPRINGS, NULL};
+    const struct solve_block block = block_of(&whole);
     const struct solve_rows rows = solve_rows_plain(whole.dv, whole.r, whole.p, whole.q);
     solve_pass(&block, &whole.cut, whole.value, whole.other, 0.3, 0.7, &rows, dots);
     compare("dv", whole.dv, wanted.dv, n);
@@ -175,8 +188,7 @@ UNIT_TEST(identity_is_none)
     other = whole;
     memcpy(z, other.r, sizeof z);
     memcpy(s, other.q, sizeof s);
-    const struct solve_block block = {MAX,          whole.diagonal, whole.free, whole.row,
-                                      whole.column, SOLVE_SPRINGS,  NULL};
+    const struct solve_block block = block_of(&whole);
     const struct solve_rows plain = solve_rows_plain(whole.dv, whole.r, whole.p, whole.q);
     const struct solve_rows rows = {other.dv, other.r, other.p, other.q, z, s};
     solve_pass(&block, &whole.cut, whole.value, whole.other, 0.3, 0.7, &plain, none);

@@ -172,7 +172,7 @@ static int cut_again(struct cg_session *s)
     return cg_order(&s->state, s->plan.model.grain);
 }
 
-/* solver=plain or jacobi: that preconditioner; format=half or half_float: that format;
+/* solver=plain or jacobi: that preconditioner; format=half: that format;
  * coarse=exact: one factor of the coarse space with four patches a block, coarse=one: with one
  * patch a block; grain=: vertices a block; without the words the default ones. */
 static void choose(const struct serve_request *request, struct model *model)
@@ -187,7 +187,7 @@ static void choose(const struct serve_request *request, struct model *model)
     if (!strcmp(solver, "jacobi"))
         model->preconditioner = MODEL_JACOBI;
     if (*format)
-        model->format = strcmp(format, "half") ? SOLVE_HALF_FLOAT : SOLVE_HALF;
+        model->format = SOLVE_HALF;
     if (*coarse) {
         model->exact_coarse = true;
         model->patches = strcmp(coarse, "one") ? SOLVE_MAX_PATCHES : 1;

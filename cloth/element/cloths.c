@@ -190,10 +190,9 @@ static int check_format(const struct model *model, const struct model_cloth *clo
     const struct element_kind *kind = element_in_matrix(model, cloth);
     if (model->format != SOLVE_SPRINGS || !kind)
         return CLOTH_OK;
-    return cloth_fail(
-        error, CLOTH_E_INPUT,
-        "a matrix of springs cannot hold %s; the format half or half_float is expected",
-        kind->name);
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "a matrix of springs cannot hold %s; the format half is expected",
+                      kind->name);
 }
 
 static int check_cloth(const struct element_cloths *cloths, uint32_t c, struct cloth_error *error)

@@ -2,9 +2,9 @@
 #define CLOTH_SOLVE_ASSEMBLE_H
 
 #include "cloth/physics/element.h"
-#include "cloth/solve/block.h"
+#include "cloth/solve/format.h"
 
-/* The values of the half formats (cloth/solve/format.h), from any elements. Each entry is summed up
+/* The values of half storage (cloth/solve/format.h), from any elements. Each entry is summed up
  * as a pair (cloth/physics/element.h), which is zero at first. An element of any number of vertices
  * adds its -A_ab to the entry of each two of them, in the order of the block's table. Sums of a cut
  * entry are the same on both sides if both add in the same order. When all have been added, the
@@ -21,9 +21,7 @@ void solve_assemble_springs(size_t n, const uint32_t *at, const phys_vec *value,
 void solve_assemble_pairs(size_t n, const uint32_t *at, const struct phys_pair *pair,
                           struct phys_pair *sums);
 
-/* The values of a block of format SOLVE_HALF or SOLVE_HALF_FLOAT from sums of all its entries.
- * memory: solve_format_doubles of them. */
-void solve_assembled(const struct solve_block *block, const struct solve_cut *cut,
-                     const struct phys_pair *sums, double *memory);
+/* The values of n entries of format SOLVE_HALF from their sums: solve_format_doubles of them. */
+void solve_assembled(size_t n, const struct phys_pair *sums, double *value);
 
 #endif

@@ -48,18 +48,16 @@ PHYS_INLINE void begin_rows(bool preconditioned, size_t from, size_t to, double 
 }
 
 /* Prefetches three entries, beyond entry i. */
-PHYS_INLINE void fetch_entries(enum solve_format format, const struct solve_values *values,
-                               size_t i)
+PHYS_INLINE void fetch_entries(enum solve_format format, const void *values, size_t i)
 {
-    static const size_t bytes[] = {
-        [SOLVE_SPRINGS] = 32, [SOLVE_HALF] = 72, [SOLVE_HALF_FLOAT] = 36}; /* an entry */
+    static const size_t bytes[] = {[SOLVE_SPRINGS] = 32, [SOLVE_HALF] = 72}; /* an entry */
     for (size_t line = 0; line < 3 * bytes[format]; line += LINE)
-        phys_fetch((const char *)values->entry + bytes[format] * i, BYTES_AHEAD + line, 0);
+        phys_fetch((const char *)values + bytes[format] * i, BYTES_AHEAD + line, 0);
 }
 
 /* Entries from .. to - 1 of row a: takes each from its other row and returns the sum for this one.
  */
-PHYS_INLINE void row(enum solve_format format, size_t from, size_t to, const void *entry,
+PHYS_INLINE void row(enum solve_format format, size_t from, size_t to, const void *values,
                      const uint32_t *column, size_t a, const phys_vec *restrict p,
                      phys_vec *restrict q, phys_vec *sum)
 {
@@ -69,7 +67,7 @@ PHYS_INLINE void row(enum solve_format format, size_t from, size_t to, const voi
         const uint32_t b = column[i];
         const phys_vec d = own - p[b];
         phys_vec y, turned;
-        solve_entry_times(format, entry, i, &d, &y, &turned);
+        solve_entry_times(format, values, i, &d, &y, &turned);
         total += y;
         q[b] -= turned;
     }
@@ -78,19 +76,13 @@ PHYS_INLINE void row(enum solve_format format, size_t from, size_t to, const voi
 
 /* q = S A p of row a, of which total is the sum over the entries. Adds p * q, r * q, q * q to the
  * sums; with a preconditioner p * q and z * q. */
-PHYS_INLINE void end_row(const struct solve_block *block, enum solve_format format,
-                         bool preconditioned, const struct solve_values *values, size_t a,
+PHYS_INLINE void end_row(const struct solve_block *block, bool preconditioned, size_t a,
                          const phys_vec *total, const struct solve_rows *rows,
                          phys_vec sum[SOLVE_DOTS])
 {
     const phys_vec three = {1, 1, 1, 0};
     const phys_vec p = rows->p[a];
     phys_vec q = *total + block->diagonal[a] * p;
-    if (format == SOLVE_HALF_FLOAT) {
-        phys_vec cross;
-        solve_cross(values->turn + a, &p, &cross);
-        q -= cross;
-    }
     q *= block->free[a] * three;
     if (block->filter)
         solve_filter(block->filter + a, &q);
@@ -105,18 +97,18 @@ PHYS_INLINE void end_row(const struct solve_block *block, enum solve_format form
  * met before. */
 PHYS_INLINE void multiply(const struct solve_block *block, enum solve_format format,
                           bool preconditioned, const struct solve_cut *cut, size_t *met,
-                          size_t from, size_t to, const struct solve_values *values,
-                          const struct solve_rows *rows, phys_vec sum[SOLVE_DOTS])
+                          size_t from, size_t to, const void *values, const struct solve_rows *rows,
+                          phys_vec sum[SOLVE_DOTS])
 {
     size_t i = block->row[from], halo = *met < cut->n_halo ? cut->halo[*met] : block->n;
     for (size_t a = from; a < to; a++) {
         const size_t end = block->row[a + 1];
         phys_vec total;
         fetch_entries(format, values, i);
-        row(format, i, end, values->entry, block->column, a, rows->p, rows->q, &total);
+        row(format, i, end, values, block->column, a, rows->p, rows->q, &total);
         i = end;
         if (a != halo) {
-            end_row(block, format, preconditioned, values, a, &total, rows, sum);
+            end_row(block, preconditioned, a, &total, rows, sum);
             continue;
         }
         rows->q[a] = total;
@@ -161,34 +153,33 @@ PHYS_KERNEL(solve_add_ties,
 
 /* The entries into other blocks, ties, and the rows that waited for them. */
 PHYS_INLINE void end_halo(const struct solve_block *block, enum solve_format format,
-                          bool preconditioned, const struct solve_cut *cut,
-                          const struct solve_values *values, const phys_vec *p_other,
-                          const struct solve_rows *rows, phys_vec sum[SOLVE_DOTS])
+                          bool preconditioned, const struct solve_cut *cut, const void *values,
+                          const phys_vec *p_other, const struct solve_rows *rows,
+                          phys_vec sum[SOLVE_DOTS])
 {
     const size_t inner = block->row[block->n];
     for (size_t i = 0; i < cut->n; i++) {
         const uint32_t a = cut->end[i][0];
         const phys_vec d = rows->p[a] - p_other[cut->end[i][1]];
         phys_vec y, other;
-        solve_entry_times(format, values->entry, inner + i, &d, &y, &other);
+        solve_entry_times(format, values, inner + i, &d, &y, &other);
         rows->q[a] += y;
     }
     if (cut->ties)
         solve_add_ties(block->n, cut->ties, rows->p, rows->q);
     for (size_t i = 0; i < cut->n_halo; i++) {
         const phys_vec total = rows->q[cut->halo[i]];
-        end_row(block, format, preconditioned, values, cut->halo[i], &total, rows, sum);
+        end_row(block, preconditioned, cut->halo[i], &total, rows, sum);
     }
 }
 
-/* Inlining makes format and preconditioned constants: six passes are made, none of which tests them
- * in a loop. */
+/* Inlining makes format and preconditioned constants: four passes are made, none of which tests
+ * them in a loop. */
 PHYS_INLINE void pass(const struct solve_block *block, enum solve_format format,
-                      bool preconditioned, const struct solve_cut *cut, const void *memory,
+                      bool preconditioned, const struct solve_cut *cut, const void *values,
                       const phys_vec *p_other, double alpha, double beta,
                       const struct solve_rows *rows, double dots[SOLVE_DOTS])
 {
-    const struct solve_values values = solve_values_of(format, block->n, memory);
     phys_vec sum[SOLVE_DOTS] = {{0}}; /* no loop over it: it lives in registers */
     size_t met = 0, begun = 0;
     for (size_t from = 0; from < block->n; from += STRETCH) {
@@ -196,9 +187,9 @@ PHYS_INLINE void pass(const struct solve_block *block, enum solve_format format,
         const size_t reach = block->n - to > block->span ? to + block->span : block->n;
         begin_rows(preconditioned, begun, reach, alpha, beta, rows, sum);
         begun = reach;
-        multiply(block, format, preconditioned, cut, &met, from, to, &values, rows, sum);
+        multiply(block, format, preconditioned, cut, &met, from, to, values, rows, sum);
     }
-    end_halo(block, format, preconditioned, cut, &values, p_other, rows, sum);
+    end_halo(block, format, preconditioned, cut, values, p_other, rows, sum);
     dots[SOLVE_RR] = phys_lanes(sum + SOLVE_RR);
     dots[SOLVE_PQ] = phys_lanes(sum + SOLVE_PQ);
     dots[SOLVE_RQ] = phys_lanes(sum + SOLVE_RQ);
@@ -214,15 +205,12 @@ PHYS_INLINE void pass_of(const struct solve_block *block, bool preconditioned,
 {
     if (block->format == SOLVE_SPRINGS)
         pass(block, SOLVE_SPRINGS, preconditioned, cut, values, p_other, alpha, beta, rows, dots);
-    else if (block->format == SOLVE_HALF)
-        pass(block, SOLVE_HALF, preconditioned, cut, values, p_other, alpha, beta, rows, dots);
     else
-        pass(block, SOLVE_HALF_FLOAT, preconditioned, cut, values, p_other, alpha, beta, rows,
-             dots);
+        pass(block, SOLVE_HALF, preconditioned, cut, values, p_other, alpha, beta, rows, dots);
 }
 
 /* The two halves of solve_pass are kernels of their own: compilers make fewer instructions of each
- * than of one function with all six passes. */
+ * than of one function with both passes. */
 PHYS_KERNEL(solve_pass_plain,
             (const struct solve_block *block, const struct solve_cut *cut, const void *values,
              const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
@@ -280,24 +268,19 @@ void solve_open(const struct solve_block *block, const struct solve_cut *cut, co
     dots[SOLVE_RQ] = phys_lanes(&along);
 }
 
-/* In the sum over the free rows of A, column b is the diagonal of row b, its turn, and N' of its
- * entries to held rows. */
-void solve_lost(const struct solve_block *block, const struct solve_held *held, const void *memory,
+/* In the sum over the free rows of A, column b is the diagonal of row b and N' of its entries to
+ * held rows. */
+void solve_lost(const struct solve_block *block, const struct solve_held *held, const void *values,
                 const phys_vec *b, const phys_vec *dv, double lost[3])
 {
-    const struct solve_values values = solve_values_of(block->format, block->n, memory);
     const size_t inner = block->row[block->n];
     phys_vec sum = {0};
-    for (size_t a = 0; a < block->n; a++) {
-        phys_vec turned = {0};
-        if (values.turn)
-            solve_cross(values.turn + a, dv + a, &turned);
-        sum += block->free[a] * (b[a] - block->diagonal[a] * dv[a] - turned);
-    }
+    for (size_t a = 0; a < block->n; a++)
+        sum += block->free[a] * (b[a] - block->diagonal[a] * dv[a]);
     for (size_t k = 0; k < held->n; k++) {
         const uint32_t a = held->at[k][0], i = held->at[k][1];
         phys_vec y, turned;
-        solve_entry_times(block->format, values.entry, i, dv + a, &y, &turned);
+        solve_entry_times(block->format, values, i, dv + a, &y, &turned);
         sum -= i < inner && block->column[i] == a ? y : turned;
     }
     for (int c = 0; c < 3; c++)

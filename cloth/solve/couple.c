@@ -179,7 +179,6 @@ PHYS_INLINE void couple(const struct solve_block *block, enum solve_format forma
                         size_t to, const void *values, const phys_vec *basis,
                         double own[SOLVE_COUPLING])
 {
-    const void *entry = solve_values_of(format, block->n, values).entry;
     struct solve_symmetric sum[6] = {{{0}, {0}}};
     struct filtered filtered = {{{{{0}}}}};
     phys_vec turns[3] = {{0}};
@@ -194,7 +193,7 @@ PHYS_INLINE void couple(const struct solve_block *block, enum solve_format forma
             const phys_vec *other = basis + block->column[i], phi = basis[a] - *other;
             struct solve_symmetric m = {{0}, {0}};
             phys_vec w;
-            solve_entry_of(format, entry, i, &m, &w);
+            solve_entry_of(format, values, i, &m, &w);
             if (basis[a][3] + (*other)[3] > 0) {
                 couple_filtered(format, basis + a, other, &m, &w, &filtered);
                 continue;
@@ -220,10 +219,8 @@ PHYS_KERNEL(solve_couple,
 {
     if (block->format == SOLVE_SPRINGS)
         couple(block, SOLVE_SPRINGS, from, to, values, basis, own);
-    else if (block->format == SOLVE_HALF)
-        couple(block, SOLVE_HALF, from, to, values, basis, own);
     else
-        couple(block, SOLVE_HALF_FLOAT, from, to, values, basis, own);
+        couple(block, SOLVE_HALF, from, to, values, basis, own);
 }
 
 /* The same for an entry between two sets of columns. */
@@ -247,7 +244,6 @@ PHYS_KERNEL(solve_couple_cut,
              double own[SOLVE_COUPLING], double off_diagonal[SOLVE_COUPLING]),
             (block, values, n, at, end, basis, other_basis, own, off_diagonal))
 {
-    const void *entry = solve_values_of(block->format, block->n, values).entry;
     struct solve_symmetric square[6] = {{{0}, {0}}}, sum[9] = {{{0}, {0}}};
     struct filtered filtered = {{{{{0}}}}}, filtered_off_diagonal = {{{{{0}}}}};
     phys_vec turns[9] = {{0}};
@@ -255,7 +251,7 @@ PHYS_KERNEL(solve_couple_cut,
         const phys_vec phi = basis[end[i][0]], other = other_basis[end[i][1]];
         struct solve_symmetric m = {{0}, {0}};
         phys_vec w;
-        solve_entry_of(block->format, entry, at[i], &m, &w);
+        solve_entry_of(block->format, values, at[i], &m, &w);
         if (phi[3] + other[3] > 0) {
             couple_cut_filtered(&phi, &other, &m, &w, &filtered, &filtered_off_diagonal);
             continue;

@@ -10,71 +10,32 @@
  * block a is the row's own part (mass, h times drag, kg) plus the sum of N over the row's entries
  * as rounded. The sum has no effect on a uniform motion, in every format. */
 enum solve_format {
-    SOLVE_SPRINGS,   /* N = alpha I + w w', four doubles an entry: w0 w1 w2 alpha */
-    SOLVE_HALF,      /* any N, nine doubles an entry: n00 n11 n22, n01 n12 n20, n02 n10 n21 */
-    SOLVE_HALF_FLOAT /* the same nine in float; behind them four doubles a row, its turn */
+    SOLVE_SPRINGS, /* N = alpha I + w w', four doubles an entry: w0 w1 w2 alpha */
+    SOLVE_HALF     /* any N, nine doubles an entry: n00 n11 n22, n01 n12 n20, n02 n10 n21 */
 };
 enum { SOLVE_NINE = 9 };
 
-/* The sum of N over a row is symmetric where elements are. Rounded to float it has an antisymmetric
- * part, (sum - sum') / 2 = [w]x; the vector w is the turn of the row. Minus this part, the matrix
- * is symmetric. */
-
-/* Doubles of the values of a block, aligned to 32 bytes. */
-static inline size_t solve_format_doubles(enum solve_format format, size_t rows, size_t entries)
+/* Doubles of so many entries, aligned to 32 bytes. */
+static inline size_t solve_format_doubles(enum solve_format format, size_t entries)
 {
     if (format == SOLVE_SPRINGS)
         return 4 * entries;
-    if (format == SOLVE_HALF)
-        return SOLVE_NINE * entries + 1; /* a read of four numbers may end behind the last */
-    return 4 * rows + (SOLVE_NINE * entries + 2) / 2;
-}
-
-/* The values of a block as kernels read them. */
-struct solve_values {
-    const void *entry;    /* of entry 0 */
-    const phys_vec *turn; /* rows; NULL: none */
-};
-PHYS_INLINE struct solve_values solve_values_of(enum solve_format format, size_t rows,
-                                                const void *memory)
-{
-    const phys_vec *row = memory;
-    if (format == SOLVE_HALF_FLOAT)
-        return (struct solve_values){row + rows, row};
-    return (struct solve_values){memory, NULL};
+    return SOLVE_NINE * entries + 1; /* a read of four numbers may end behind the last */
 }
 
 /* Four numbers anywhere. */
 typedef double solve_four __attribute__((vector_size(32), aligned(8), may_alias));
-typedef float solve_four_floats __attribute__((vector_size(16), aligned(4), may_alias));
-
-/* One by one, which compilers turn into one conversion; GCC 12 makes two of __builtin_convertvector
- * and puts them together. */
-PHYS_INLINE void solve_widen(const float *from, phys_vec *to)
-{
-    const solve_four_floats *four = (const void *)from;
-    *to =
-        (phys_vec){(double)(*four)[0], (double)(*four)[1], (double)(*four)[2], (double)(*four)[3]};
-}
 
 /* N of one entry as it lies in memory, three lanes and rubbish each. */
 struct solve_nine {
     phys_vec diagonal, upper, lower;
 };
-PHYS_INLINE void solve_nine_of(enum solve_format format, const void *entry, size_t i,
-                               struct solve_nine *n)
+PHYS_INLINE void solve_nine_of(const void *entry, size_t i, struct solve_nine *n)
 {
-    if (format == SOLVE_HALF) {
-        const double *at = (const double *)entry + SOLVE_NINE * i;
-        n->diagonal = *(const solve_four *)(const void *)at;
-        n->upper = *(const solve_four *)(const void *)(at + 3);
-        n->lower = *(const solve_four *)(const void *)(at + 6);
-    } else {
-        const float *at = (const float *)entry + SOLVE_NINE * i;
-        solve_widen(at, &n->diagonal);
-        solve_widen(at + 3, &n->upper);
-        solve_widen(at + 6, &n->lower);
-    }
+    const double *at = (const double *)entry + SOLVE_NINE * i;
+    n->diagonal = *(const solve_four *)(const void *)at;
+    n->upper = *(const solve_four *)(const void *)(at + 3);
+    n->lower = *(const solve_four *)(const void *)(at + 6);
 }
 
 /* True if a spring's value adds nothing. */
@@ -102,7 +63,7 @@ PHYS_INLINE void solve_entry_times(enum solve_format format, const void *entry, 
         return;
     }
     struct solve_nine n;
-    solve_nine_of(format, entry, i, &n);
+    solve_nine_of(entry, i, &n);
     const phys_vec same = n.diagonal * *d, lower = n.lower * *d, upper = n.upper * *d;
     *y = same + n.upper * SOLVE_YZX(*d) + n.lower * SOLVE_ZXY(*d);
     *transposed = same + SOLVE_YZX(lower) + SOLVE_ZXY(upper);
@@ -119,7 +80,7 @@ PHYS_INLINE void solve_entry_of(enum solve_format format, const void *entry, siz
     }
     const phys_vec three = {1, 1, 1, 0};
     struct solve_nine n;
-    solve_nine_of(format, entry, i, &n);
+    solve_nine_of(entry, i, &n);
     const phys_vec below = SOLVE_YZX(n.lower); /* n10 n21 n02 */
     const phys_vec z_x_y = 0.5 * (below - n.upper);
     symmetric->diagonal = three * n.diagonal;
@@ -136,13 +97,6 @@ PHYS_INLINE void solve_entry_columns(const struct solve_symmetric *symmetric, co
     columns->c[0] += (phys_vec){0, z, -y, 0};
     columns->c[1] += (phys_vec){-z, 0, x, 0};
     columns->c[2] += (phys_vec){y, -x, 0, 0};
-}
-
-/* w x p, in lanes 0 to 2; zero in lane 3 where those of both are. */
-PHYS_INLINE void solve_cross(const phys_vec *w, const phys_vec *p, phys_vec *y)
-{
-    const phys_vec z_x_y = *w * SOLVE_YZX(*p) - SOLVE_YZX(*w) * *p;
-    *y = SOLVE_YZX(z_x_y);
 }
 
 #endif

@@ -83,7 +83,6 @@ PHYS_INLINE void gather(const struct solve_block *block, const struct solve_cut 
                         const void *values, struct solve_symmetric *sum)
 {
     const enum solve_format format = block->format;
-    const void *entry = solve_values_of(format, block->n, values).entry;
     struct solve_symmetric m = {{0}, {0}};
     phys_vec turn; /* of a row they come to nothing */
     for (size_t a = 0; a < block->n; a++) {
@@ -92,12 +91,12 @@ PHYS_INLINE void gather(const struct solve_block *block, const struct solve_cut 
     }
     for (size_t a = 0; a < block->n; a++)
         for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
-            solve_entry_of(format, entry, i, &m, &turn);
+            solve_entry_of(format, values, i, &m, &turn);
             add(sum + a, &m);
             add(sum + block->column[i], &m);
         }
     for (size_t i = 0; i < cut->n; i++) {
-        solve_entry_of(format, entry, block->row[block->n] + i, &m, &turn);
+        solve_entry_of(format, values, block->row[block->n] + i, &m, &turn);
         add(sum + cut->end[i][0], &m);
     }
     if (cut->ties)
@@ -128,12 +127,11 @@ PHYS_INLINE void invert_surely(struct solve_symmetric *m)
 PHYS_INLINE void spread(const struct solve_block *block, const void *values,
                         struct solve_columns *t)
 {
-    const void *entry = solve_values_of(block->format, block->n, values).entry;
     for (size_t a = 0; a < block->n; a++)
         for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
             struct solve_symmetric m = {{0}, {0}};
             phys_vec turn;
-            solve_entry_of(block->format, entry, i, &m, &turn);
+            solve_entry_of(block->format, values, i, &m, &turn);
             turn = -turn; /* of N' */
             solve_entry_columns(&m, &turn, t + i);
             const double sign = -block->free[a] * block->free[block->column[i]];
@@ -267,7 +265,6 @@ PHYS_INLINE void mix_signs(const struct solve_block *block, phys_vec *q)
 /* s' B s without what other blocks and ties add to it. */
 PHYS_INLINE double square_in(const struct solve_block *block, const void *values, phys_vec *s)
 {
-    const void *entry = solve_values_of(block->format, block->n, values).entry;
     phys_vec sum = {0};
     for (size_t a = 0; a < block->n; a++)
         s[a][3] = 0;
@@ -276,7 +273,7 @@ PHYS_INLINE double square_in(const struct solve_block *block, const void *values
         for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
             const phys_vec d = s[a] - s[block->column[i]];
             phys_vec of_a, of_b;
-            solve_entry_times(block->format, entry, i, &d, &of_a, &of_b);
+            solve_entry_times(block->format, values, i, &d, &of_a, &of_b);
             sum += s[a] * of_a - s[block->column[i]] * of_b;
         }
     }

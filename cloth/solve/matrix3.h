@@ -33,6 +33,18 @@ PHYS_INLINE void solve_spring(const phys_vec *value, struct solve_symmetric *m)
     m->off_diagonal = w * SOLVE_YZX(w);
 }
 
+/* Four floats anywhere. */
+typedef float solve_four_floats __attribute__((vector_size(16), aligned(4), may_alias));
+
+/* One by one, which compilers turn into one conversion; GCC 12 makes two of __builtin_convertvector
+ * and puts them together. */
+PHYS_INLINE void solve_widen(const float *from, phys_vec *to)
+{
+    const solve_four_floats *four = (const void *)from;
+    *to =
+        (phys_vec){(double)(*four)[0], (double)(*four)[1], (double)(*four)[2], (double)(*four)[3]};
+}
+
 /* m v. */
 PHYS_INLINE void solve_times(const struct solve_symmetric *m, const phys_vec *v, phys_vec *y)
 {

@@ -21,7 +21,6 @@ spring_150_vs_twin <= 1.05
 spring_400_vs_petsc <= 0.155
 bandwidth_fraction_400 >= 0.9
 half_150_vs_petsc <= 0.42
-half_float_150_vs_petsc <= 0.32
 solve_vs_petsc_cg <= 0.067
 solve_vs_petsc_icc <= 0.2
 iterations_vs_jacobi_geo <= 0.18

@@ -22,7 +22,7 @@ has() { # SIMD: whether it is there; one that is not is refused
     return 1
 }
 same() { # SIMD: as without
-    for setting in format=springs format=half format=half_float preconditioner=none preconditioner=jacobi preconditioner=coarse; do
+    for setting in format=springs format=half preconditioner=none preconditioner=jacobi preconditioner=coarse; do
         if ! test -s "$setting"; then
             run none "$setting" && test "$(value simd)" = none && value state_hash > "$setting" || return 1
         fi

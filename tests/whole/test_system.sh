@@ -58,16 +58,12 @@ joined_half() {
 ok "with timed joints, in half storage" joined_half
 run --save-system one --quiet
 ok "with frames, too" run --save-system three --output frames --quiet
-formats() { # the same system but for rounding
-    for format in half half_float; do
-        run --save-system $format --quiet --set solver.format=$format && solved $format 2e-10 || return 1
-        paste one/matrix.mtx $format/matrix.mtx | awk -v tolerance="$(test $format = half && echo 1e-10 || echo 1e-7)" '
-            /^%/ { next } { d = $3 - $6; d = d < 0 ? -d : d }
-            $1 != $4 || $2 != $5 || d > tolerance { bad = 1; print; exit } END { exit bad || NR < 1000 }' || return 1
-    done
-    ! cmp -s half/matrix.mtx half_float/matrix.mtx
+half() { # the same system but for rounding
+    run --save-system half --quiet --set solver.format=half && solved half 2e-10 && paste one/matrix.mtx half/matrix.mtx | awk '
+        /^%/ { next } { d = $3 - $6; d = d < 0 ? -d : d }
+        $1 != $4 || $2 != $5 || d > 1e-10 { bad = 1; print; exit } END { exit bad || NR < 1000 }'
 }
-ok "in any format" formats
+ok "in half storage" half
 other_step() { run --save-system early --end 0.02 --quiet && ! cmp -s one/rhs.mtx early/rhs.mtx; }
 ok "another step is another system" other_step
 

@@ -88,7 +88,7 @@ static void add_entry(struct solve_system *system, const struct part *part, size
                       uint32_t b)
 {
     const enum solve_format format = part->t.format;
-    const void *entry = solve_values_of(format, part->t.n, part->value).entry;
+    const void *entry = part->value;
     struct solve_symmetric symmetric = {{0}, {0}};
     struct solve_columns n;
     phys_vec turn;

@@ -1,14 +1,13 @@
 /* Restores the momentum that a solve loses to free pieces. A solve ends with a residual r = b - A
  * dv. The sum of r over the rows of a free piece is momentum that the step lost. The entries of A
- * cancel in that sum. It has only terms of rows: b - D dv - w x dv, D the diagonal besides entries,
- * w the antisymmetric part (cloth/solve/format.h). On a uniform motion c a row of A gives D c - w x
- * c, and w cancels over a piece. So the c that removes the sum is exact, and needs no iteration. */
+ * cancel in that sum. It has only terms of rows: b - D dv, D the diagonal besides entries. On a
+ * uniform motion c a row of A gives D c. So the c that removes the sum is exact, and needs no
+ * iteration. */
 #include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solver.h"
 
-/* Sums over a piece: the lost momentum, the antisymmetric part, D, kg, and the number of rows that
- * a slider holds. */
-enum { LOST, TURN = 3, MASS = 6, HELD };
+/* Sums over a piece: the lost momentum, D, kg, and the number of rows that a slider holds. */
+enum { LOST, MASS = 3, HELD };
 
 static bool solver_pieces_is_held(const struct flow_table *t, uint32_t row)
 {
@@ -32,48 +31,37 @@ static int piece_sums_body(const duite_call *call, const struct piece_sums_field
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const phys_vec *b = on->f, *dv = on->dv;
-    const void *value = flow_matrix_in(call, t, on->a);
-    const struct solve_values values = solve_values_of(t->format, t->n, value);
+    flow_matrix_in(call, t, on->a);
     for (uint32_t i = 0; i < t->n_loose; i++) {
         const uint32_t row = t->loose[i][0];
         const uint64_t group = solver_pieces_group_of(on->groups, t->loose[i][1]);
-        phys_vec turned = {0};
         if (!group)
             continue;
         double *sums = on->pieces + FLOW_PIECE_SUMS * (group - 1);
-        if (values.turn)
-            solve_cross(values.turn + row, dv + row, &turned);
-        const phys_vec lost = b[row] - t->matrix.diagonal[row] * dv[row] - turned;
-        for (int c = 0; c < 3; c++) {
+        const phys_vec lost = b[row] - t->matrix.diagonal[row] * dv[row];
+        for (int c = 0; c < 3; c++)
             sums[LOST + c] += lost[c];
-            sums[TURN + c] += values.turn ? values.turn[row][c] : 0;
-        }
         sums[MASS] += t->matrix.diagonal[row];
         sums[HELD] += solver_pieces_is_held(t, row);
     }
     return 0;
 }
 
-/* c of m c + w x c = l: c = (m l - w x l + (w.l / m) w) / (m^2 + w.w). Zero if a row of the piece
- * is held. */
+/* c of m c = l; zero if a row of the piece is held. */
 static void shift_of(const double *sums, phys_vec *shift)
 {
-    const phys_vec l = {sums[LOST], sums[LOST + 1], sums[LOST + 2], 0};
-    const phys_vec w = {sums[TURN], sums[TURN + 1], sums[TURN + 2], 0};
-    const double m = sums[MASS], held = sums[HELD];
-    phys_vec turned;
-    solve_cross(&w, &l, &turned);
-    *shift = (m * l - turned + phys_dot(&w, &l) / m * w) / (m * m + phys_dot(&w, &w));
-    if (held > 0)
-        *shift = (phys_vec){0};
+    *shift = (phys_vec){0};
+    if (sums[HELD] > 0)
+        return;
+    for (int c = 0; c < 3; c++)
+        (*shift)[c] = sums[LOST + c] / sums[MASS];
 }
 
 FLOW_KERNEL(piece_shift, FLOW_CG, struct flow_block_args,
             (R(table), R(a), R(pieces), RW(dv), RW(r), IF_MADE(groups)))
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
-    const void *value = flow_matrix_in(call, t, on->a);
-    const struct solve_values values = solve_values_of(t->format, t->n, value);
+    flow_matrix_in(call, t, on->a);
     phys_vec shift = {0};
     uint64_t last = 0;
     for (uint32_t i = 0; i < t->n_loose; i++) {
@@ -84,11 +72,8 @@ FLOW_KERNEL(piece_shift, FLOW_CG, struct flow_block_args,
         if (group != last)
             shift_of(on->pieces + FLOW_PIECE_SUMS * (group - 1), &shift);
         last = group;
-        phys_vec turned = {0};
-        if (values.turn)
-            solve_cross(values.turn + row, &shift, &turned);
         on->dv[row] += shift;
-        on->r[row] -= t->matrix.diagonal[row] * shift - turned;
+        on->r[row] -= t->matrix.diagonal[row] * shift;
     }
     return 0;
 }

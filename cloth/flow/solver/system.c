@@ -106,9 +106,9 @@ static void end_matrix(const struct making *m, const struct solve_cut *cut)
 {
     const struct flow_table *t = m->t;
     const size_t entries = t->matrix.row[t->n] + cut->n;
-    const size_t n = solve_format_doubles(t->format, t->n, entries);
+    const size_t n = solve_format_doubles(t->format, entries);
     double *value = m->values;
-    solve_assembled(&t->matrix, cut, m->sums, value);
+    solve_assembled(entries, m->sums, value);
     memset(value + n, 0, (4 * flow_value_rows(t) - n) * sizeof *value);
 }
 

@@ -63,7 +63,7 @@ enum {
 enum { FLOW_PEAK_SPEED, FLOW_PEAK_LONGEST, FLOW_PEAK_SHORTEST, FLOW_PEAKS };
 /* Numbers of a watched vertex: position, velocity, reaction, force of contact; sums of a free
  * piece. */
-enum { FLOW_PROBE_VALUES = 12, FLOW_PIECE_SUMS = 8 };
+enum { FLOW_PROBE_VALUES = 12, FLOW_PIECE_SUMS = 5 };
 /* Energies, J, and after them the torque that uncorrected triangles leave, N m (observe/energy.c).
  */
 enum {

@@ -173,7 +173,7 @@ static inline struct solve_cut flow_table_cut_entries(const struct flow_table *t
 }
 static inline size_t flow_table_doubles(const struct flow_table *t)
 {
-    return solve_format_doubles(t->format, t->n, (size_t)t->n_entries + t->n_cut_entries);
+    return solve_format_doubles(t->format, (size_t)t->n_entries + t->n_cut_entries);
 }
 static inline size_t flow_value_rows(const struct flow_table *t)
 {

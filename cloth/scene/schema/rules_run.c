@@ -139,9 +139,9 @@ const struct scene_rule scene_solver_keys[] = {
      .about = "of a block, each with motions of its own in the coarse space; else as many as pay",
      .needs = "preconditioner = coarse or ic0_coarse"},
     {"format", SCENE_CHOICE, .fallback = "springs", INTO(struct model, format),
-     WORDS({"springs", SOLVE_SPRINGS}, {"half", SOLVE_HALF}, {"half_float", SOLVE_HALF_FLOAT}),
-     .about = "how the matrix is kept: four numbers a spring, or nine a pair of vertices, in "
-     "double or float; half in place of springs where a cloth has more than springs",
+     WORDS({"springs", SOLVE_SPRINGS}, {"half", SOLVE_HALF}),
+     .about = "how the matrix is kept: four numbers a spring, or nine a pair of vertices; half in "
+     "place of springs where a cloth has more than springs",
      .needs = "springs: " NEEDS_ONLY_SPRINGS},
     {"jacobian", SCENE_CHOICE, .fallback = "definite", INTO(struct model, full_slope),
      WORDS({"definite", PHYS_DEFINITE}, {"full", PHYS_FULL}, {"absolute", PHYS_ABSOLUTE}),

@@ -64,8 +64,7 @@ static void choices_find(void)
 
 static const char *const none = "solver.preconditioner=none";
 static const char *const ic0_coarse = "solver.preconditioner=ic0_coarse";
-static const char *const formats[] = {"solver.format=springs", "solver.format=half",
-                                      "solver.format=half_float"};
+static const char *const formats[] = {"solver.format=springs", "solver.format=half"};
 static const char *const newton = "newton={steps: 2, tolerance: 1e-9}";
 
 #define LENGTH(list) (sizeof(list) / sizeof *(list))

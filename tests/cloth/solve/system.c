@@ -93,18 +93,15 @@ void system_turn(struct system *s, double size)
 
 /* ---- The dense matrix ---- */
 
-/* N of a spring as the format keeps it. */
+/* N of a spring. */
 static void block_of(const struct system *s, uint32_t i, double n[3][3])
 {
     const phys_vec *w = s->value + i, *t = s->turn + i;
     const double turn[3][3] = {
         {0, -(*t)[2], (*t)[1]}, {(*t)[2], 0, -(*t)[0]}, {-(*t)[1], (*t)[0], 0}};
     for (int c = 0; c < 3; c++)
-        for (int d = 0; d < 3; d++) {
+        for (int d = 0; d < 3; d++)
             n[c][d] = (*w)[c] * (*w)[d] + (c == d ? (*w)[3] : 0) + turn[c][d];
-            if (s->format == SOLVE_HALF_FLOAT)
-                n[c][d] = (float)n[c][d];
-        }
 }
 
 static void add_dense(struct system *s, uint32_t a, uint32_t b, double n[3][3])
@@ -253,7 +250,7 @@ static void cut_block(struct system *s, struct system_block *b, uint32_t first, 
     b->cut.end = (const uint32_t(*)[2])b->end;
     b->cut.halo = b->halo;
     if (s->format != SOLVE_SPRINGS)
-        solve_assembled(&b->matrix, &b->cut, sums, (double *)(void *)b->value);
+        solve_assembled(b->row[n] + b->cut.n, sums, (double *)(void *)b->value);
 }
 
 void system_cut(struct system *s, uint32_t n_blocks)

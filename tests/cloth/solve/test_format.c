@@ -38,7 +38,7 @@ static void multiply(const phys_vec *x, phys_vec *q)
     }
 }
 
-UNIT_LOOP(product_is_that_of_the_dense_matrix, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
+UNIT_LOOP(product_is_that_of_the_dense_matrix, SOLVE_SPRINGS, SOLVE_HALF + 1)
 {
     for (uint32_t n_blocks = 1; n_blocks <= 5; n_blocks += 2)
         for (int hold = 0; hold < 10; hold += 5) {
@@ -53,7 +53,7 @@ UNIT_LOOP(product_is_that_of_the_dense_matrix, SOLVE_SPRINGS, SOLVE_HALF_FLOAT +
         }
 }
 
-UNIT_LOOP(product_is_symmetric, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
+UNIT_LOOP(product_is_symmetric, SOLVE_SPRINGS, SOLVE_HALF + 1)
 {
     phys_vec x[SYSTEM_ROWS], y[SYSTEM_ROWS], ax[SYSTEM_ROWS], ay[SYSTEM_ROWS];
     make(_i, 4, 5, 1e4);
@@ -68,7 +68,7 @@ UNIT_LOOP(product_is_symmetric, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
 }
 
 /* The sum over A v is that over M v, to 1e-14 of the sum of all |A_ij v_j|. */
-UNIT_LOOP(what_moves_as_a_whole_keeps_its_momentum, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
+UNIT_LOOP(what_moves_as_a_whole_keeps_its_momentum, SOLVE_SPRINGS, SOLVE_HALF + 1)
 {
     static const double stiffness[] = {1e-3, 1, 1e3, 1e9};
     for (int k = 0; k < 4; k++) {
@@ -107,7 +107,7 @@ static uint32_t find_held(const struct system_block *block, uint32_t (*held)[2])
     return n;
 }
 
-UNIT_LOOP(lost_is_the_sum_of_the_residual, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
+UNIT_LOOP(lost_is_the_sum_of_the_residual, SOLVE_SPRINGS, SOLVE_HALF + 1)
 {
     phys_vec dv[SYSTEM_ROWS], b[SYSTEM_ROWS], q[SYSTEM_ROWS], sum = {0};
     double lost[3] = {0};

@@ -5,7 +5,11 @@
  * conflicts are symmetric. A node after T in the round that releases T of the next round runs after
  * T; a node before T runs, in the next round, after T. So no node is counted down for the next
  * round before it has begun this one. The roots of a round and the deciding node are joined both
- * ways for the same reason. */
+ * ways for the same reason.
+ *
+ * A gate is a node that comes after all before it in the round, as those that make something of the
+ * contributions of all. An edge to a node behind a gate is left out if it comes from before the
+ * gate: the gate orders both. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
@@ -18,24 +22,46 @@ struct edges {
     struct data_order_reader *reader;
     uint32_t n_readers;
     uint32_t *mark;   /* by node: the last one that an edge from here goes to, plus 1 */
+    uint32_t *gate;   /* by node of two rounds: the last gate that it is or comes after, plus 1 */
     size_t n_pending; /* places written in the first round, but not yet in the second */
+    size_t n_ends;    /* nodes of the first round from which no edge leads on in it, so far */
 };
+
+static uint32_t edge_later(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
 
 static void edge_add(struct edges *e, uint32_t from, uint32_t to)
 {
     struct plan_round *round = e->round;
     const uint32_t n = (uint32_t)round->n_nodes;
     const bool cyclic = to >= n;
+    e->gate[to] = edge_later(e->gate[to], e->gate[from]);
     if (from >= n || e->mark[from] == to + 1)
         return;
     e->mark[from] = to + 1;
-    struct plan_round_edge *edge = &round->edge[round->n_edges++];
-    *edge = (struct plan_round_edge){from, cyclic ? to - n : to, cyclic};
-    struct plan_round_node *before = &round->node[from], *after = &round->node[edge->to];
-    before->n_next++;
-    before->n_next_cyclic += cyclic;
-    after->within += !cyclic;
-    after->cyclic += cyclic;
+    round->edge[round->n_edges++] = (struct plan_round_edge){from, cyclic ? to - n : to, cyclic};
+}
+
+/* Keeps those edges from number `first` on, all to one node, that no gate makes needless. */
+static void edges_keep(struct edges *e, size_t first, uint32_t to)
+{
+    struct plan_round *round = e->round;
+    const size_t end = round->n_edges;
+    round->n_edges = first;
+    for (size_t i = first; i < end; i++) {
+        const struct plan_round_edge edge = round->edge[i];
+        struct plan_round_node *before = &round->node[edge.from], *after = &round->node[edge.to];
+        if (edge.from + 1 < e->gate[to])
+            continue;
+        round->edge[round->n_edges++] = edge;
+        e->n_ends -= !edge.cyclic && before->n_next == before->n_next_cyclic;
+        before->n_next++;
+        before->n_next_cyclic += edge.cyclic;
+        after->within += !edge.cyclic;
+        after->cyclic += edge.cyclic;
+    }
 }
 
 static bool edge_of_order(void *edges, uint32_t from, uint32_t to)
@@ -89,8 +115,9 @@ static bool edges_room(struct edges *e)
     e->place = base_alloc_zero((round->n_places + 1) * sizeof *e->place);
     e->reader = base_alloc((2 * uses + 1) * sizeof *e->reader);
     e->mark = base_alloc_zero((nodes + 1) * sizeof *e->mark);
+    e->gate = base_alloc_zero((2 * nodes + 1) * sizeof *e->gate);
     round->edge = base_alloc((3 * uses + 2 * nodes + 1) * sizeof *round->edge);
-    return e->place && e->reader && e->mark && round->edge;
+    return e->place && e->reader && e->mark && e->gate && round->edge;
 }
 
 bool plan_edges(struct plan_round *round)
@@ -98,11 +125,18 @@ bool plan_edges(struct plan_round *round)
     struct edges e = {.round = round};
     const bool fine = edges_room(&e);
     for (uint32_t to = 0; to < 2 * round->n_nodes && fine; to++) {
+        const size_t first = round->n_edges;
         edges_of_places(&e, to);
+        edges_keep(&e, first, to);
+        const size_t more = round->n_edges;
         edges_of_rounds(&e, to);
+        edges_keep(&e, more, to);
+        if (to < round->n_nodes && !e.n_ends++)
+            e.gate[to] = to + 1;
     }
     base_free(e.place);
     base_free(e.reader);
     base_free(e.mark);
+    base_free(e.gate);
     return fine;
 }

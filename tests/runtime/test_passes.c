@@ -130,6 +130,37 @@ static bool same_edge(const struct plan_round_edge *a, const struct plan_round_e
     return a->from == b->from && a->to == b->to && a->cyclic == b->cyclic;
 }
 
+static bool in_conflict(const struct plan_round *round, size_t a, size_t b)
+{
+    const struct plan_round_node *first = &round->node[a], *second = &round->node[b];
+    for (size_t i = first->first_use; i < first->first_use + first->n_uses; i++)
+        for (size_t k = second->first_use; k < second->first_use + second->n_uses; k++)
+            if (round->use[i].place == round->use[k].place &&
+                (round->use[i].writes || round->use[k].writes))
+                return true;
+    return false;
+}
+
+/* Nodes that use a place, one of which writes it, are in order. No edge passes by a node that all
+ * before it lead to. after[a * n + b]: b runs after a. */
+static void check_order(const struct plan_round *round, const bool *after)
+{
+    const size_t n = round->n_nodes;
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = a + 1; b < n; b++)
+            ck_assert(after[a * n + b] || !in_conflict(round, a, b));
+    for (size_t gate = 0; gate < n; gate++) {
+        size_t before = 0;
+        for (size_t a = 0; a < gate; a++)
+            before += after[a * n + gate];
+        for (size_t i = 0; i < round->n_edges && before == gate; i++) {
+            const struct plan_round_edge *edge = &round->edge[i];
+            ck_assert(edge->cyclic || edge->from >= gate || edge->to <= gate ||
+                      !after[gate * n + edge->to]);
+        }
+    }
+}
+
 /* Edges within a round lead to later nodes, in order, each once; one that goes to the next round
  * goes back to a node that `from` waited for, or to itself. */
 static void check_edges(const struct plan_round *round)
@@ -151,6 +182,7 @@ static void check_edges(const struct plan_round *round)
         for (size_t a = 0; a < n; a++)
             after[a * n + edge->to] |= after[a * n + edge->from];
     }
+    check_order(round, after);
     for (size_t i = 0; i < round->n_edges; i++)
         if (round->edge[i].cyclic)
             ck_assert(after[round->edge[i].to * n + round->edge[i].from]);

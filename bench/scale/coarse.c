@@ -7,8 +7,9 @@
 #include <stdio.h>
 
 enum { GRAIN = 64, QUICK_GRAIN = 4 }; /* small blocks, of a patch each */
+enum { SHEET_GRAIN = 1000 };          /* as on many hosts */
 
-/* coarse: "exact", "one" (one patch a block), or "" (groups). grain: 0: the default one. */
+/* coarse: "exact", "one" (one patch a block), or "" (groups). */
 static const struct measure_series *iterations(struct measure *measure,
                                                const struct bench_options *options,
                                                const char *const *state, const char *coarse,
@@ -18,8 +19,7 @@ static const struct measure_series *iterations(struct measure *measure,
     int used = snprintf(words, sizeof words, " what=iterations");
     if (*coarse)
         used += snprintf(words + used, sizeof words - (size_t)used, " coarse=%s", coarse);
-    if (grain)
-        snprintf(words + used, sizeof words - (size_t)used, " grain=%u", grain);
+    snprintf(words + used, sizeof words - (size_t)used, " grain=%u", grain);
     return cg_solves(measure, options, state, words, n);
 }
 
@@ -39,7 +39,7 @@ static void plan_worst(struct measure *measure, const char *kind, const char *ri
 static void plan_sheet(struct measure *measure, const struct bench_options *options,
                        const char *kind)
 {
-    const unsigned grain = options->quick ? QUICK_GRAIN : 0;
+    const unsigned grain = options->quick ? QUICK_GRAIN : SHEET_GRAIN;
     const char *const *name = states_of(kind);
     size_t n;
     const struct measure_series *groups = iterations(measure, options, name, "", grain, &n);

@@ -297,6 +297,13 @@ uint32_t model_patches(const struct model *model, uint32_t n_blocks)
     return halved && n > 1 && !model->patches ? n / 2 : n;
 }
 
+uint32_t model_usual_grain(uint32_t n_vertices)
+{
+    enum { BLOCKS = MODEL_ONE_FACTOR / SOLVE_MAX_PATCHES, LEAST = 1000, MOST = 4000 };
+    const uint32_t grain = n_vertices / BLOCKS;
+    return grain < LEAST ? LEAST : grain > MOST ? MOST : grain;
+}
+
 double model_curve_at(const struct model *model, uint32_t curve, double time)
 {
     if (!curve)

@@ -168,7 +168,7 @@ struct model {
     int full_slope; /* enum phys_slope, of the matrix; only springs know PHYS_ABSOLUTE, which is
                        PHYS_DEFINITE to all else */
 
-    uint32_t grain; /* vertices a block */
+    uint32_t grain; /* vertices a block; 0, until the scene is built: as model_usual_grain finds */
 
     uint32_t n_phases; /* of the scene; 0: it is one run. The model is that of one of them */
     struct model_phase *phases;
@@ -268,6 +268,11 @@ static inline int model_stops_by_norms(const struct model *model)
  * if one factor can then take all patches: one task solves with it after those of the blocks. */
 enum { MODEL_ONE_FACTOR = 256 }; /* more patches are solved by groups (cloth/solve/levels.h) */
 uint32_t model_patches(const struct model *model, uint32_t n_blocks);
+
+/* The grain of so many vertices in all, where a scene gives none: that of as many blocks as one
+ * factor can take with four patches each, but at least 1000, as springs between blocks are computed
+ * on both sides, and at most 4000, for machines of many cores. */
+uint32_t model_usual_grain(uint32_t n_vertices);
 
 /* Their names in scenes. */
 extern const struct model_word model_integrators[];

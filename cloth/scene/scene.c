@@ -19,7 +19,8 @@ static const struct {
              {.whole = scene_build_sewn},          {.each = scene_build_pieces},
              {.each = scene_build_folds},          {.each = scene_build_girths},
              {.each = scene_build_warn_seams},     {.whole = scene_build_unusual},
-             {.whole = scene_build_settings},      {.whole = scene_build_needs}};
+             {.whole = scene_build_grain},         {.whole = scene_build_settings},
+             {.whole = scene_build_needs}};
 
 static int read_tree(struct scene_tree *tree, uint32_t phase)
 {

@@ -48,8 +48,8 @@ scene_build_cloth_step scene_build_folds, scene_build_bands;
 scene_build_cloth_step scene_build_girths, scene_build_warn_seams;
 scene_build_step scene_build_unusual, scene_build_needs;
 
-/* Writes the settings of the model. */
-scene_build_step scene_build_settings;
+/* The grain, where the scene gives none; writes the settings of the model. */
+scene_build_step scene_build_grain, scene_build_settings;
 
 /* ---- Names (names.c) ---- */
 

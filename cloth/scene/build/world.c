@@ -220,3 +220,11 @@ int scene_build_phases(struct scene_tree *tree)
                                   i, model->phases[i].name, k);
     return CLOTH_OK;
 }
+
+int scene_build_grain(struct scene_tree *tree)
+{
+    struct model *model = tree->model;
+    if (!model->grain)
+        model->grain = model_usual_grain(model_first(model, model->n_cloths));
+    return CLOTH_OK;
+}

@@ -45,6 +45,13 @@ UNIT_TEST(world_and_time)
     same_vector(model.obstacles[0].value + 3, 0, 3. / 4 / 1.25, 1 / 1.25);
 }
 
+UNIT_TEST(usual_grain)
+{
+    ck_assert_uint_eq(model_usual_grain(1), 1000);
+    ck_assert_uint_eq(model_usual_grain(160000), 2500);
+    ck_assert_uint_eq(model_usual_grain(1000000), 4000);
+}
+
 UNIT_TEST(cloth_and_material)
 {
     UNIT_OWNED(model_free) struct model model = scene_read_right(scene_right, 0, NULL);

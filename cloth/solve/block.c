@@ -8,8 +8,8 @@
 
 enum {
     STRETCH = 64, /* rows: they and their entries take a cache of 32 KiB or half of it */
-    BYTES_OF_ROWS_AHEAD = 96 * sizeof(phys_vec), /* about as far as */
-    BYTES_AHEAD = 256 * 32,                      /* of the entries: enough for memory to answer */
+    ROWS_AHEAD = 96 * sizeof(phys_vec), /* bytes of each vector that are fetched beforehand, */
+    ENTRIES_AHEAD = 256 * 32,           /* and of the entries: enough for memory to answer */
     LINE = 64
 };
 
@@ -22,10 +22,10 @@ PHYS_INLINE void begin_rows(bool preconditioned, size_t from, size_t to, double 
     phys_vec *restrict p = rows->p, *restrict q = rows->q;
     phys_vec square = sum[SOLVE_RR], product = sum[SOLVE_RZ];
     for (size_t a = from; a < to; a++) {
-        phys_fetch(dv + a, BYTES_OF_ROWS_AHEAD, 1);
-        phys_fetch(r + a, BYTES_OF_ROWS_AHEAD, 1);
-        phys_fetch(p + a, BYTES_OF_ROWS_AHEAD, 1);
-        phys_fetch(q + a, BYTES_OF_ROWS_AHEAD, 1);
+        phys_fetch(dv + a, ROWS_AHEAD, 1);
+        phys_fetch(r + a, ROWS_AHEAD, 1);
+        phys_fetch(p + a, ROWS_AHEAD, 1);
+        phys_fetch(q + a, ROWS_AHEAD, 1);
         const phys_vec before = q[a]; /* in registers: compilers read again what they stored */
         phys_vec left = r[a], next = p[a];
         dv[a] += alpha * next;
@@ -52,7 +52,7 @@ PHYS_INLINE void fetch_entries(enum solve_format format, const void *values, siz
 {
     static const size_t bytes[] = {[SOLVE_SPRINGS] = 32, [SOLVE_HALF] = 72}; /* an entry */
     for (size_t line = 0; line < 3 * bytes[format]; line += LINE)
-        phys_fetch((const char *)values + bytes[format] * i, BYTES_AHEAD + line, 0);
+        phys_fetch((const char *)values + bytes[format] * i, ENTRIES_AHEAD + line, 0);
 }
 
 /* Entries from .. to - 1 of row a: takes each from its other row and returns the sum for this one.

@@ -9,7 +9,7 @@
  *
  * A gate is a node that comes after all before it in the round, as those that make something of the
  * contributions of all. An edge to a node behind a gate is left out if it comes from before the
- * gate: the gate orders both. */
+ * gate, which orders both. So the same nodes are in order, by longer ways. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"

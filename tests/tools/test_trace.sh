@@ -157,6 +157,14 @@ for e in events:
     if e["ph"] == "X":
         begin = round(1000 * e["ts"])
         spans[e["tid"]].append((begin, -begin - round(1000 * e["dur"])))
+# ... and in doubles of microseconds, as viewers add them.
+for tid in spans:
+    open_until = []
+    for e in sorted((e for e in events if e["ph"] == "X" and e["tid"] == tid), key=lambda e: (e["ts"], -e["dur"])):
+        while open_until and open_until[-1] <= e["ts"]:
+            open_until.pop()
+        assert not open_until or e["ts"] + e["dur"] <= open_until[-1] + 1e-6, (e, open_until)
+        open_until.append(e["ts"] + e["dur"])
 for row in spans.values():
     open_until = []
     for begin, end in sorted(row):

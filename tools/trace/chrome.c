@@ -2,7 +2,8 @@
  * microseconds, a process a rank, a thread a worker. Perfetto has three rules. No process or thread
  * is 0 (its idle thread, which swallows others). No time is below 0 (such events are dropped). A
  * span that lies in or after another one in the trace does so in whole nanoseconds, too (spans that
- * overlap are dropped). */
+ * overlap are dropped). Other viewers add begin and duration in doubles: spans that touch must not
+ * overlap by a rounding error, as all behind it would then lie in each other. */
 #include "tools/trace/export.h"
 
 #include "runtime/base/memory.h"
@@ -59,6 +60,13 @@ static void chrome_put_time(FILE *file, const char *key, int64_t t)
     fprintf(file, ",\"%s\":%" PRId64 ".%03" PRId64, key, t / 1000, t % 1000);
 }
 
+/* 0.4 ns less: of no effect in whole nanoseconds, and far more than a rounding error. */
+static void chrome_put_duration(FILE *file, int64_t t)
+{
+    const int64_t tenths = t > 0 ? 10 * t - 4 : 0;
+    fprintf(file, ",\"dur\":%" PRId64 ".%04" PRId64, tenths / 10000, tenths % 10000);
+}
+
 static int64_t chrome_nanoseconds(double seconds)
 {
     return seconds > 0 ? llrint(1e9 * seconds) : 0;
@@ -82,7 +90,7 @@ static void chrome_put_event(void *context, const struct trace_seen *seen)
     chrome_put_time(file, "ts", begin);
     if (trace_event_lasts(seen->event)) {
         fputs(",\"ph\":\"X\"", file);
-        chrome_put_time(file, "dur", end - begin);
+        chrome_put_duration(file, end - begin);
     } else {
         fputs(",\"ph\":\"i\",\"s\":\"t\"", file);
     }

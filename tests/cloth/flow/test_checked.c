@@ -215,7 +215,7 @@ UNIT_TEST(cloths)
 UNIT_TEST(sizes)
 {
     static const char *const springs = "materials.springs.size={warp: [[0, 1], [0.002, 0.9]]}";
-    static const char *const triangles = "materials.triangles.size=[[0, 1], [0.002, 1.1]]";
+    static const char *const triangles = "materials.triangles.size={both: [[0, 1], [0.002, 1.1]]}";
     static const char *const soft =
         "cloths[0].pins=[{vertices: [0, 5], stiffness: 5, damping: 0.1}]";
     for (size_t i = 0; i < integrators.n; i++)

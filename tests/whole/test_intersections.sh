@@ -95,11 +95,11 @@ cutting() { # one side of the body, which has two triangles
 ok "a cloth through a body" cutting
 falling() { check 0 fall --set time.end=0.4 --output out && reports 0 0 null; }
 ok "a sheet that falls flat" falling
-folding() { # from the frame that is said, by as many as ranks and threads say
+folding() { # from the frame that is said, by as many as ranks and threads say, of frames as they are written: in float
     check 4 fold --set time.end=0.4 --grain 100 --output out --threads 1 && test "$(value intersections)" -gt 100 && test "$(value intersections_frame)" -gt 2 &&
         test "$(grep -c 'intersect (vertices' said)" = 5 && grep -q 'and [0-9]* more$' said || return 1
     set -- "$(value intersections) $(value intersections_frame)"
-    ranks 2 "$DUITE_CLOTH" fold.yaml --check-intersections --report report.json --set time.end=0.4 --grain 100 --threads 2 --quiet > printed 2> said
+    ranks 2 "$DUITE_CLOTH" fold.yaml --check-intersections --report report.json --set time.end=0.4 --grain 100 --output out --threads 2 --quiet > printed 2> said
     folding_got=$?
     cat said
     test $folding_got = 4 && test "$(value intersections) $(value intersections_frame)" = "$1" &&

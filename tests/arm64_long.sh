@@ -32,11 +32,11 @@ build() {
         "$make" -j2 && "$make" -j2 check-programs
 }
 
-emulate() { # a script takes the place of each program, and runs it
+emulate() { # a script of its age takes the place of each program, and runs it
     find "$build" -type f -perm -u+x ! -path '*/.libs/*' | while read -r program; do
         test "$(head -c 4 "$program" | tail -c 3)" = ELF || continue
         mv "$program" "$program.arm64" && printf '#!/bin/sh\nexec qemu-aarch64-static -L %s %s.arm64 "$@"\n' "$root" "$program" > "$program" &&
-            chmod +x "$program" || return
+            chmod +x "$program" && touch -r "$program.arm64" "$program" || return
     done
 }
 

@@ -186,7 +186,7 @@ static void choose(const struct serve_request *request, struct model *model)
         model->preconditioner = MODEL_PLAIN;
     if (!strcmp(solver, "jacobi"))
         model->preconditioner = MODEL_JACOBI;
-    if (*format)
+    if (!strcmp(format, "half"))
         model->format = SOLVE_HALF;
     if (*coarse) {
         model->exact_coarse = true;

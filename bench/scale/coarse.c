@@ -1,13 +1,13 @@
-/* Iterations to an error of 1 % with the coarse space as it is, by groups of blocks, against one
- * exact factor of it: of states that are so large that the groups are what runs take; and of those
- * of the bench "cg" and of cloth in contact, in blocks so small that there are groups. */
+/* Iterations to an error of 1 % with the coarse space solved by groups of blocks, against one exact
+ * factor of it. The states are large ones, and those of the bench "cg" and of cloth in contact in
+ * blocks so small that there are groups. */
 #include "bench/cg/cg.h"
 #include "bench/scale/scale.h"
 
 #include <stdio.h>
 
 enum { GRAIN = 64, QUICK_GRAIN = 4 }; /* small blocks, of a patch each */
-enum { SHEET_GRAIN = 1000 };          /* as on many hosts */
+enum { SHEET_GRAIN = 1000 };          /* vertices: enough blocks for many hosts */
 
 /* coarse: "exact", "one" (one patch a block), or "" (groups). */
 static const struct measure_series *iterations(struct measure *measure,

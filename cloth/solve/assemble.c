@@ -1,3 +1,5 @@
+/* Each entry is summed in the order of the block's table, so both blocks of a cut entry have the
+ * same bits. */
 #include "cloth/solve/assemble.h"
 
 PHYS_KERNEL(solve_assemble_springs,

@@ -7,9 +7,9 @@
  * round before it has begun this one. The roots of a round and the deciding node are joined both
  * ways for the same reason.
  *
- * A gate is a node that comes after all before it in the round, as those that make something of the
- * contributions of all. An edge to a node behind a gate is left out if it comes from before the
- * gate, which orders both. So the same nodes are in order, by longer ways. */
+ * A barrier is a node that runs after all nodes before it in the round, such as the sum of the
+ * contributions of all blocks. An edge from a node before a barrier to one that runs after it is
+ * left out, since the barrier orders both. So the same nodes are in order, by longer ways. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
@@ -21,10 +21,10 @@ struct edges {
     struct data_order_chain *place;
     struct data_order_reader *reader;
     uint32_t n_readers;
-    uint32_t *mark;   /* by node: the last one that an edge from here goes to, plus 1 */
-    uint32_t *gate;   /* by node of two rounds: the last gate that it is or comes after, plus 1 */
-    size_t n_pending; /* places written in the first round, but not yet in the second */
-    size_t n_ends;    /* nodes of the first round from which no edge leads on in it, so far */
+    uint32_t *mark;    /* by node: the last one that an edge from here goes to, plus 1 */
+    uint32_t *barrier; /* by node of two rounds: the last one that it is or runs after, plus 1 */
+    size_t n_pending;  /* places written in the first round, but not yet in the second */
+    size_t n_ends;     /* nodes of the first round from which no edge leads on in it, so far */
 };
 
 static uint32_t edge_later(uint32_t a, uint32_t b)
@@ -37,14 +37,14 @@ static void edge_add(struct edges *e, uint32_t from, uint32_t to)
     struct plan_round *round = e->round;
     const uint32_t n = (uint32_t)round->n_nodes;
     const bool cyclic = to >= n;
-    e->gate[to] = edge_later(e->gate[to], e->gate[from]);
+    e->barrier[to] = edge_later(e->barrier[to], e->barrier[from]);
     if (from >= n || e->mark[from] == to + 1)
         return;
     e->mark[from] = to + 1;
     round->edge[round->n_edges++] = (struct plan_round_edge){from, cyclic ? to - n : to, cyclic};
 }
 
-/* Keeps those edges from number `first` on, all to one node, that no gate makes needless. */
+/* Keeps those edges from number `first` on, all to one node, that no barrier makes needless. */
 static void edges_keep(struct edges *e, size_t first, uint32_t to)
 {
     struct plan_round *round = e->round;
@@ -53,7 +53,7 @@ static void edges_keep(struct edges *e, size_t first, uint32_t to)
     for (size_t i = first; i < end; i++) {
         const struct plan_round_edge edge = round->edge[i];
         struct plan_round_node *before = &round->node[edge.from], *after = &round->node[edge.to];
-        if (edge.from + 1 < e->gate[to])
+        if (edge.from + 1 < e->barrier[to])
             continue;
         round->edge[round->n_edges++] = edge;
         e->n_ends -= !edge.cyclic && before->n_next == before->n_next_cyclic;
@@ -115,9 +115,9 @@ static bool edges_room(struct edges *e)
     e->place = base_alloc_zero((round->n_places + 1) * sizeof *e->place);
     e->reader = base_alloc((2 * uses + 1) * sizeof *e->reader);
     e->mark = base_alloc_zero((nodes + 1) * sizeof *e->mark);
-    e->gate = base_alloc_zero((2 * nodes + 1) * sizeof *e->gate);
+    e->barrier = base_alloc_zero((2 * nodes + 1) * sizeof *e->barrier);
     round->edge = base_alloc((3 * uses + 2 * nodes + 1) * sizeof *round->edge);
-    return e->place && e->reader && e->mark && e->gate && round->edge;
+    return e->place && e->reader && e->mark && e->barrier && round->edge;
 }
 
 bool plan_edges(struct plan_round *round)
@@ -132,11 +132,11 @@ bool plan_edges(struct plan_round *round)
         edges_of_rounds(&e, to);
         edges_keep(&e, more, to);
         if (to < round->n_nodes && !e.n_ends++)
-            e.gate[to] = to + 1;
+            e.barrier[to] = to + 1;
     }
     base_free(e.place);
     base_free(e.reader);
     base_free(e.mark);
-    base_free(e.gate);
+    base_free(e.barrier);
     return fine;
 }

@@ -141,22 +141,22 @@ static bool in_conflict(const struct plan_round *round, size_t a, size_t b)
     return false;
 }
 
-/* Nodes that use a place, one of which writes it, are in order. No edge passes by a node that all
- * before it lead to. after[a * n + b]: b runs after a. */
+/* Two nodes that use a place, which one of them writes, are in order. No edge passes by a barrier,
+ * a node that runs after all before it. after[a * n + b]: b runs after a. */
 static void check_order(const struct plan_round *round, const bool *after)
 {
     const size_t n = round->n_nodes;
     for (size_t a = 0; a < n; a++)
         for (size_t b = a + 1; b < n; b++)
             ck_assert(after[a * n + b] || !in_conflict(round, a, b));
-    for (size_t gate = 0; gate < n; gate++) {
+    for (size_t barrier = 0; barrier < n; barrier++) {
         size_t before = 0;
-        for (size_t a = 0; a < gate; a++)
-            before += after[a * n + gate];
-        for (size_t i = 0; i < round->n_edges && before == gate; i++) {
+        for (size_t a = 0; a < barrier; a++)
+            before += after[a * n + barrier];
+        for (size_t i = 0; i < round->n_edges && before == barrier; i++) {
             const struct plan_round_edge *edge = &round->edge[i];
-            ck_assert(edge->cyclic || edge->from >= gate || edge->to <= gate ||
-                      !after[gate * n + edge->to]);
+            ck_assert(edge->cyclic || edge->from >= barrier || edge->to <= barrier ||
+                      !after[barrier * n + edge->to]);
         }
     }
 }

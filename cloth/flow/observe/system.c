@@ -87,19 +87,17 @@ static void add_spring_pair(struct solve_system *system, uint32_t a, uint32_t b,
 static void add_entry(struct solve_system *system, const struct part *part, size_t i, uint32_t a,
                       uint32_t b)
 {
-    const enum solve_format format = part->t.format;
-    const void *entry = part->value;
     struct solve_symmetric symmetric = {{0}, {0}};
     struct solve_columns n;
     phys_vec turn;
-    if (format == SOLVE_SPRINGS) {
-        add_spring_pair(system, a, b, 1, (const phys_vec *)entry + i);
+    if (part->t.format == SOLVE_SPRINGS) {
+        add_spring_pair(system, a, b, 1, (const phys_vec *)part->value + i);
         return;
     }
     const size_t at = system->n_pairs++;
     system->end[at][0] = a;
     system->end[at][1] = b;
-    solve_entry_of(format, entry, i, &symmetric, &turn);
+    solve_entry_of(part->t.format, part->value, i, &symmetric, &turn);
     solve_entry_columns(&symmetric, &turn, &n);
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)

@@ -31,7 +31,7 @@ static int piece_sums_body(const duite_call *call, const struct piece_sums_field
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const phys_vec *b = on->f, *dv = on->dv;
-    flow_matrix_in(call, t, on->a);
+    flow_matrix_in(call, t, on->a); /* its diagonal */
     for (uint32_t i = 0; i < t->n_loose; i++) {
         const uint32_t row = t->loose[i][0];
         const uint64_t group = solver_pieces_group_of(on->groups, t->loose[i][1]);
@@ -61,7 +61,7 @@ FLOW_KERNEL(piece_shift, FLOW_CG, struct flow_block_args,
             (R(table), R(a), R(pieces), RW(dv), RW(r), IF_MADE(groups)))
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
-    flow_matrix_in(call, t, on->a);
+    flow_matrix_in(call, t, on->a); /* its diagonal */
     phys_vec shift = {0};
     uint64_t last = 0;
     for (uint32_t i = 0; i < t->n_loose; i++) {

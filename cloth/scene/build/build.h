@@ -48,7 +48,7 @@ scene_build_cloth_step scene_build_folds, scene_build_bands;
 scene_build_cloth_step scene_build_girths, scene_build_warn_seams;
 scene_build_step scene_build_unusual, scene_build_needs;
 
-/* The grain, where the scene gives none; writes the settings of the model. */
+/* The first fills in the grain that a scene does not give, the second writes the settings. */
 scene_build_step scene_build_grain, scene_build_settings;
 
 /* ---- Names (names.c) ---- */

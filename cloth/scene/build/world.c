@@ -1,4 +1,5 @@
-/* Checks of materials, time, air, solver and phases beyond the rule of one key. */
+/* Checks of materials, time, air, solver and phases beyond the rule of one key, and the grain that
+ * a scene does not give. */
 #include "cloth/scene/build/build.h"
 
 #include "cloth/physics/triangle.h"

@@ -269,9 +269,9 @@ static inline int model_stops_by_norms(const struct model *model)
 enum { MODEL_ONE_FACTOR = 256 }; /* more patches are solved by groups (cloth/solve/levels.h) */
 uint32_t model_patches(const struct model *model, uint32_t n_blocks);
 
-/* The grain of so many vertices in all, where a scene gives none: that of as many blocks as one
- * factor can take with four patches each, but at least 1000, as springs between blocks are computed
- * on both sides, and at most 4000, for machines of many cores. */
+/* The grain of so many vertices in all, where a scene gives none. It makes as many blocks as one
+ * factor takes with four patches each. It is at least 1000, since springs between blocks are
+ * computed on both sides, and at most 4000, which leaves blocks for many cores. */
 uint32_t model_usual_grain(uint32_t n_vertices);
 
 /* Their names in scenes. */

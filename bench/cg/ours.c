@@ -103,8 +103,7 @@ static int end(struct cg_session *s, int code)
 static int touch(struct flow_state *run)
 {
     int code = flow_contact_start(run);
-    run->attempt = (struct flow_attempt){
-        .begin = run->grid.now, .length = FLOW_TICKS, .parity = 1 - run->attempt.parity};
+    run->attempt = (struct flow_attempt){.begin = run->grid.now, .length = FLOW_TICKS};
     if (!code)
         code = flow_contact_tie(run);
     return code ? code : flow_assemble(run);

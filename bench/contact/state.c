@@ -53,8 +53,7 @@ static int move(struct flow_state *run)
         code = flow_contact_start(run);
     if (!code)
         code = flow_steps(run);
-    run->attempt = (struct flow_attempt){
-        .begin = run->grid.now, .length = FLOW_TICKS, .parity = 1 - run->attempt.parity};
+    run->attempt = (struct flow_attempt){.begin = run->grid.now, .length = FLOW_TICKS};
     return code ? code : duite_wait(run->rt);
 }
 

@@ -258,14 +258,11 @@ static int begin_certified(struct flow_state *state)
  * solves. */
 static int make_again(struct flow_state *state, const double status[FLOW_STATUS])
 {
-    const double nothing[FLOW_STATUS] = {0};
     state->contact.iterations += status[FLOW_ITERATIONS];
     state->contact.restarts += status[FLOW_RESTARTS];
     state->smooth = 0; /* a BDF2 step has changed the state that it goes on from */
     state->report->contact_solves++;
     int code = flow_contact_again(state);
-    if (!code)
-        code = duite_set(state->rt, flow_field_object(state, FLOW_FIELD_status, 0), nothing);
     if (!code)
         code = flow_contact_tie(state);
     if (!code)
@@ -327,12 +324,11 @@ static bool is_solved(const double status[FLOW_STATUS])
 
 static int settle_certified(struct flow_state *state)
 {
-    const unsigned parity = state->attempt.parity;
     double status[FLOW_STATUS];
     struct flow_seen seen = {0};
     int code = DUITE_OK;
     for (int solve = 1; !code; solve++) {
-        code = duite_get(state->rt, state->run.status[parity], status);
+        code = duite_get(state->rt, state->run.status, status);
         flow_implicit_status(state, status);
         if (code || !is_solved(status))
             return code;

@@ -32,7 +32,6 @@ static int set_none(struct flow_state *state)
 
 int flow_contact_watch(struct flow_state *state)
 {
-    struct flow_block_args args;
     if (!flow_feels_contact(state))
         return DUITE_OK;
     if (flow_shows_contact(state)) /* a frame may show the end of the step before */
@@ -40,6 +39,6 @@ int flow_contact_watch(struct flow_state *state)
     const int code = duite_set(state->rt, state->run.obstacle_force, NULL);
     if (code)
         return code;
-    return state->report->steps ? flow_fork_each(state, &flow_kernel_contact_force, &args)
+    return state->report->steps ? flow_fork_each(state, &flow_kernel_contact_force, NULL)
                                 : set_none(state);
 }

@@ -43,8 +43,7 @@ FLOW_KERNEL(constrain, FLOW_COLLIDE, struct flow_block_args, (R(table), R(filter
 
 int flow_contact_constrain(struct flow_state *state)
 {
-    struct flow_block_args args;
-    return flow_fork_each(state, &flow_kernel_constrain, &args);
+    return flow_fork_each(state, &flow_kernel_constrain, NULL);
 }
 
 /* ---- After a step: rows inside an obstacle are put on it ---- */

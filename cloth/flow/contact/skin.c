@@ -84,8 +84,7 @@ FLOW_KERNEL(keep_halo, FLOW_COLLIDE, struct flow_block_args, (R(halo_x), W(kept_
 
 int flow_skins_keep(struct flow_state *state)
 {
-    struct flow_block_args args;
-    return flow_fork_each(state, &flow_kernel_keep_halo, &args);
+    return flow_fork_each(state, &flow_kernel_keep_halo, NULL);
 }
 
 /* Gathers the rows of the points. moved, by point: they have other bits now; NULL: nobody asks. */
@@ -150,8 +149,7 @@ FLOW_KERNEL(skin_place, FLOW_COLLIDE, struct flow_block_args,
 
 int flow_skins_place(struct flow_state *state)
 {
-    struct flow_block_args args;
-    return flow_fork_each(state, &flow_kernel_skin_place, &args);
+    return flow_fork_each(state, &flow_kernel_skin_place, NULL);
 }
 
 int flow_skins_refit(struct flow_state *state, bool again)

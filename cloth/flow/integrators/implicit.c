@@ -53,6 +53,7 @@ struct solved {
     const void *value; /* of the matrix */
     const phys_vec *b, *dv, *r;
     const struct solve_scalars *scalars;
+    const double *factor;           /* NULL: there is no preconditioner */
     const unsigned char *tie_table; /* NULL: the run has no ties */
 };
 
@@ -72,7 +73,7 @@ static void note_lost(const struct flow_table *t, const struct solved *solved, d
 }
 
 /* Notes a solve in the status: its iterations and restarts, its error, the momentum that it lost,
- * its failure. */
+ * shifts of its factor, its failure. */
 static void note_solve(const duite_call *call, const struct flow_table *t,
                        const struct solved *solved, double *status)
 {
@@ -85,6 +86,9 @@ static void note_solve(const duite_call *call, const struct flow_table *t,
     status[FLOW_SIZE] = norms.size;
     status[FLOW_RESIDUAL] = norms.bound;
     status[FLOW_FAILED] = scalars->outcome != SOLVE_OK;
+    if (solved->factor)
+        status[FLOW_SHIFTED] =
+            solved->factor[flow_factor_doubles(t, flow_of(call)->conditioner.local) - 1];
     if (flow_block_of(call) != 0)
         return;
     const double error = sqrt(solve_scalars_error(scalars, INFINITY)) + sqrt(scalars->drift);
@@ -119,12 +123,13 @@ static int implicit_move(const duite_call *call, const struct flow_table *t,
                      .dv = (on)->dv,                                                               \
                      .r = (on)->r,                                                                 \
                      .scalars = (on)->scalars,                                                     \
+                     .factor = (on)->factor,                                                       \
                      .tie_table = (on)->tie_table})
 
 /* In place. */
 FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_step_args,
             (R(table), R(f), R(a), R(dv), R(r), RW(x), RW(v), W(halo_x), W(halo_v), R(scalars),
-             SUM(status), IF_MADE(tie_table)))
+             SUM(status), IF_MADE(factor), IF_MADE(tie_table)))
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct solved solved = IMPLICIT_SOLVED(call, t, on);
@@ -135,7 +140,7 @@ FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_step_args,
 /* Beside the state, which stays as it is. */
 FLOW_KERNEL(implicit_next, FLOW_POSITION, struct flow_step_args,
             (R(table), R(f), R(a), R(dv), R(r), R(x), R(v), W(kept_x), W(kept_v), W(halo_x),
-             W(halo_v), R(scalars), SUM(status), IF_MADE(tie_table)))
+             W(halo_v), R(scalars), SUM(status), IF_MADE(factor), IF_MADE(tie_table)))
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct solved solved = IMPLICIT_SOLVED(call, t, on);
@@ -238,7 +243,7 @@ static int search_line(struct flow_state *state, struct flow_step_args args, dou
 /* The whole of dv. */
 FLOW_KERNEL(correct, FLOW_VELOCITY, struct flow_step_args,
             (R(table), R(f), R(a), R(dv), R(r), R(base_x), R(base_v), RW(v), W(x), W(halo_v),
-             W(halo_x), R(scalars), SUM(status), IF_MADE(tie_table)))
+             W(halo_x), R(scalars), SUM(status), IF_MADE(factor), IF_MADE(tie_table)))
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct solved solved = IMPLICIT_SOLVED(call, t, on);
@@ -272,10 +277,12 @@ static int newton_step(struct flow_state *state, struct flow_step_args args,
 /* Sums all Newton steps; only the last one's errors count. */
 static void sum_newton_steps(double all[FLOW_STATUS], const double last[FLOW_STATUS])
 {
-    const double iterations = all[FLOW_ITERATIONS], restarts = all[FLOW_RESTARTS];
-    memcpy(all, last, FLOW_STATUS * sizeof *all);
-    all[FLOW_ITERATIONS] += iterations;
-    all[FLOW_RESTARTS] += restarts;
+    static const int summed[] = {FLOW_ITERATIONS, FLOW_RESTARTS, FLOW_SHIFTED};
+    double before[FLOW_STATUS];
+    memcpy(before, all, sizeof before);
+    memcpy(all, last, sizeof before);
+    for (size_t i = 0; i < sizeof summed / sizeof *summed; i++)
+        all[summed[i]] += before[summed[i]];
 }
 
 /* Newton steps until the last one is small, or there were enough. The first system is made. */

@@ -36,11 +36,10 @@ FLOW_KERNEL(seams, FLOW_OUTPUT, struct flow_block_args,
 
 int flow_seams_fork(struct flow_state *state)
 {
-    struct flow_block_args args;
     if (!state->flow->model->n_pulled)
         return DUITE_OK;
     flow_set(state, FLOW_FIELD_seam_peaks, NULL);
-    return flow_fork_each(state, &flow_kernel_seams, &args);
+    return flow_fork_each(state, &flow_kernel_seams, NULL);
 }
 
 int flow_seams_find(struct flow_state *state)

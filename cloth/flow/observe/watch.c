@@ -1,7 +1,6 @@
 /* The state after a step is watched when the whole step is forked. When it is accepted, probes
- * report it, and the main program may find that the run rests. The watched values alternate between
- * two objects, like a step's status. Watching leaves the state as it is and is forked only for runs
- * with probes or rest. */
+ * report it, and the main program may find that the run rests. Watching leaves the state as it is
+ * and is forked only for runs with probes or rest. */
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/run/step.h"
 #include "cloth/flow/state/bodies.h"
@@ -40,9 +39,8 @@ FLOW_KERNEL(stretch, FLOW_NO_PART, struct flow_block_args,
 
 int flow_stretch_fork(struct flow_state *state)
 {
-    struct flow_block_args args;
     flow_set(state, FLOW_FIELD_stretch, NULL);
-    return flow_fork_each(state, &flow_kernel_stretch, &args);
+    return flow_fork_each(state, &flow_kernel_stretch, NULL);
 }
 
 int flow_stretch_get(struct flow_state *state, double *stretch)
@@ -68,12 +66,11 @@ FLOW_KERNEL(watch, FLOW_OUTPUT, struct flow_block_args,
 int flow_watch(struct flow_state *state)
 {
     const double none[FLOW_PEAKS] = {0, -INFINITY, -INFINITY};
-    struct flow_block_args args;
     flow_seams_fork(state);
     if (!flow_writes_probes(state) && !may_rest(state))
         return state->code;
     flow_set(state, FLOW_FIELD_peaks, none);
-    flow_fork_each(state, &flow_kernel_watch, &args);
+    flow_fork_each(state, &flow_kernel_watch, NULL);
     if (flow_writes_probes(state))
         flow_energies(state, flow_attempt_args(state), FLOW_FIELD_energy);
     return state->code;

@@ -204,8 +204,7 @@ static struct flow_attempt next_attempt(const struct flow_state *state)
 {
     const struct flow_attempt *attempt = &state->attempt;
     return (struct flow_attempt){.begin = state->grid.now + (attempt->forked ? attempt->length : 0),
-                                 .length = state->grid.length,
-                                 .parity = 1 - attempt->parity};
+                                 .length = state->grid.length};
 }
 
 /* Settles the step under way while `next` begins. A step waits for the one before if that is
@@ -257,7 +256,6 @@ static int begin_steps(struct flow_state *state)
 {
     flow_grid_begin(&state->grid, state->flow->n_steps);
     state->next_frame = flow_before(state).frames;
-    flow_set(state, FLOW_FIELD_status, NULL);
     flow_watch(state);
     flow_watched(state);
     flow_energy_begin(state);

@@ -66,6 +66,12 @@ static int step_fork_begin(struct flow_state *state)
     return is->begin ? is->begin(state) : DUITE_OK;
 }
 
+/* The one before has been settled: its status was got. */
+static int empty_status(struct flow_state *state)
+{
+    return flow_set(state, FLOW_FIELD_status, NULL);
+}
+
 static int fork_end(struct flow_state *state)
 {
     return flow_integrator(state->flow->model)->end(state);
@@ -90,6 +96,7 @@ static const struct stage stages[] = {
     {"keep", PREDICT, keeps_first, flow_keep},
     {"prescribe velocities", PREDICT, is_driven, flow_pins_prescribe_velocity},
     {"begin", SOLVE, always, step_fork_begin},
+    {"empty status", CORRECT, always, empty_status},
     {"keep", CORRECT, keeps_late, flow_keep},
     {"integrate", CORRECT, always, fork_end},
     {"prescribe positions", CORRECT, is_driven, flow_pins_prescribe_position},
@@ -115,7 +122,6 @@ static int fork_stages(struct flow_state *state, enum stage_part from, enum stag
 int flow_step_begin(struct flow_state *state)
 {
     flow_noted(state, duite_trace_step(state->rt, state->attempt.begin / FLOW_TICKS));
-    flow_set(state, FLOW_FIELD_status, NULL);
     return fork_stages(state, TIE, SOLVE);
 }
 

@@ -45,11 +45,10 @@ FLOW_KERNEL(basis_ghosts, FLOW_NO_PART, struct flow_block_args,
 
 int flow_coarse_initialise(struct flow_state *state)
 {
-    struct flow_block_args args;
     if (!state->flow->conditioner.coarse)
         return DUITE_OK;
-    flow_fork_each(state, &flow_kernel_basis, &args);
-    return flow_fork_each(state, &flow_kernel_basis_ghosts, &args);
+    flow_fork_each(state, &flow_kernel_basis, NULL);
+    return flow_fork_each(state, &flow_kernel_basis_ghosts, NULL);
 }
 
 /* ---- The matrix C and its factor ---- */

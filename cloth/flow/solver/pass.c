@@ -15,7 +15,7 @@
 /* ---- The factor of a block ---- */
 
 FLOW_KERNEL(factor, FLOW_CG, struct flow_block_args,
-            (R(table), R(a), W(factor), SUM(status), IF_MADE(tie_table)))
+            (R(table), R(a), W(factor), IF_MADE(tie_table)))
 {
     const enum solve_local local = flow_of(call)->conditioner.local;
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -27,17 +27,16 @@ FLOW_KERNEL(factor, FLOW_CG, struct flow_block_args,
     const int tried = solve_local_factor(&t->matrix, &cut, values, local, on->factor);
     /* The object also has room for double entries (flow_table): zeros. */
     const size_t used = solve_local_doubles(t->n, t->matrix.row[t->n], local);
-    memset(on->factor + used, 0,
-           (solve_local_doubles(t->n, t->n_entries, local) - used) * sizeof *on->factor);
-    on->status[FLOW_SHIFTED] = tried > 0;
+    const size_t last = flow_factor_doubles(t, local) - 1;
+    memset(on->factor + used, 0, (last - used) * sizeof *on->factor);
+    on->factor[last] = tried > 0;
     return 0;
 }
 
 int flow_pass_factor(struct flow_state *state, uint32_t first, uint32_t end)
 {
-    struct flow_block_args args;
     return flow_is_preconditioned(state->flow)
-               ? flow_fork_range_as(state, &flow_kernel_factor, first, end, &args, NULL)
+               ? flow_fork_range_as(state, &flow_kernel_factor, first, end, NULL, NULL)
                : DUITE_OK;
 }
 

@@ -210,11 +210,10 @@ static int build_rounds(duite *rt, void *context)
 {
     const struct flow_block_args first = {0};
     struct flow_state *state = context;
-    struct flow_block_args args;
     (void)rt;
     for (state->pass = 0; state->pass < 2; state->pass++) {
         flow_set(state, FLOW_FIELD_edge_excess, NULL);
-        flow_fork_each(state, &flow_kernel_edge_round, &args);
+        flow_fork_each(state, &flow_kernel_edge_round, NULL);
         flow_fork_one(state, &flow_kernel_edge_next, &first);
     }
     state->pass = 0;

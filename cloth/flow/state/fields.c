@@ -96,7 +96,7 @@ ROWS(skin_bytes,    flow_skin_bytes(t))
 ROWS(skin_points,   2 * (size_t)t->skin.n_points)
 ROWS(skin_boxes,    box_bytes(flow_skin_counts(t)))
 ROWS(matrix,        matrix_numbers(t, model_is_filtered(model), tie_room(state, block).ties))
-ROWS(factor,        solve_local_doubles(t->n, t->n_entries, flow->conditioner.local))
+ROWS(factor,        flow_factor_doubles(t, flow->conditioner.local))
 ROWS(part,          flow_part_doubles(flow))
 ROWS(couplings,     SOLVE_COUPLING * flow_coupling_at(flow, flow->patches * (block + 1) - 1, UINT32_MAX))
 ROWS(dots,          flow_dots(flow))
@@ -165,12 +165,11 @@ LIFE(state_of_frames,   model->contact.force ? FLOW_STATE_FIELD : FLOW_WORK)
              : DUITE_F64)
 #define FIELD(name, turns, place, type, width, rows, exists, life)                                 \
     {#name, turns, place, TYPE_OF(type), width, rows, exists, life},
-#define ROW(name, many, ...)   ROW_##many(name, __VA_ARGS__)
-#define ROW_ONE(name, ...)     FIELD(name, FLOW_ONE, 0, __VA_ARGS__)
-#define ROW_SIZED(name, ...)   FIELD(name, FLOW_SIZED, 0, __VA_ARGS__)
-#define ROW_BY_STEP(name, ...) PAIR(name, FLOW_BY_STEP, __VA_ARGS__)
-#define ROW_BY_PASS(name, ...) PAIR(name, FLOW_BY_PASS, __VA_ARGS__)
-#define PAIR(name, turns, ...) FIELD(name, turns, 0, __VA_ARGS__) FIELD(name, turns, 1, __VA_ARGS__)
+#define ROW(name, many, ...) ROW_##many(name, __VA_ARGS__)
+#define ROW_ONE(name, ...)   FIELD(name, FLOW_ONE, 0, __VA_ARGS__)
+#define ROW_SIZED(name, ...) FIELD(name, FLOW_SIZED, 0, __VA_ARGS__)
+#define ROW_BY_PASS(name, ...)                                                                     \
+    FIELD(name, FLOW_BY_PASS, 0, __VA_ARGS__) FIELD(name, FLOW_BY_PASS, 1, __VA_ARGS__)
 
 const struct flow_field flow_fields[FLOW_FIELDS_OF_ALL] = {FLOW_FIELDS(ROW)};
 

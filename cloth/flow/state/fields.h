@@ -20,9 +20,8 @@
  * (kernel.h). A checkpoint must have the fields that the last column says; test_fields.c holds runs
  * to it. A new field is one row.
  *
- * ONE: one object. SIZED: one that changes its size, up to this many rows. BY_STEP, BY_PASS: two
- * objects that take turns, name and name_next. By step, `name` is that of the step under way; by
- * pass, that of the pass under way (flow_state.pass). */
+ * ONE: one object. SIZED: one that changes its size, up to this many rows. BY_PASS: two objects
+ * that take turns, name and name_next; `name` is that of the pass under way (flow_state.pass). */
 
 /* Fields of each block; they live where its x lives. */
 /* Numbers of a row of a contact; of a frame; of the place of a node in its group. */
@@ -131,12 +130,12 @@ enum {
 /* Fields of the whole run; they live where the first block lives. */
 #define FLOW_RUN_FIELDS(X)                                                                         \
     /* sums of a step; trial, slope: of a Newton step */                                           \
-    X(status,       BY_STEP, double,        FLOW_STATUS, one,           always,       work)        \
-    X(stretch,      BY_STEP, double,        1, one,           always,       work)                  \
-    X(peaks,        BY_STEP, double,        FLOW_PEAKS, one,           always,       work)         \
+    X(status,       ONE,     double,        FLOW_STATUS, one,           always,       work)        \
+    X(stretch,      ONE,     double,        1, one,           always,       work)                  \
+    X(peaks,        ONE,     double,        FLOW_PEAKS, one,           always,       work)         \
     /* of each pulled seam the square of the largest distance of partners, m^2 */                  \
-    X(seam_peaks,   BY_STEP, double,        1, pulled_seams,  always,       work)                  \
-    X(energies,     BY_STEP, double,        FLOW_SUMS, one,           always,       work)          \
+    X(seam_peaks,   ONE,     double,        1, pulled_seams,  always,       work)                  \
+    X(energies,     ONE,     double,        FLOW_SUMS, one,           always,       work)          \
     X(trial,        ONE,     double,        FLOW_STATUS, one,           implicit_run, work)        \
     X(slope,        ONE,     double,        1, one,           implicit_run, work)                  \
     X(roots,        ONE,     double,        FLOW_ROOT, sides,     meets,        work)              \
@@ -203,8 +202,7 @@ enum {
 #define FLOW_FIELD_ID(name, many, ...) FLOW_FIELD_ID_##many(name)
 #define FLOW_FIELD_ID_ONE(name)        FLOW_FIELD_##name,
 #define FLOW_FIELD_ID_SIZED(name)      FLOW_FIELD_##name,
-#define FLOW_FIELD_ID_BY_STEP(name)    FLOW_FIELD_##name, FLOW_FIELD_##name##_next,
-#define FLOW_FIELD_ID_BY_PASS(name)    FLOW_FIELD_ID_BY_STEP(name)
+#define FLOW_FIELD_ID_BY_PASS(name)    FLOW_FIELD_##name, FLOW_FIELD_##name##_next,
 enum flow_field_id {
     FLOW_BLOCK_FIELDS(FLOW_FIELD_ID) FLOW_FIELDS_OF_BLOCK,
     FLOW_FIELD_BEFORE_RUN = FLOW_FIELDS_OF_BLOCK - 1,
@@ -220,7 +218,6 @@ enum {
 #define FLOW_FIELD_MEMBER(name, many, ...) FLOW_FIELD_MEMBER_##many(name)
 #define FLOW_FIELD_MEMBER_ONE(name)        duite_object name;
 #define FLOW_FIELD_MEMBER_SIZED(name)      duite_object name;
-#define FLOW_FIELD_MEMBER_BY_STEP(name)    duite_object name[2];
 #define FLOW_FIELD_MEMBER_BY_PASS(name)    duite_object name[2];
 
 /* The objects of a block, by name or by number; the zero object where a field does not exist. */
@@ -250,7 +247,7 @@ enum flow_life {
     FLOW_WORK     /* the next step writes it before it reads it */
 };
 
-enum flow_turns { FLOW_ONE, FLOW_SIZED, FLOW_BY_STEP, FLOW_BY_PASS };
+enum flow_turns { FLOW_ONE, FLOW_SIZED, FLOW_BY_PASS };
 
 struct flow_state;
 struct model;

@@ -164,7 +164,8 @@ static void fetch_names(const struct flow_state *state, const struct places *pla
 int flow_fork_range_as(struct flow_state *state, const struct flow_kernel *kernel, uint32_t first,
                        uint32_t end, void *args, const struct flow_as *as)
 {
-    uint32_t *block = args;
+    struct flow_block_args alone;
+    uint32_t *block = args ? args : &alone.block;
     const duite_kernel *task = flow_task_of(state, kernel);
     size_t n[FLOW_FORKS_AHEAD];
     struct places places;
@@ -174,7 +175,7 @@ int flow_fork_range_as(struct flow_state *state, const struct flow_kernel *kerne
         duite_object *refs = state->refs + turn * state->max_refs;
         if (b >= first + FLOW_FORKS_AHEAD) {
             *block = b - FLOW_FORKS_AHEAD;
-            flow_noted(state, duite_fork(state->rt, task, args, n[turn], refs));
+            flow_noted(state, duite_fork(state->rt, task, block, n[turn], refs));
         }
         if (b >= end)
             continue;

@@ -259,9 +259,8 @@ struct flow_kernel {
 #define FLOW_FIELD_TYPE(name, many, type, ...) FLOW_FIELD_TYPE_##many(name, type)
 #define FLOW_FIELD_TYPE_ONE(name, type)        typedef type flow_type_of_##name;
 #define FLOW_FIELD_TYPE_SIZED(name, type)      typedef type flow_type_of_##name;
-#define FLOW_FIELD_TYPE_BY_STEP(name, type)                                                        \
+#define FLOW_FIELD_TYPE_BY_PASS(name, type)                                                        \
     typedef type flow_type_of_##name, flow_type_of_##name##_next;
-#define FLOW_FIELD_TYPE_BY_PASS(name, type) FLOW_FIELD_TYPE_BY_STEP(name, type)
 struct flow_list;
 FLOW_FIELDS(FLOW_FIELD_TYPE)
 #define FLOW_OBJECT_TYPE(name, type) typedef type flow_type_of_##name;
@@ -285,8 +284,9 @@ enum { FLOW_FORKS_AHEAD = 8 }; /* forks whose objects are found before the first
 
 /* Fork a kernel with the objects that it declares: on the block that the arguments name, on each
  * block, on the blocks from first to before end, or on a rank. On several blocks they write its
- * number into the arguments. On each: they call flow_ties_show before a kernel that reads
- * TIED(tie_halo). as: NULL, or FLOW_AS. Collective. They return the first failure of the run. */
+ * number into the arguments; NULL: the kernel needs no others. On each: they call flow_ties_show
+ * before a kernel that reads TIED(tie_halo). as: NULL, or FLOW_AS. Collective. They return the
+ * first failure of the run. */
 int flow_fork_one(struct flow_state *state, const struct flow_kernel *kernel, const void *args);
 int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
                      const struct flow_as *as);

@@ -116,11 +116,7 @@ int flow_objects_free(struct flow_state *state)
 size_t flow_field_place(const struct flow_state *state, enum flow_field_id field)
 {
     const struct flow_field *is = flow_fields + field;
-    unsigned turn = 0;
-    if (is->turns == FLOW_BY_STEP)
-        turn = state->attempt.parity;
-    else if (is->turns == FLOW_BY_PASS)
-        turn = state->pass;
+    const unsigned turn = is->turns == FLOW_BY_PASS ? state->pass : 0;
     return field - is->place + (is->place ^ turn);
 }
 

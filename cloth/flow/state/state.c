@@ -21,9 +21,8 @@ FLOW_KERNEL(initial, FLOW_NO_PART, struct flow_block_args,
 
 int flow_initialise(struct flow_state *state)
 {
-    struct flow_block_args args;
     state->settled_forces = false;
-    flow_fork_each(state, &flow_kernel_initial, &args);
+    flow_fork_each(state, &flow_kernel_initial, NULL);
     flow_levels_initialise(state);
     return model_is_filtered(state->flow->model) ? state->code : flow_coarse_initialise(state);
 }
@@ -37,8 +36,7 @@ FLOW_KERNEL(keep, FLOW_POSITION, struct flow_block_args, (R(x), R(v), W(kept_x),
 
 int flow_keep_as(struct flow_state *state, const struct flow_as *as)
 {
-    struct flow_block_args args;
-    return flow_fork_each_as(state, &flow_kernel_keep, &args, as);
+    return flow_fork_each_as(state, &flow_kernel_keep, NULL, as);
 }
 
 int flow_keep(struct flow_state *state)
@@ -59,11 +57,10 @@ FLOW_KERNEL(restore, FLOW_POSITION, struct flow_block_args,
 
 int flow_restore(struct flow_state *state)
 {
-    struct flow_block_args args;
     const struct model *model = state->flow->model;
     const struct flow_integrator *is = flow_integrator(model);
     if (!is->restore || !flow_integrator_keeps(model))
-        return flow_fork_each(state, &flow_kernel_restore, &args);
+        return flow_fork_each(state, &flow_kernel_restore, NULL);
     is->restore(state);
     return state->code;
 }

@@ -242,7 +242,6 @@ struct flow_contact_state {
 struct flow_attempt {
     uint64_t begin;  /* tick */
     uint32_t length; /* ticks */
-    unsigned parity; /* which status and stretch are its */
     bool forked;     /* whole: its status can be asked for */
 };
 

@@ -123,20 +123,22 @@ PHYS_INLINE void invert_surely(struct solve_symmetric *m)
     *m = inverse;
 }
 
-/* The inner entries of B, transposed: zero where an end is held. */
+/* The inner entries of B, transposed: zero where an end is held. They are whole before they are
+ * written: a read of a vector that was written by its numbers waits for all of them. */
 PHYS_INLINE void spread(const struct solve_block *block, const void *values,
                         struct solve_columns *t)
 {
     for (size_t a = 0; a < block->n; a++)
         for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
             struct solve_symmetric m = {{0}, {0}};
+            struct solve_columns entry;
             phys_vec turn;
             solve_entry_of(block->format, values, i, &m, &turn);
             turn = -turn; /* of N' */
-            solve_entry_columns(&m, &turn, t + i);
+            solve_entry_columns(&m, &turn, &entry);
             const double sign = -block->free[a] * block->free[block->column[i]];
             for (int k = 0; k < 3; k++)
-                t[i].c[k] *= sign;
+                t[i].c[k] = sign * entry.c[k];
             if (block->filter) {
                 filter_left(block->filter + block->column[i], t + i);
                 filter_right(block->filter + a, t + i);
@@ -238,10 +240,8 @@ PHYS_INLINE void round_off(const struct solve_block *block, struct local_factor 
     const size_t n = block->row[block->n];
     for (size_t i = 0; i < n; i++) {
         const struct solve_columns t = f->t[i];
-        struct local_rounded rounded;
-        for (int k = 0; k < SOLVE_NINE; k++)
-            rounded.c[k] = (float)t.c[k / 3][k % 3];
-        memcpy(f->rounded + i, &rounded, sizeof rounded);
+        for (int k = 0; k < 3; k++) /* the fourth number is overwritten */
+            solve_narrow(t.c + k, f->rounded[i].c + 3 * k);
     }
     if (n)
         f->rounded[n].c[0] = 0;

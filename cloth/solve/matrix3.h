@@ -45,6 +45,14 @@ PHYS_INLINE void solve_widen(const float *from, phys_vec *to)
         (phys_vec){(double)(*four)[0], (double)(*four)[1], (double)(*four)[2], (double)(*four)[3]};
 }
 
+/* The same way back. */
+PHYS_INLINE void solve_narrow(const phys_vec *from, float *to)
+{
+    solve_four_floats *four = (void *)to;
+    *four = (solve_four_floats){(float)(*from)[0], (float)(*from)[1], (float)(*from)[2],
+                                (float)(*from)[3]};
+}
+
 /* m v. */
 PHYS_INLINE void solve_times(const struct solve_symmetric *m, const phys_vec *v, phys_vec *y)
 {
@@ -74,9 +82,10 @@ PHYS_INLINE void solve_lanes_of(const phys_vec *a, const phys_vec *b, const phys
 /* The columns of a symmetric one. */
 PHYS_INLINE void solve_columns_of(const struct solve_symmetric *m, struct solve_columns *columns)
 {
-    columns->c[0] = (phys_vec){m->diagonal[0], m->off_diagonal[0], m->off_diagonal[2], 0};
-    columns->c[1] = (phys_vec){m->off_diagonal[0], m->diagonal[1], m->off_diagonal[1], 0};
-    columns->c[2] = (phys_vec){m->off_diagonal[2], m->off_diagonal[1], m->diagonal[2], 0};
+    const phys_vec d = m->diagonal, e = m->off_diagonal;
+    columns->c[0] = __builtin_shufflevector(d, e, 0, 4, 6, 3);
+    columns->c[1] = __builtin_shufflevector(d, e, 4, 1, 5, 3);
+    columns->c[2] = __builtin_shufflevector(d, e, 6, 5, 2, 3);
 }
 
 /* The inverse, unless a pivot of m is not above `least` times the diagonal entries of `whole`. */

@@ -137,13 +137,16 @@ PHYS_INLINE void add_square(struct solve_symmetric sum[6], const phys_vec *phi,
 }
 
 /* Adds `sign` times a 3 x 3 block to that of functions k and l. */
-static void couple_put(const struct solve_symmetric *m, double sign, int k, int l, double *matrix)
+PHYS_INLINE void couple_put(const struct solve_symmetric *m, double sign, int k, int l,
+                            double *matrix)
 {
-    static const int pair[3][3] = {{0, 0, 2}, {0, 0, 1}, {2, 1, 0}};
-    for (int c = 0; c < 3; c++)
+    struct solve_columns columns;
+    solve_columns_of(m, &columns);
+    for (int c = 0; c < 3; c++) {
+        double *row = matrix + SOLVE_COARSE * (3 * k + c) + 3 * l;
         for (int d = 0; d < 3; d++)
-            matrix[SOLVE_COARSE * (3 * k + c) + 3 * l + d] +=
-                sign * (c == d ? m->diagonal[c] : m->off_diagonal[pair[c][d]]);
+            row[d] += sign * columns.c[c][d];
+    }
 }
 
 static void put_squares(const struct solve_symmetric sum[6], double *matrix)

@@ -42,8 +42,8 @@ bench_duite_bench_SOURCES = bench/duite-bench.c
 bench_duite_bench_LDADD = $(BENCH_LIBRARY)
 EXTRA_DIST += bench/experiments bench/readme.sh bench/contact/peers bench/garments/experiments.sh bench/fabrics/experiments.sh bench/fabrics/sheet.awk bench/fabrics/strip.awk bench/garments/hanging.yaml bench/garments/worn.yaml \
 	bench/vassilev/panels.awk bench/vassilev/jeans.yaml bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/rivals/openmp_forks.c bench/rivals/openmp_graph.c bench/rivals/forks.cpp bench/rivals/openmp.h bench/cg/states.yaml bench/tiles.c \
-	bench/results/epyc-2026-11-22.md bench/results/epyc-2026-11-30.md bench/results/xeon-2026-11-27.md \
-	bench/results/xeon-2026-11-29.md
+	bench/results/epyc-2026-11-22.md bench/results/epyc-2026-11-30.md bench/results/epyc-2026-12-01.md \
+	bench/results/xeon-2026-11-27.md bench/results/xeon-2026-11-29.md
 
 # The arithmetic of tiles and of what forks, which would otherwise compare compilers: compiled once, for us and the rivals. The rivals in
 # C++ have all that they share with the others so.

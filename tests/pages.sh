@@ -14,6 +14,14 @@ nothing_bare() { # a command in an indented block, which nobody would run
     ! grep -nE '^    (\./)?(duite-[a-z]+|bench/[a-z-]+|make|mpirun|cc|tests/[a-z/]+\.sh) ' "$srcdir"/README.md "$srcdir"/docs/*.md
 }
 
+readers_programs() { # FOLDER: those that docs/comparing.md compares
+    printf '#!/bin/sh\necho "Time: 0.1"\n' > "$1/openmp-program"
+    printf '#!/bin/sh\nsleep 0.1\n' > "$1/mpi-program"
+    # shellcheck disable=SC2046 # a list of flags
+    (cd "$1" && cc -O2 dot.c -o duite-program $(pkg-config --cflags --libs duite) -lm) || return
+    chmod +x "$1"/*-program
+}
+
 plan_later
 ok "duite installs into the scratch folder" prepare
 ok "no command hides from these tests" nothing_bare
@@ -25,6 +33,6 @@ for page in "$srcdir/README.md" "$srcdir"/docs/*.md; do
     case " $elsewhere " in *" $name "*) continue ;; esac
     case " ${DUITE_PAGES:-$name} " in *" $name "*) ;; *) continue ;; esac
     home=$scratch/pages/${name%.md}
-    home "$home" && cp "$srcdir/tests/examples/dot.c" "$home" && files "$page" "$home"
+    home "$home" && cp "$srcdir/tests/examples/dot.c" "$home" && files "$page" "$home" && readers_programs "$home"
     run_commands "$page" "$name"
 done

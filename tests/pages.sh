@@ -14,7 +14,7 @@ nothing_bare() { # a command in an indented block, which nobody would run
     ! grep -nE '^    (\./)?(duite-[a-z]+|bench/[a-z-]+|make|mpirun|cc|tests/[a-z/]+\.sh) ' "$srcdir"/README.md "$srcdir"/docs/*.md
 }
 
-readers_programs() { # FOLDER: those that docs/comparing.md compares
+readers_programs() { # FOLDER: those that docs/comparing.md compares, which are its reader's
     printf '#!/bin/sh\necho "Time: 0.1"\n' > "$1/openmp-program"
     printf '#!/bin/sh\nsleep 0.1\n' > "$1/mpi-program"
     # shellcheck disable=SC2046 # a list of flags
@@ -33,6 +33,7 @@ for page in "$srcdir/README.md" "$srcdir"/docs/*.md; do
     case " $elsewhere " in *" $name "*) continue ;; esac
     case " ${DUITE_PAGES:-$name} " in *" $name "*) ;; *) continue ;; esac
     home=$scratch/pages/${name%.md}
-    home "$home" && cp "$srcdir/tests/examples/dot.c" "$home" && files "$page" "$home" && readers_programs "$home"
+    home "$home" && cp "$srcdir/tests/examples/dot.c" "$home" && files "$page" "$home"
+    test "$name" != docs/comparing.md || ok "$name: programs to compare" readers_programs "$home"
     run_commands "$page" "$name"
 done

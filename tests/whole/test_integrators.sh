@@ -161,3 +161,16 @@ newton() {
     test "$(value newton_steps)" -gt "$((2 * $(value steps)))" && test "$(value newton_unconverged)" = 0
 }
 ok "Newton steps are counted" newton
+
+# One block, whose factors all need a shift: its bending pushes as well as pulls, and nothing resists shear.
+shifted() { # KEY SETTING...: as many as the report has under the key
+    key=$1
+    shift
+    run fall.yaml --report report.json --grain 256 --set 'cloths[0].pins=[{vertices: [0]}]' --set time.h=0.02 \
+        --set 'cloths[0].mesh.grid={width: 1, height: 1, nx: 16, ny: 16}' \
+        --set time.end=0.1 --set 'materials.cotton={density: 0.2, stretch: 500, shear: 0, model: triangles, poisson: 0.3, bending: {model: quadratic, rigidity: 0.01}}' "$@" || return 1
+    grep -E 'shifted|steps' report.json
+    test "$(value factors_shifted)" -gt 0 && test "$(value factors_shifted)" = "$(value "$key")"
+}
+ok "shifts of factors are counted" shifted steps
+ok "... in each Newton step" shifted newton_steps --set 'newton={steps: 4, tolerance: 1e-6}'

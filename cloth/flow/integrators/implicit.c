@@ -88,7 +88,7 @@ static void note_solve(const duite_call *call, const struct flow_table *t,
     status[FLOW_FAILED] = scalars->outcome != SOLVE_OK;
     if (solved->factor)
         status[FLOW_SHIFTED] =
-            solved->factor[flow_factor_doubles(t, flow_of(call)->conditioner.local) - 1];
+            solved->factor[flow_factor_shifted(t, flow_of(call)->conditioner.local)];
     if (flow_block_of(call) != 0)
         return;
     const double error = sqrt(solve_scalars_error(scalars, INFINITY)) + sqrt(scalars->drift);
@@ -277,12 +277,12 @@ static int newton_step(struct flow_state *state, struct flow_step_args args,
 /* Sums all Newton steps; only the last one's errors count. */
 static void sum_newton_steps(double all[FLOW_STATUS], const double last[FLOW_STATUS])
 {
-    static const int summed[] = {FLOW_ITERATIONS, FLOW_RESTARTS, FLOW_SHIFTED};
-    double before[FLOW_STATUS];
-    memcpy(before, all, sizeof before);
-    memcpy(all, last, sizeof before);
-    for (size_t i = 0; i < sizeof summed / sizeof *summed; i++)
-        all[summed[i]] += before[summed[i]];
+    const double iterations = all[FLOW_ITERATIONS], restarts = all[FLOW_RESTARTS];
+    const double shifted = all[FLOW_SHIFTED];
+    memcpy(all, last, FLOW_STATUS * sizeof *all);
+    all[FLOW_ITERATIONS] += iterations;
+    all[FLOW_RESTARTS] += restarts;
+    all[FLOW_SHIFTED] += shifted;
 }
 
 /* Newton steps until the last one is small, or there were enough. The first system is made. */

@@ -27,9 +27,9 @@ FLOW_KERNEL(factor, FLOW_CG, struct flow_block_args,
     const int tried = solve_local_factor(&t->matrix, &cut, values, local, on->factor);
     /* The object also has room for double entries (flow_table): zeros. */
     const size_t used = solve_local_doubles(t->n, t->matrix.row[t->n], local);
-    const size_t last = flow_factor_doubles(t, local) - 1;
-    memset(on->factor + used, 0, (last - used) * sizeof *on->factor);
-    on->factor[last] = tried > 0;
+    const size_t shifted = flow_factor_shifted(t, local);
+    memset(on->factor + used, 0, (shifted - used) * sizeof *on->factor);
+    on->factor[shifted] = tried > 0;
     return 0;
 }
 

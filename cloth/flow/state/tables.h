@@ -179,11 +179,11 @@ static inline size_t flow_value_rows(const struct flow_table *t)
 {
     return (flow_table_doubles(t) + 3) / 4;
 }
-/* A block's factor, with room for double entries; the last number is 1 if it was made with a shift,
- * or gave way to SSOR. */
-static inline size_t flow_factor_doubles(const struct flow_table *t, enum solve_local local)
+/* The place of a number behind a block's factor, which has room for double entries: 1 if it was
+ * made with a shift, or gave way to SSOR; else 0. */
+static inline size_t flow_factor_shifted(const struct flow_table *t, enum solve_local local)
 {
-    return solve_local_doubles(t->n, t->n_entries, local) + 1;
+    return solve_local_doubles(t->n, t->n_entries, local);
 }
 
 #endif

@@ -123,8 +123,9 @@ PHYS_INLINE void invert_surely(struct solve_symmetric *m)
     *m = inverse;
 }
 
-/* The inner entries of B, transposed: zero where an end is held. They are whole before they are
- * written: a read of a vector that was written by its numbers waits for all of them. */
+/* The inner entries of B, transposed: zero where an end is held. An entry is put together in
+ * registers: a vector that is read just after its numbers were written one by one waits for them.
+ */
 PHYS_INLINE void spread(const struct solve_block *block, const void *values,
                         struct solve_columns *t)
 {

@@ -45,7 +45,7 @@ PHYS_INLINE void solve_widen(const float *from, phys_vec *to)
         (phys_vec){(double)(*four)[0], (double)(*four)[1], (double)(*four)[2], (double)(*four)[3]};
 }
 
-/* The same way back. */
+/* Four floats of a vector, again one by one. */
 PHYS_INLINE void solve_narrow(const phys_vec *from, float *to)
 {
     solve_four_floats *four = (void *)to;

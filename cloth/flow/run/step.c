@@ -66,8 +66,7 @@ static int step_fork_begin(struct flow_state *state)
     return is->begin ? is->begin(state) : DUITE_OK;
 }
 
-/* Begins the status when that of the step before was got. The begin of a step adds nothing to it.
- */
+/* Comes after the status of the step before was got. Tasks of a begin add nothing to it. */
 static int empty_status(struct flow_state *state)
 {
     return flow_set(state, FLOW_FIELD_status, NULL);
